@@ -15,7 +15,7 @@
 
 #include "../fuzz/digest.hpp"
 #include "realmodel/fields/level_sets.hpp"
-#include "realmodel/structures/build_parts.hpp"
+#include "realmodel/structures/build_compartments.hpp"
 
 namespace {
 
@@ -85,20 +85,20 @@ int main(int count, char** arguments) {
     const Surface ground =
         sheet(32, [](double x, double y) { return 8 + 0.6 * std::sin(x) * std::cos(0.7 * y); });
     const std::size_t sets = levels.size();
-    structures::PartOfSpace part;
+    structures::CompartmentInput compartment;
     std::size_t triangles = 0;
     for (std::size_t s = 0; s < sets; ++s) {
         const auto& own = solids[s];
         triangles += own.triangles.size();
-        part.solids.push_back({{{own.vertices[0].data(), 3 * own.vertices.size()},
-                                {own.triangles[0].data(), 3 * own.triangles.size()}},
-                               static_cast<std::int32_t>(s)});
+        compartment.solids.push_back({{{own.vertices[0].data(), 3 * own.vertices.size()},
+                                       {own.triangles[0].data(), 3 * own.triangles.size()}},
+                                      static_cast<std::int32_t>(s)});
     }
     for (std::size_t place = 0; place <= sets; ++place) {  // between level sets place - 1 and place
-        structures::LevelPart own;
-        structures::PartStack rock;
+        structures::LevelCompartment own;
+        structures::CompartmentStack rock;
         rock.stack.region = region.view();
-        const auto add = [&](const Surface& surface, structures::PartSurface in_whole) {
+        const auto add = [&](const Surface& surface, structures::CompartmentSurface in_whole) {
             rock.stack.surfaces.push_back(surface.view());
             rock.surfaces.push_back(in_whole);
             rock.stack.rules.push_back(strata::Rule::kErosional);
@@ -115,15 +115,15 @@ int main(int count, char** arguments) {
         }
         add(ground, {static_cast<std::int32_t>(sets), static_cast<std::int32_t>(sets)});
         own.rocks.push_back(std::move(rock));
-        part.between.push_back(std::move(own));
+        compartment.between.push_back(std::move(own));
     }
     structures::StructuredInput input;
-    input.parts.push_back(std::move(part));
+    input.compartments.push_back(std::move(compartment));
     input.surfaces = static_cast<std::int32_t>(sets) + 1;
     input.blocks = sets + 1;
     input.cells = columns ? CellKind::kColumns : CellKind::kBlocks;
     const auto joining = std::chrono::steady_clock::now();
-    const auto built = structures::build_parts(input, execution).complex;
+    const auto built = structures::build_compartments(input, execution).complex;
     const double until_cells = seconds_since(joining);
     std::printf("%d tetrahedra, %zu triangles: %.3f + %.3f s, %zu faces, %zu cells, %016" PRIx64
                 "\n",

@@ -27,15 +27,15 @@ using HistoryArrays =
     std::tuple<std::vector<SurfaceArrays>, std::optional<double>, std::vector<std::string>>;
 
 /// faces, reversed, history and layer, of each polygon.
-using PolygonArrays = std::tuple<Indices, Array<bool>, Indices, Indices>;
+using PolygonArrays = std::tuple<Indices, NumpyArray<bool>, Indices, Indices>;
 
-std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
-    const py::dict& model, const std::vector<HistoryArrays>& given, const PolygonArrays& of,
-    const Indices& histories_of_corners, WatchedExecution* execution) {
+std::tuple<NumpyArray<float>, NumpyArray<float>, NumpyArray<float>> bedding_arrays(
+    const py::dict& model, const std::vector<HistoryArrays>& history_arrays,
+    const PolygonArrays& of, const Indices& histories_of_corners, WatchedExecution* execution) {
     const ComplexArrays arrays(model);
     const auto& [faces, reversed, history, layer] = of;
     std::vector<bedding::History> histories;
-    for (const auto& [sheets, base_elevation, rules] : given) {
+    for (const auto& [sheets, base_elevation, rules] : history_arrays) {
         const strata::StackInput rock = view_of(RockArrays{sheets, {}, base_elevation, rules});
         histories.push_back({rock.surfaces, rock.rules, rock.base_elevation});
     }
@@ -44,7 +44,7 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
         layer.size() != faces.size()) {
         throw py::value_error("faces, reversed, history, layer: one for each polygon");
     }
-    std::vector<bedding::Polygon> polygons(count);
+    std::vector<bedding::BedPolygon> polygons(count);
     for (std::size_t n = 0; n < count; ++n) {
         polygons[n] = {faces.data()[n], reversed.data()[n], history.data()[n], layer.data()[n]};
     }

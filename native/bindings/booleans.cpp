@@ -54,26 +54,26 @@ const char* name_of(booleans::LoopKind kind) {
 }
 
 py::list loops(const py::object& self) {
-    py::list found;
+    py::list tuples;
     for (const auto& loop : in(self).loops)
-        found.append(py::make_tuple(name_of(loop.kind), seen(self, loop.vertices)));
-    return found;
+        tuples.append(py::make_tuple(name_of(loop.kind), seen(self, loop.vertices)));
+    return tuples;
 }
 
 py::list sub_surfaces(const py::object& self) {
-    py::list found;
-    for (const auto& part : in(self).sub_surfaces)
-        found.append(py::make_tuple(part.source, seen(self, part.triangles), seen(self, part.loops),
-                                    part.is_public));
-    return found;
+    py::list tuples;
+    for (const auto& sub_surface : in(self).sub_surfaces)
+        tuples.append(py::make_tuple(sub_surface.source, seen(self, sub_surface.triangles),
+                                     seen(self, sub_surface.loops), sub_surface.is_public));
+    return tuples;
 }
 
 py::list sub_blocks(const py::object& self) {
-    py::list found;
+    py::list tuples;
     for (const auto& block : in(self).sub_blocks)
-        found.append(py::make_tuple(rows_seen(self, block.triangles), in(self).volume(block),
-                                    block.is_in[0], block.is_in[1]));
-    return found;
+        tuples.append(py::make_tuple(rows_seen(self, block.triangles), in(self).volume(block),
+                                     block.is_in[0], block.is_in[1]));
+    return tuples;
 }
 
 py::array_t<bool> is_in(const py::object& self) {
@@ -83,9 +83,9 @@ py::array_t<bool> is_in(const py::object& self) {
                 {static_cast<py::ssize_t>(values.size()), 2, 2});
 }
 
-std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
+std::unique_ptr<Refinement> intersect(const NumpyArray<double>& first_vertices,
                                       const Indices& first_triangles,
-                                      const Array<double>& second_vertices,
+                                      const NumpyArray<double>& second_vertices,
                                       const Indices& second_triangles,
                                       WatchedExecution* execution) {
     require_columns(first_vertices, 3, "vertices of the first surface");

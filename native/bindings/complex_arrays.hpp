@@ -50,9 +50,9 @@ inline CellKind kind_of(const std::string& cells) {
 /// The arrays of a complex that come under these names, kept alive while the view is in use. How
 /// many blocks there are, and what their cells are, is left to the caller.
 struct ComplexArrays {
-    Array<double> vertices;
-    Array<std::int64_t> face_offsets;
-    Array<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
+    NumpyArray<double> vertices;
+    NumpyArray<std::int64_t> face_offsets;
+    NumpyArray<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
     ComplexView complex;
 
     explicit ComplexArrays(const pybind11::dict& arrays) {
@@ -67,10 +67,10 @@ struct ComplexArrays {
     }
 
     template <class T>
-    static void take(const pybind11::dict& arrays, const char* name, Array<T>& kept,
+    static void take(const pybind11::dict& arrays, const char* name, NumpyArray<T>& holder,
                      std::span<const T>& seen) {
-        kept = arrays[name].cast<Array<T>>();
-        seen = {kept.data(), static_cast<std::size_t>(kept.size())};
+        holder = arrays[name].cast<NumpyArray<T>>();
+        seen = {holder.data(), static_cast<std::size_t>(holder.size())};
     }
 };
 

@@ -59,8 +59,8 @@ py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
     }));
 }
 
-py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
-                        const Array<std::int32_t>& triangles, WatchedExecution* execution) {
+py::dict cut_by_surface(const py::dict& model, const NumpyArray<double>& vertices,
+                        const NumpyArray<std::int32_t>& triangles, WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices of the surface");
     require_columns(triangles, 3, "triangles of the surface");
     const ModelArrays arrays(model);
@@ -93,17 +93,18 @@ py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
         unlocked([&] { return cutting::fence_panel(arrays.complex, start, end, run(execution)); }));
 }
 
-std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
-    const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+std::tuple<NumpyArray<std::int32_t>, NumpyArray<std::int64_t>> triangulate_faces(
+    const NumpyArray<double>& vertices, const NumpyArray<std::int64_t>& face_offsets,
     const Indices& face_vertices, WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices");
     const auto positions = view(vertices);
     const auto offsets = view(face_offsets);
     const std::span<const std::int32_t> corners(face_vertices.data(),
                                                 static_cast<std::size_t>(face_vertices.size()));
-    auto found = unlocked(
+    auto triangulation = unlocked(
         [&] { return cutting::triangulate_faces(positions, offsets, corners, run(execution)); });
-    return {to_array(std::move(found.triangles)), to_array(std::move(found.offsets))};
+    return {to_array(std::move(triangulation.triangles)),
+            to_array(std::move(triangulation.offsets))};
 }
 
 }  // namespace

@@ -21,11 +21,11 @@ inline Execution run(WatchedExecution* execution) {
 }
 
 /// When the work is done, refused or cancelled, what it had is the system's again.
-struct MemoryGivenBack {
-    MemoryGivenBack() = default;
-    MemoryGivenBack(const MemoryGivenBack&) = delete;
-    MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
-    ~MemoryGivenBack() { give_back_memory(); }
+struct MemoryRelease {
+    MemoryRelease() = default;
+    MemoryRelease(const MemoryRelease&) = delete;
+    MemoryRelease& operator=(const MemoryRelease&) = delete;
+    ~MemoryRelease() { give_back_memory(); }
 };
 
 /// What a call gives, which runs without the lock of the interpreter.

@@ -24,18 +24,18 @@ namespace realmodel::bindings {
 namespace {
 
 /// How many surfaces; positions, and the surface of each.
-using ContactsTuple = std::tuple<int, Array<double>, Indices, double>;
-using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
+using ContactsTuple = std::tuple<int, NumpyArray<double>, Indices, double>;
+using DipsAndNormals = std::tuple<NumpyArray<double>, NumpyArray<double>>;
 /// Positions, the surface below each and above it.
-using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
+using BoundsTuple = std::tuple<NumpyArray<double>, Indices, Indices>;
 /// Axes and ratios.
 using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::array<double, 3>>;
 /// How many faults part the field, combinations of sides; further coordinates of contacts, dips and
 /// bounds, how they rise at dips; normals of the faults; those of nodes, the nodes that are the
 /// same, the sides of bounds.
-using SlitsTuple =
-    std::tuple<std::size_t, std::size_t, Array<double>, Array<double>, Array<double>, Array<double>,
-               Array<double>, Array<double>, Array<std::int64_t>, Indices>;
+using SlitsTuple = std::tuple<std::size_t, std::size_t, NumpyArray<double>, NumpyArray<double>,
+                              NumpyArray<double>, NumpyArray<double>, NumpyArray<double>,
+                              NumpyArray<double>, NumpyArray<std::int64_t>, Indices>;
 /// Tolerance, most centers, whether beds keep their thickness.
 using OptionsTuple = std::tuple<double, int, std::optional<bool>>;
 /// Axes and ratios, order, errors of values and of slopes, lift, throws, scale; gaps, centers, left
@@ -45,7 +45,7 @@ using KindTuple =
                double, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>,
                std::vector<std::array<double, 3>>, double>;
 /// A kind; numbers of directions, of steps and of errors of dips.
-using DrawTuple = std::tuple<KindTuple, Array<double>, Array<double>, Array<double>>;
+using DrawTuple = std::tuple<KindTuple, NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>;
 
 KindTuple tuple_of(const fields::FunctionKind& kind) {
     return {{kind.anisotropy.axes, kind.anisotropy.ratios},
@@ -66,9 +66,9 @@ KindTuple tuple_of(const fields::FunctionKind& kind) {
 std::vector<std::vector<std::pair<std::string, std::int64_t>>> listed(
     const std::vector<std::vector<fields::Datum>>& data) {
     std::vector<std::vector<std::pair<std::string, std::int64_t>>> out;
-    for (const std::vector<fields::Datum>& each : data) {
+    for (const std::vector<fields::Datum>& of_bound : data) {
         out.emplace_back();
-        for (const auto& [kind, row] : each) {
+        for (const auto& [kind, row] : of_bound) {
             out.back().emplace_back(kind == fields::Datum::Kind::kContact ? "contact"
                                     : kind == fields::Datum::Kind::kDip   ? "dip"
                                                                           : "bound",
@@ -78,8 +78,8 @@ std::vector<std::vector<std::pair<std::string, std::int64_t>>> listed(
     return out;
 }
 
-fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
-    const auto& [kind, directions, steps, errors] = given;
+fields::FieldDraw draw_of(const DrawTuple& draw_tuple, std::size_t slits) {
+    const auto& [kind, directions, steps, errors] = draw_tuple;
     const auto& [anisotropy, order, value, slope, lift, throws, scale, gaps, centers, left_out,
                  even, even_error] = kind;
     return {{std::make_from_tuple<fields::AxisRatios>(anisotropy), order, value, slope, lift,
@@ -88,9 +88,9 @@ fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
 }
 
 py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
-               const DipsAndNormals& dips, const BoundsTuple& bounds, const OptionsTuple& given,
-               const std::optional<SlitsTuple>& slits, const std::optional<DrawTuple>& drawn,
-               WatchedExecution* execution) {
+               const DipsAndNormals& dips, const BoundsTuple& bounds,
+               const OptionsTuple& option_tuple, const std::optional<SlitsTuple>& slits,
+               const std::optional<DrawTuple>& drawn, WatchedExecution* execution) {
     fields::FieldData data;
     data.surfaces = std::get<0>(contacts);
     data.contacts = rows<3>(std::get<1>(contacts), "contacts");
@@ -109,7 +109,7 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                       sides,           view(nodes),       view(same),
                       view(of_bound)};
     }
-    const auto& [tolerance, most_centers, is_even] = given;
+    const auto& [tolerance, most_centers, is_even] = option_tuple;
     std::optional<fields::FieldDraw> draw;
     if (drawn) draw = draw_of(*drawn, data.slits.count);
     const fields::FieldOptions options{tolerance, most_centers, draw ? &*draw : nullptr, is_even};
@@ -128,14 +128,13 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     return out;
 }
 
-std::pair<Array<std::int64_t>, std::vector<std::string>> critical(const LatticeTuple& lattice,
-                                                                  const Array<double>& values,
-                                                                  WatchedExecution* execution) {
-    auto found = unlocked(
+std::pair<NumpyArray<std::int64_t>, std::vector<std::string>> critical(
+    const LatticeTuple& lattice, const NumpyArray<double>& values, WatchedExecution* execution) {
+    auto points = unlocked(
         [&] { return fields::critical_points(lattice_of(lattice), view(values), run(execution)); });
     std::vector<std::int64_t> nodes;
     std::vector<std::string> kinds;
-    for (const fields::CriticalPoint& point : found) {
+    for (const fields::CriticalPoint& point : points) {
         nodes.push_back(point.node);
         kinds.emplace_back(point.kind == fields::CriticalKind::kMinimum   ? "minimum"
                            : point.kind == fields::CriticalKind::kMaximum ? "maximum"

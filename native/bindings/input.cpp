@@ -23,11 +23,11 @@ namespace {
 using ValuesTuple = std::tuple<std::vector<double>, std::vector<std::string>>;
 using FilterTuple = std::tuple<std::size_t, ValuesTuple>;
 
-input::Values values_of(const ValuesTuple& given) {
-    return {std::get<0>(given), std::get<1>(given)};
+input::Values values_of(const ValuesTuple& values) {
+    return {std::get<0>(values), std::get<1>(values)};
 }
 
-std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
+std::tuple<NumpyArray<double>, std::size_t, std::size_t, std::size_t> read_numbers(
     const py::bytes& text, const std::pair<char, char>& marks,
     const std::vector<std::size_t>& columns, const std::vector<FilterTuple>& filters,
     const ValuesTuple& missing, WatchedExecution* execution) {
@@ -43,10 +43,11 @@ std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
 }
 
 py::bytes decode_lzw(const py::bytes& encoded, std::size_t most) {
-    const std::string_view given = encoded;
+    const std::string_view encoded_text = encoded;
     auto decoded = unlocked([&] {
         return input::decode_lzw(
-            {reinterpret_cast<const std::uint8_t*>(given.data()), given.size()}, most);
+            {reinterpret_cast<const std::uint8_t*>(encoded_text.data()), encoded_text.size()},
+            most);
     });
     return {reinterpret_cast<const char*>(decoded.data()), decoded.size()};
 }

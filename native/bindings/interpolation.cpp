@@ -32,12 +32,12 @@ using NestedTuple = std::tuple<std::string, double, double, double, double>;
 using NeighborhoodTuple = std::tuple<int, int, double>;
 constexpr NeighborhoodTuple kNearest{16, 0, 0.0};
 /// Positions, slopes, the baseline of slopes, and how many dips count at a node.
-using DipsTuple = std::tuple<Array<double>, Array<double>, double, int>;
+using DipsTuple = std::tuple<NumpyArray<double>, NumpyArray<double>, double, int>;
 
 /// The sheet of each point and of each dip, variances, the variogram of thicknesses, the sheet
 /// asked.
-using SheetsTuple =
-    std::tuple<Array<std::int32_t>, Array<std::int32_t>, Array<double>, py::dict, std::int32_t>;
+using SheetsTuple = std::tuple<NumpyArray<std::int32_t>, NumpyArray<std::int32_t>,
+                               NumpyArray<double>, py::dict, std::int32_t>;
 
 interpolation::Neighborhood neighborhood_of(const NeighborhoodTuple& of) {
     return std::make_from_tuple<interpolation::Neighborhood>(of);
@@ -85,13 +85,13 @@ interpolation::Drift drift_of(const std::string& name) {
 }
 
 /// heights, variances, nodes with no point within the radius
-using KrigedArrays = std::tuple<Array<double>, Array<double>, std::int64_t>;
+using KrigedArrays = std::tuple<NumpyArray<double>, NumpyArray<double>, std::int64_t>;
 
 KrigedArrays kriged_tuple(interpolation::Kriged&& kriged) {
     return {to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)), kriged.alone};
 }
 
-KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
+KrigedArrays krige(const NumpyArray<double>& points, const NumpyArray<double>& nodes,
                    const py::dict& variogram, const NeighborhoodTuple& neighborhood,
                    const std::string& drift, const std::optional<DipsTuple>& dips,
                    const std::optional<SheetsTuple>& sheets, WatchedExecution* execution) {
@@ -104,7 +104,7 @@ KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
         unlocked([&] { return interpolation::krige(from, to, model, options, run(execution)); }));
 }
 
-KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
+KrigedArrays krige_left_out(const NumpyArray<double>& points, const py::dict& variogram,
                             const NeighborhoodTuple& neighborhood, const std::string& drift,
                             const std::optional<DipsTuple>& dips,
                             const std::optional<SheetsTuple>& sheets, WatchedExecution* execution) {
@@ -116,8 +116,9 @@ KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogr
         [&] { return interpolation::krige_left_out(from, model, options, run(execution)); }));
 }
 
-Array<double> idw(const Array<double>& points, const Array<double>& nodes, double power,
-                  const NeighborhoodTuple& neighborhood, WatchedExecution* execution) {
+NumpyArray<double> idw(const NumpyArray<double>& points, const NumpyArray<double>& nodes,
+                       double power, const NeighborhoodTuple& neighborhood,
+                       WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     return to_array(unlocked([&] {
@@ -126,8 +127,9 @@ Array<double> idw(const Array<double>& points, const Array<double>& nodes, doubl
     }));
 }
 
-Array<double> idw_left_out(const Array<double>& points, double power,
-                           const NeighborhoodTuple& neighborhood, WatchedExecution* execution) {
+NumpyArray<double> idw_left_out(const NumpyArray<double>& points, double power,
+                                const NeighborhoodTuple& neighborhood,
+                                WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     return to_array(unlocked([&] {
         return interpolation::inverse_distance_left_out(
@@ -135,9 +137,9 @@ Array<double> idw_left_out(const Array<double>& points, double power,
     }));
 }
 
-Array<double> spline(const Array<double>& points, const Array<double>& nodes, double smoothing,
-                     const NeighborhoodTuple& neighborhood, double spacing,
-                     const std::optional<DipsTuple>& dips, WatchedExecution* execution) {
+NumpyArray<double> spline(const NumpyArray<double>& points, const NumpyArray<double>& nodes,
+                          double smoothing, const NeighborhoodTuple& neighborhood, double spacing,
+                          const std::optional<DipsTuple>& dips, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::ThinPlateOptions options{smoothing, neighborhood_of(neighborhood), spacing,
@@ -146,23 +148,23 @@ Array<double> spline(const Array<double>& points, const Array<double>& nodes, do
         unlocked([&] { return interpolation::thin_plate(from, to, options, run(execution)); }));
 }
 
-double mean_spacing(const Array<double>& points, bool are_apart) {
+double mean_spacing(const NumpyArray<double>& points, bool are_apart) {
     const auto from = rows<3>(points, "points");
     const py::gil_scoped_release release;
     return interpolation::mean_spacing(from, are_apart);
 }
 
-Array<double> nearest_distance(const Array<double>& points, const Array<double>& nodes,
-                               WatchedExecution* execution) {
+NumpyArray<double> nearest_distance(const NumpyArray<double>& points,
+                                    const NumpyArray<double>& nodes, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     return to_array(
         unlocked([&] { return interpolation::nearest_distances(from, to, run(execution)); }));
 }
 
-Array<double> line_sums(const Array<double>& nodes, const Array<double>& directions,
-                        const Array<double>& starts, const Array<double>& values, double step,
-                        WatchedExecution* execution) {
+NumpyArray<double> line_sums(const NumpyArray<double>& nodes, const NumpyArray<double>& directions,
+                             const NumpyArray<double>& starts, const NumpyArray<double>& values,
+                             double step, WatchedExecution* execution) {
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::Lines lines{rows<2>(directions, "directions"), view(starts), view(values),
                                      step};
@@ -172,9 +174,9 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
 /// As variogram_of takes it.
 py::dict variogram_dict(const interpolation::Variogram& variogram) {
     std::vector<NestedTuple> further;
-    for (const interpolation::NestedStructure& part : variogram.further) {
-        further.emplace_back(std::string(name_of(part.model)), part.range, part.sill,
-                             part.anisotropy.ratio, part.anisotropy.azimuth);
+    for (const interpolation::NestedStructure& nested : variogram.further) {
+        further.emplace_back(std::string(name_of(nested.model)), nested.range, nested.sill,
+                             nested.anisotropy.ratio, nested.anisotropy.azimuth);
     }
     py::dict out;
     out["model"] = py::str(std::string(name_of(variogram.model)));
@@ -197,7 +199,7 @@ interpolation::Anisotropy anisotropy_of(const std::optional<std::pair<double, do
     return of ? interpolation::Anisotropy{of->first, of->second} : interpolation::Anisotropy{};
 }
 
-py::dict fit_variogram(const Array<double>& points,
+py::dict fit_variogram(const NumpyArray<double>& points,
                        const std::optional<std::pair<double, double>>& anisotropy,
                        const std::string& drift, int neighbours, bool are_apart,
                        const std::optional<DipsTuple>& dips, bool has_bounds, double error,
@@ -213,7 +215,7 @@ py::dict fit_variogram(const Array<double>& points,
     return out;
 }
 
-py::list likely_variograms(const Array<double>& points,
+py::list likely_variograms(const NumpyArray<double>& points,
                            const std::optional<std::pair<double, double>>& anisotropy,
                            const std::string& drift, const std::optional<DipsTuple>& dips,
                            bool has_bounds, WatchedExecution* execution) {
@@ -222,19 +224,19 @@ py::list likely_variograms(const Array<double>& points,
     options.drift = drift_of(drift);
     options.dips = dips_of(dips);
     options.has_bounds = has_bounds;
-    const auto found = unlocked([&] {
+    const auto result = unlocked([&] {
         return interpolation::likely_variograms(from, anisotropy_of(anisotropy), options,
                                                 run(execution));
     });
     py::list out;
-    for (const auto& [variogram, density, squares, free] : found)
+    for (const auto& [variogram, density, squares, free] : result)
         out.append(py::make_tuple(std::string(name_of(variogram.model)), variogram.range,
                                   variogram.nugget, density, squares, free));
     return out;
 }
 
 /// Points and dips of a surface.
-using SurfaceTuple = std::tuple<Array<double>, std::optional<DipsTuple>>;
+using SurfaceTuple = std::tuple<NumpyArray<double>, std::optional<DipsTuple>>;
 
 py::list fit_alike(const std::vector<SurfaceTuple>& surfaces,
                    const std::optional<std::pair<double, double>>& anisotropy,
@@ -250,18 +252,20 @@ py::list fit_alike(const std::vector<SurfaceTuple>& surfaces,
     auto fitted =
         unlocked([&] { return interpolation::fit_alike(data, along, options, run(execution)); });
     py::list out;
-    for (interpolation::FittedVariogram& each : fitted) {
-        py::dict own = variogram_dict(each.variogram);
-        add_experimental(own, std::move(each.experimental));
-        out.append(own);
+    for (interpolation::FittedVariogram& fit : fitted) {
+        py::dict entry = variogram_dict(fit.variogram);
+        add_experimental(entry, std::move(fit.experimental));
+        out.append(entry);
     }
     return out;
 }
 
 /// The sheet of each point and of each dip, and how many there are.
-using SheetNumbersTuple = std::tuple<Array<std::int32_t>, Array<std::int32_t>, std::size_t>;
+using SheetNumbersTuple =
+    std::tuple<NumpyArray<std::int32_t>, NumpyArray<std::int32_t>, std::size_t>;
 
-std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbersTuple& sheets,
+std::optional<py::dict> fit_sheets(const NumpyArray<double>& points,
+                                   const SheetNumbersTuple& sheets,
                                    const std::optional<std::pair<double, double>>& anisotropy,
                                    const std::string& drift, const std::optional<DipsTuple>& dips,
                                    const std::optional<py::dict>& variogram, double error,
@@ -275,10 +279,10 @@ std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbe
     options.finds_anisotropy = !anisotropy;
     options.dips = dips_of(dips);
     options.error = error;
-    std::optional<interpolation::Variogram> given;
-    if (variogram) given = variogram_of(*variogram);
+    std::optional<interpolation::Variogram> fixed;
+    if (variogram) fixed = variogram_of(*variogram);
     auto fitted = unlocked([&] {
-        return interpolation::fit_sheets(from, numbers, anisotropy_of(anisotropy), options, given,
+        return interpolation::fit_sheets(from, numbers, anisotropy_of(anisotropy), options, fixed,
                                          run(execution));
     });
     if (!fitted) return std::nullopt;

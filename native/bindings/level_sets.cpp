@@ -20,73 +20,75 @@ namespace realmodel::bindings {
 namespace {
 
 /// Positions (P, 3), and the values there.
-using PointsTuple = std::tuple<Array<double>, Array<double>>;
+using PointsTuple = std::tuple<NumpyArray<double>, NumpyArray<double>>;
 
-fields::LatticeField field_of(const LatticeTuple& lattice, const Array<double>& values,
+fields::LatticeField field_of(const LatticeTuple& lattice, const NumpyArray<double>& values,
                               const PointsTuple& points) {
-    const auto& [positions, own] = points;
+    const auto& [positions, on_sides] = points;
     require_columns(positions, 3, "points");
-    return {lattice_of(lattice), view(values), view(positions), view(own)};
+    return {lattice_of(lattice), view(values), view(positions), view(on_sides)};
 }
 
-py::list level_sets(const LatticeTuple& lattice, const Array<double>& values,
-                    const PointsTuple& points, const Array<double>& levels,
+py::list level_sets(const LatticeTuple& lattice, const NumpyArray<double>& values,
+                    const PointsTuple& points, const NumpyArray<double>& levels,
                     WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
-    auto found = unlocked([&] { return fields::level_sets(field, view(levels), run(execution)); });
+    auto result = unlocked([&] { return fields::level_sets(field, view(levels), run(execution)); });
     py::list sets;
-    for (fields::LevelSet& each : found)
-        sets.append(py::make_tuple(to_array(std::move(each.vertices)),
-                                   to_array(std::move(each.triangles)), each.on_level));
+    for (fields::LevelSet& set : result)
+        sets.append(py::make_tuple(to_array(std::move(set.vertices)),
+                                   to_array(std::move(set.triangles)), set.on_level));
     return sets;
 }
 
-Array<double> moved_onto_levels(const LatticeTuple& lattice, const Array<double>& values,
-                                const Array<double>& levels) {
+NumpyArray<double> moved_onto_levels(const LatticeTuple& lattice, const NumpyArray<double>& values,
+                                     const NumpyArray<double>& levels) {
     const fields::LatticeField field{lattice_of(lattice), view(values), {}, {}};
     return to_array(fields::moved_onto_levels(field, view(levels)));
 }
 
-Array<double> field_at(const LatticeTuple& lattice, const Array<double>& values,
-                       const PointsTuple& points, const Array<double>& positions,
-                       WatchedExecution* execution) {
+NumpyArray<double> field_at(const LatticeTuple& lattice, const NumpyArray<double>& values,
+                            const PointsTuple& points, const NumpyArray<double>& positions,
+                            WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
     require_columns(positions, 3, "positions");
     return to_array(
         unlocked([&] { return fields::field_at(field, view(positions), run(execution)); }));
 }
 
-py::tuple tetrahedra_at(const LatticeTuple& lattice, const Array<double>& values,
-                        const PointsTuple& points, const Array<double>& positions,
+py::tuple tetrahedra_at(const LatticeTuple& lattice, const NumpyArray<double>& values,
+                        const PointsTuple& points, const NumpyArray<double>& positions,
                         WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
     require_columns(positions, 3, "positions");
-    auto found =
+    auto result =
         unlocked([&] { return fields::tetrahedra_at(field, view(positions), run(execution)); });
-    return py::make_tuple(to_array(std::move(found.corners)), to_array(std::move(found.weights)));
+    return py::make_tuple(to_array(std::move(result.corners)), to_array(std::move(result.weights)));
 }
 
-Array<std::uint8_t> points_between(const LatticeTuple& lattice, const Array<double>& values,
-                                   const PointsTuple& points, WatchedExecution* execution) {
+NumpyArray<std::uint8_t> points_between(const LatticeTuple& lattice,
+                                        const NumpyArray<double>& values, const PointsTuple& points,
+                                        WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
     return to_array(unlocked([&] { return fields::points_between(field, run(execution)); }));
 }
 
-py::tuple values_through(const Array<double>& given, const Array<std::int64_t>& corners,
-                         const Array<double>& weights, const Array<double>& levels, int rounds,
+py::tuple values_through(const NumpyArray<double>& start_values,
+                         const NumpyArray<std::int64_t>& corners, const NumpyArray<double>& weights,
+                         const NumpyArray<double>& levels, int rounds,
                          WatchedExecution* execution) {
     const fields::LevelsAtContacts at{rows<4>(corners, "corners"), rows<4>(weights, "weights"),
                                       view(levels)};
-    auto found =
-        unlocked([&] { return fields::values_through(view(given), at, rounds, run(execution)); });
-    return py::make_tuple(to_array(std::move(found.values)), to_array(std::move(found.missed)));
+    auto result = unlocked(
+        [&] { return fields::values_through(view(start_values), at, rounds, run(execution)); });
+    return py::make_tuple(to_array(std::move(result.values)), to_array(std::move(result.missed)));
 }
 
 py::tuple without_critical_points(
-    const LatticeTuple& lattice, const Array<double>& values, const PointsTuple& points,
-    const Array<std::uint8_t>& fixed,
-    const std::tuple<Array<double>, Array<double>>& dips_and_normals,
-    const std::tuple<Array<double>, Array<double>, Array<double>>& of_bounds,
+    const LatticeTuple& lattice, const NumpyArray<double>& values, const PointsTuple& points,
+    const NumpyArray<std::uint8_t>& fixed,
+    const std::tuple<NumpyArray<double>, NumpyArray<double>>& dips_and_normals,
+    const std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>& of_bounds,
     WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
     const auto& [dips, normals] = dips_and_normals;
@@ -94,11 +96,11 @@ py::tuple without_critical_points(
     const fields::HeldData held{
         view(fixed), rows<3>(dips, "dips"), rows<3>(normals, "normals"), rows<3>(bounds, "bounds"),
         view(signs), view(levels)};
-    auto found =
+    auto result =
         unlocked([&] { return fields::without_critical_points(field, held, run(execution)); });
-    return py::make_tuple(to_array(std::move(found.values)),
-                          to_array(std::move(found.point_values)),
-                          to_array(std::move(found.critical)));
+    return py::make_tuple(to_array(std::move(result.values)),
+                          to_array(std::move(result.point_values)),
+                          to_array(std::move(result.critical)));
 }
 
 }  // namespace

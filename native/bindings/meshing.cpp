@@ -22,22 +22,22 @@ namespace realmodel::bindings {
 
 namespace {
 
-std::vector<meshing::PlanPoint> to_places(const Array<double>& array, const char* name) {
+std::vector<meshing::PlanPoint> to_places(const NumpyArray<double>& array, const char* name) {
     const auto places = rows<2>(array, name);
     return {places.begin(), places.end()};
 }
 
-std::vector<meshing::Ring> to_rings(const std::vector<Array<double>>& arrays,
+std::vector<meshing::Ring> to_rings(const std::vector<NumpyArray<double>>& arrays,
                                     const char* name = "rings") {
     std::vector<meshing::Ring> rings;
     rings.reserve(arrays.size());
-    for (const Array<double>& array : arrays)
+    for (const NumpyArray<double>& array : arrays)
         rings.push_back(to_places(array, name));
     return rings;
 }
 
 /// vertices (V, 2), triangles (T, 3)
-using PlanarArrays = std::tuple<Array<double>, Array<std::int32_t>>;
+using PlanarArrays = std::tuple<NumpyArray<double>, NumpyArray<std::int32_t>>;
 
 PlanarArrays to_tuple(meshing::PlanarMesh&& mesh) {
     return {to_array(std::move(mesh.vertices)), to_array(std::move(mesh.triangles))};
@@ -53,7 +53,7 @@ meshing::Mesher to_mesher(const std::string& name) {
 }
 
 /// (places or None for the outlines, length, distance)
-using Size = std::tuple<std::optional<Array<double>>, double, double>;
+using Size = std::tuple<std::optional<NumpyArray<double>>, double, double>;
 
 /// The value of a key, or the default where it is not there.
 template <class T>
@@ -72,9 +72,9 @@ meshing::MeshRequest to_request(const py::dict& of) {
         size.length = length;
         size.distance = distance;
     }
-    using Places = std::optional<Array<double>>;
+    using Places = std::optional<NumpyArray<double>>;
     request.constraints.lines =
-        to_rings(value_of<std::vector<Array<double>>>(of, "constraints", {}), "constraints");
+        to_rings(value_of<std::vector<NumpyArray<double>>>(of, "constraints", {}), "constraints");
     if (const auto points = value_of<Places>(of, "constraint_points", {}))
         request.constraints.points = to_places(*points, "constraint_points");
     if (const auto density = value_of<Places>(of, "density", {}))
@@ -82,7 +82,7 @@ meshing::MeshRequest to_request(const py::dict& of) {
     return request;
 }
 
-PlanarArrays mesh_region(const std::vector<Array<double>>& rings, const py::dict& asked,
+PlanarArrays mesh_region(const std::vector<NumpyArray<double>>& rings, const py::dict& asked,
                          WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request = to_request(asked);
@@ -90,7 +90,7 @@ PlanarArrays mesh_region(const std::vector<Array<double>>& rings, const py::dict
         unlocked([&] { return meshing::mesh_region(region, request, run(execution).progress); }));
 }
 
-std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>& rings,
+std::tuple<double, double> estimate_region_mesh(const std::vector<NumpyArray<double>>& rings,
                                                 const py::dict& asked,
                                                 WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
@@ -101,13 +101,13 @@ std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>
     return {estimate.triangles, estimate.bytes};
 }
 
-PlanarArrays triangulate_rings(const std::vector<Array<double>>& rings) {
+PlanarArrays triangulate_rings(const std::vector<NumpyArray<double>>& rings) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     return to_tuple(unlocked([&] { return meshing::triangulate_rings(region); }));
 }
 
-Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,
-                                        WatchedExecution* execution) {
+NumpyArray<std::int32_t> triangulate_polygon(const std::vector<NumpyArray<double>>& rings,
+                                             WatchedExecution* execution) {
     const std::vector<meshing::Ring> polygon = to_rings(rings);
     return to_array(
         unlocked([&] { return meshing::triangulate_polygon(polygon, run(execution).progress); }));

@@ -19,21 +19,21 @@ namespace realmodel::bindings {
 
 namespace {
 
-std::vector<Array<double>> check_region(const std::vector<Array<double>>& rings,
-                                        const std::vector<std::int32_t>& polygons,
-                                        const std::vector<bool>& holes,
-                                        WatchedExecution* execution) {
+std::vector<NumpyArray<double>> check_region(const std::vector<NumpyArray<double>>& rings,
+                                             const std::vector<std::int32_t>& polygons,
+                                             const std::vector<bool>& holes,
+                                             WatchedExecution* execution) {
     if (polygons.size() != rings.size() || holes.size() != rings.size()) {
         throw InputError("bad_range", "polygons and holes must be as many as there are rings");
     }
-    std::vector<meshing::RegionRing> given;
+    std::vector<meshing::RegionRing> region_rings;
     for (std::size_t r = 0; r < rings.size(); ++r) {
         const auto corners = rows<2>(rings[r], "rings");
-        given.push_back({{corners.begin(), corners.end()}, polygons[r], holes[r]});
+        region_rings.push_back({{corners.begin(), corners.end()}, polygons[r], holes[r]});
     }
     auto checked =
-        unlocked([&] { return meshing::checked_region(given, run(execution).progress); });
-    std::vector<Array<double>> arrays;
+        unlocked([&] { return meshing::checked_region(region_rings, run(execution).progress); });
+    std::vector<NumpyArray<double>> arrays;
     for (meshing::Ring& ring : checked)
         arrays.push_back(to_array(std::move(ring)));
     return arrays;

@@ -15,7 +15,7 @@
 
 namespace realmodel::bindings {
 
-using SurfaceArrays = std::pair<Array<double>, Indices>;
+using SurfaceArrays = std::pair<NumpyArray<double>, Indices>;
 
 inline strata::Rule rule_of(const std::string& name) {
     if (const auto rule = strata::rule_named(name)) return *rule;

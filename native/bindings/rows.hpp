@@ -12,7 +12,7 @@ namespace realmodel::bindings {
 /// The rows of an array (any, N) as they lie in NumPy's memory.
 /// @throws ValueError naming the argument and both shapes
 template <std::size_t N, class T>
-std::span<const std::array<T, N>> rows(const Array<T>& array, const char* argument) {
+std::span<const std::array<T, N>> rows(const NumpyArray<T>& array, const char* argument) {
     require_columns(array, N, argument);
     static_assert(sizeof(std::array<T, N>) == N * sizeof(T));
     return {reinterpret_cast<const std::array<T, N>*>(array.data()),

@@ -24,12 +24,12 @@ namespace {
 
 using Position = std::array<double, 3>;
 
-std::tuple<Array<std::int32_t>, Array<std::int32_t>> polygon_edges(const Indices& offsets,
-                                                                   const Indices& corners,
-                                                                   std::size_t vertices) {
+std::tuple<NumpyArray<std::int32_t>, NumpyArray<std::int32_t>> polygon_edges(const Indices& offsets,
+                                                                             const Indices& corners,
+                                                                             std::size_t vertices) {
     const auto begins = view(offsets), numbers = view(corners);
-    auto found = unlocked([&] { return shells::polygon_edges(begins, numbers, vertices); });
-    return {to_array(std::move(found.edges)), to_array(std::move(found.of_corner))};
+    auto result = unlocked([&] { return shells::polygon_edges(begins, numbers, vertices); });
+    return {to_array(std::move(result.edges)), to_array(std::move(result.of_corner))};
 }
 
 py::list shell_arrays(std::vector<shells::Shell>&& shells) {

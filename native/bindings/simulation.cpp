@@ -30,20 +30,20 @@ using simulation::LayeredMesh;
 using simulation::PlanLines;
 
 /// (places or None for all lines, length, distance)
-using Size = std::tuple<std::optional<Array<double>>, double, double>;
+using Size = std::tuple<std::optional<NumpyArray<double>>, double, double>;
 
 /// As LineLength or LocalLength.
 template <class Length>
 std::vector<Length> lengths_of(const std::vector<Size>& sizes) {
     std::vector<Length> lengths;
     for (const auto& [line, length, distance] : sizes) {
-        Length& own = lengths.emplace_back();
+        Length& local_length = lengths.emplace_back();
         if (line) {
             const auto places = rows<2, double>(*line, "sizes");
-            own.line.assign(places.begin(), places.end());
+            local_length.line.assign(places.begin(), places.end());
         }
-        own.length = length;
-        own.distance = distance;
+        local_length.length = length;
+        local_length.distance = distance;
     }
     return lengths;
 }
@@ -72,20 +72,20 @@ std::vector<std::array<std::int32_t, 5>> segment_rows(const PlanLines& lines) {
         rows.push_back({s.from, s.to, s.left_rock, s.right_rock, s.is_step ? 1 : 0});
     return rows;
 }
-Array<std::int32_t> segments_of(const PlanLines& lines) {
+NumpyArray<std::int32_t> segments_of(const PlanLines& lines) {
     return to_array(segment_rows(lines));
 }
 
 /// Lines inside the region, (2, 2) each.
 py::list inner_lines(const PlanLines& lines) {
-    py::list found;
+    py::list result;
     for (const simulation::PlanSegment& s : lines.segments) {
         if (s.left_rock < 0 || s.right_rock < 0) continue;
-        found.append(to_array(
+        result.append(to_array(
             std::vector<meshing::PlanPoint>{lines.points[static_cast<std::size_t>(s.from)],
                                             lines.points[static_cast<std::size_t>(s.to)]}));
     }
-    return found;
+    return result;
 }
 
 template <std::size_t N>
@@ -104,7 +104,7 @@ py::tuple faces_tuple(LayeredMesh::Faces<N>& faces) {
 }
 
 py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const PlanLines& lines,
-                      const Array<double>& vertices, const Indices& triangles,
+                      const NumpyArray<double>& vertices, const Indices& triangles,
                       double minimum_thickness, const std::vector<std::int32_t>& layers,
                       double layer_thickness, bool divided, WatchedExecution* execution) {
     ComplexArrays arrays(model);
@@ -138,13 +138,13 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
 }
 
 py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
-                     const Array<std::uint8_t>& kept, double edge_length, double tolerance,
+                     const NumpyArray<std::uint8_t>& embedded, double edge_length, double tolerance,
                      const std::vector<Size>& sizes, WatchedExecution* execution) {
     const ComplexArrays arrays(model);
     const auto lengths = lengths_of<meshing::LocalLength>(sizes);
     auto mesh = unlocked([&] {
-        return simulation::filled_mesh(arrays.complex, view(cell_region), view(kept), edge_length,
-                                       tolerance, lengths, run(execution));
+        return simulation::filled_mesh(arrays.complex, view(cell_region), view(embedded),
+                                       edge_length, tolerance, lengths, run(execution));
     });
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -182,35 +182,36 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
     return made;
 }
 
-std::tuple<Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>>
-describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
-               const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
-    auto found = unlocked([&] {
+std::tuple<NumpyArray<std::int64_t>, NumpyArray<std::int64_t>, NumpyArray<std::int64_t>,
+           NumpyArray<std::int64_t>>
+describe_cells(const NumpyArray<std::int64_t>& face_offsets, const Indices& face_vertices,
+               const NumpyArray<std::uint32_t>& begin, const NumpyArray<std::uint32_t>& sides) {
+    auto result = unlocked([&] {
         return simulation::describe_cells({view(face_offsets), view(face_vertices)}, view(begin),
                                           view(sides));
     });
-    return {to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
-            to_array(std::move(found.counts)), to_array(std::move(found.lengths))};
+    return {to_array(std::move(result.faces)), to_array(std::move(result.vertices)),
+            to_array(std::move(result.counts)), to_array(std::move(result.lengths))};
 }
 
-Array<std::int64_t> inner_faces(const Indices& face_cells, std::size_t cells) {
+NumpyArray<std::int64_t> inner_faces(const Indices& face_cells, std::size_t cells) {
     const auto both = rows<2>(face_cells, "face_cells");
     return to_array(unlocked([&] { return simulation::inner_faces(both, cells); }));
 }
 
-py::dict ordered_faces(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
-                       const Indices& face_cells, const Array<std::int64_t>& order) {
+py::dict ordered_faces(const NumpyArray<std::int64_t>& face_offsets, const Indices& face_vertices,
+                       const Indices& face_cells, const NumpyArray<std::int64_t>& order) {
     const auto both = rows<2>(face_cells, "face_cells");
-    auto found = unlocked([&] {
+    auto result = unlocked([&] {
         return simulation::ordered_faces({view(face_offsets), view(face_vertices)}, both,
                                          view(order));
     });
     py::dict made;
-    made["offsets"] = to_array(std::move(found.offsets));
-    made["vertices"] = to_array(std::move(found.vertices));
-    made["owner"] = to_array(std::move(found.owner));
-    made["neighbor"] = to_array(std::move(found.neighbor));
-    made["turned"] = to_array(std::move(found.turned));
+    made["offsets"] = to_array(std::move(result.offsets));
+    made["vertices"] = to_array(std::move(result.vertices));
+    made["owner"] = to_array(std::move(result.owner));
+    made["neighbor"] = to_array(std::move(result.neighbor));
+    made["turned"] = to_array(std::move(result.turned));
     return made;
 }
 

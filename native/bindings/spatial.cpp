@@ -15,45 +15,49 @@ namespace realmodel::bindings {
 
 namespace {
 
-py::tuple nearest_points(const Array<double>& points, const Array<double>& positions,
+py::tuple nearest_points(const NumpyArray<double>& points, const NumpyArray<double>& positions,
                          std::size_t count, WatchedExecution* execution) {
     const auto from = rows<2>(points, "points");
     const auto to = rows<2>(positions, "positions");
     if (count == 0) throw py::value_error("count: at least 1");
-    auto found = unlocked([&] { return spatial::nearest_points(from, to, count, run(execution)); });
-    return py::make_tuple(to_array(std::move(found.number), count),
-                          to_array(std::move(found.distance), count));
+    auto result =
+        unlocked([&] { return spatial::nearest_points(from, to, count, run(execution)); });
+    return py::make_tuple(to_array(std::move(result.number), count),
+                          to_array(std::move(result.distance), count));
 }
 
 /// Triangles (T, 3, 3).
-std::span<const spatial::SpaceTriangle> space_triangles(const Array<double>& triangles) {
+std::span<const spatial::SpaceTriangle> space_triangles(const NumpyArray<double>& triangles) {
     if (triangles.ndim() != 3 || triangles.shape(1) != 3 || triangles.shape(2) != 3)
         throw py::value_error("triangles: an array of shape (any, 3, 3) is needed");
     return {reinterpret_cast<const spatial::SpaceTriangle*>(triangles.data()),
             static_cast<std::size_t>(triangles.shape(0))};
 }
 
-py::tuple nearest_triangles(const Array<double>& triangles, const Array<double>& positions,
-                            double reach, WatchedExecution* execution) {
+py::tuple nearest_triangles(const NumpyArray<double>& triangles,
+                            const NumpyArray<double>& positions, double reach,
+                            WatchedExecution* execution) {
     const auto to = rows<3>(positions, "positions");
     const auto corners = space_triangles(triangles);
-    auto found =
+    auto result =
         unlocked([&] { return spatial::nearest_triangles(corners, to, reach, run(execution)); });
-    return py::make_tuple(to_array(std::move(found.number)), to_array(std::move(found.distance)));
+    return py::make_tuple(to_array(std::move(result.number)), to_array(std::move(result.distance)));
 }
 
-Array<double> heights_at_distance(const Array<double>& triangles, const Array<double>& positions,
-                                  const Array<double>& own, const Array<double>& distance,
-                                  WatchedExecution* execution) {
+NumpyArray<double> heights_at_distance(const NumpyArray<double>& triangles,
+                                       const NumpyArray<double>& positions,
+                                       const NumpyArray<double>& heights_here,
+                                       const NumpyArray<double>& distance,
+                                       WatchedExecution* execution) {
     const auto corners = space_triangles(triangles);
     const auto to = rows<2>(positions, "positions");
-    const auto heights = view(own), away = view(distance);
+    const auto heights = view(heights_here), away = view(distance);
     return to_array(unlocked(
         [&] { return spatial::heights_at_distance(corners, to, heights, away, run(execution)); }));
 }
 
 /// The boxes around polygons (N, K, 2 or 3).
-std::vector<spatial::CornersOfBox> boxes_around(const Array<double>& polygons) {
+std::vector<spatial::CornersOfBox> boxes_around(const NumpyArray<double>& polygons) {
     if (polygons.ndim() != 3 || polygons.shape(2) < 2 || polygons.shape(2) > 3)
         throw py::value_error("polygons: an array of shape (any, any, 2 or 3) is needed");
     const auto corners = static_cast<std::size_t>(polygons.shape(1));
@@ -72,13 +76,14 @@ std::vector<spatial::CornersOfBox> boxes_around(const Array<double>& polygons) {
     return boxes;
 }
 
-Array<std::int64_t> meeting_boxes(const Array<double>& first, const Array<double>& second) {
+NumpyArray<std::int64_t> meeting_boxes(const NumpyArray<double>& first,
+                                       const NumpyArray<double>& second) {
     const auto one = boxes_around(first), other = boxes_around(second);
     return to_array(unlocked([&] { return spatial::meeting_boxes(one, other); }));
 }
 
-Array<std::int8_t> orient2d(const Array<double>& a, const Array<double>& b,
-                            const Array<double>& c) {
+NumpyArray<std::int8_t> orient2d(const NumpyArray<double>& a, const NumpyArray<double>& b,
+                                 const NumpyArray<double>& c) {
     std::vector<std::int8_t> turns =
         spatial::turns(rows<2>(a, "a"), rows<2>(b, "b"), rows<2>(c, "c"));
     return to_array(std::move(turns));

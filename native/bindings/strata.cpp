@@ -38,7 +38,7 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     const CellKind kind = kind_of(cells);
     const auto input = views_of(rocks);
     return built_arrays(unlocked([&] {
-        const MemoryGivenBack at_the_end;
+        const MemoryRelease at_the_end;
         return strata::build_rock_masses(input, run(execution), kind);
     }));
 }
@@ -53,7 +53,7 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
     std::string exact;
     {
         const py::gil_scoped_release release;
-        const MemoryGivenBack at_the_end;
+        const MemoryRelease at_the_end;
         tile = strata::build_tile(input, {window[0], window[1], window[2], window[3]},
                                   run(execution), kind);
         for (const strata::BorderVertex& vertex : tile.border) {
@@ -74,24 +74,24 @@ std::optional<strata::Joins> find_joins(const std::vector<RockArrays>& rocks, bo
                                         WatchedExecution* execution) {
     const auto input = views_of(rocks);
     const py::gil_scoped_release release;
-    const MemoryGivenBack at_the_end;
+    const MemoryRelease at_the_end;
     return strata::find_joins(input, borders, run(execution));
 }
 
 /// The columns of vertices of a surface or a region.
-std::size_t columns_of(const Array<double>& vertices) {
+std::size_t columns_of(const NumpyArray<double>& vertices) {
     const std::size_t columns = vertices.ndim() == 2 && vertices.shape(1) == 2 ? 2 : 3;
     require_columns(vertices, columns, "vertices");
     return columns;
 }
 
-std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
-    const strata::Joins& joins, const Array<double>& vertices, const Indices& triangles,
+std::optional<std::tuple<NumpyArray<double>, NumpyArray<std::int32_t>>> joined_mesh(
+    const strata::Joins& joins, const NumpyArray<double>& vertices, const Indices& triangles,
     WatchedExecution* execution) {
     const std::size_t columns = columns_of(vertices);
     require_columns(triangles, 3, "triangles");
     auto mesh = unlocked([&] {
-        const MemoryGivenBack at_the_end;
+        const MemoryRelease at_the_end;
         return joins.mesh({view(vertices), view(triangles)}, columns, run(execution));
     });
     if (!mesh) return std::nullopt;
@@ -99,10 +99,10 @@ std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
                       to_array(std::move(mesh->triangles), 3));
 }
 
-Array<double> snapped(const strata::Joins& joins, const Array<double>& vertices) {
+NumpyArray<double> snapped(const strata::Joins& joins, const NumpyArray<double>& vertices) {
     const std::size_t columns = columns_of(vertices);
-    auto found = unlocked([&] { return joins.snapped(view(vertices), columns); });
-    return to_array(std::move(found), columns);
+    auto output = unlocked([&] { return joins.snapped(view(vertices), columns); });
+    return to_array(std::move(output), columns);
 }
 
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
@@ -112,17 +112,16 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, execution);
 }
 
-std::tuple<Array<std::uint32_t>, Array<std::uint32_t>> cell_sides(const Indices& face_cells,
-                                                                  std::size_t cells,
-                                                                  WatchedExecution* execution) {
+std::tuple<NumpyArray<std::uint32_t>, NumpyArray<std::uint32_t>> cell_sides(
+    const Indices& face_cells, std::size_t cells, WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
-    auto found =
-        unlocked([&] { return strata::cell_sides(faces, cells, run(execution).progress); });
-    return {to_array(std::move(found.offsets)), to_array(std::move(found.sides))};
+    auto output =
+        unlocked([&] { return strata::faces_of_cells(faces, cells, run(execution).progress); });
+    return {to_array(std::move(output.offsets)), to_array(std::move(output.faces))};
 }
 
-Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
-                                    WatchedExecution* execution) {
+NumpyArray<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
+                                         WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
     return to_array(unlocked(
         [&] { return strata::cell_components(faces, view(cell_block), run(execution).progress); }));

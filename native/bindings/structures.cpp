@@ -15,7 +15,7 @@
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
 #include "execution.hpp"
-#include "realmodel/structures/build_parts.hpp"
+#include "realmodel/structures/build_compartments.hpp"
 #include "realmodel/structures/merge_cells.hpp"
 #include "rock_arrays.hpp"
 
@@ -27,7 +27,7 @@ namespace {
 
 /// vertices, triangles, is_body, ends_at, dies_out
 using StructureArrays =
-    std::tuple<Array<double>, Array<std::int32_t>, bool, std::vector<std::int32_t>, bool>;
+    std::tuple<NumpyArray<double>, NumpyArray<std::int32_t>, bool, std::vector<std::int32_t>, bool>;
 
 structures::Structure view_of(const StructureArrays& arrays) {
     const auto& [vertices, triangles, is_body, ends_at, dies_out] = arrays;
@@ -38,39 +38,41 @@ structures::Structure view_of(const StructureArrays& arrays) {
 
 std::vector<structures::Structure> views_of(const std::vector<StructureArrays>& arrays) {
     std::vector<structures::Structure> views;
-    for (const StructureArrays& own : arrays)
-        views.push_back(view_of(own));
+    for (const StructureArrays& entry : arrays)
+        views.push_back(view_of(entry));
     return views;
 }
 
-Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::size_t columns) {
-    Array<std::int8_t> array({rows.size(), columns});
+NumpyArray<std::int8_t> sides_array(const std::vector<structures::Sides>& rows,
+                                    std::size_t columns) {
+    NumpyArray<std::int8_t> array({rows.size(), columns});
     std::int8_t* out = array.mutable_data();
     for (const structures::Sides& row : rows)
         out = std::copy(row.begin(), row.end(), out);
     return array;
 }
 
-std::tuple<Array<std::int8_t>, Array<double>, Array<double>> structure_parts(
+std::tuple<NumpyArray<std::int8_t>, NumpyArray<double>, NumpyArray<double>> structure_parts(
     const std::array<std::array<double, 3>, 2>& box, const std::vector<StructureArrays>& structures,
     WatchedExecution* execution) {
     const auto views = views_of(structures);
-    auto parts = unlocked([&] { return structures::parts_of(box, views, run(execution)); });
+    auto parts = unlocked([&] { return structures::compartments_of(box, views, run(execution)); });
     std::vector<structures::Sides> sides;
     std::vector<std::array<double, 3>> low, high;
-    for (const structures::Part& part : parts) {
-        sides.push_back(part.sides);
-        low.push_back(part.low);
-        high.push_back(part.high);
+    for (const structures::Compartment& compartment : parts) {
+        sides.push_back(compartment.sides);
+        low.push_back(compartment.low);
+        high.push_back(compartment.high);
     }
     return {sides_array(sides, views.size()), to_array(std::move(low)), to_array(std::move(high))};
 }
 
 /// triangles (K, 3, 3), is_continuation (K,), kept
-using ContinuedArrays = std::tuple<Array<double>, Array<std::uint8_t>, structures::Sides>;
+using ContinuedArrays = std::tuple<NumpyArray<double>, NumpyArray<std::uint8_t>, structures::Sides>;
 
-Array<double> corners_array(const std::vector<std::array<std::array<double, 3>, 3>>& triangles) {
-    Array<double> array({triangles.size(), std::size_t{3}, std::size_t{3}});
+NumpyArray<double> corners_array(
+    const std::vector<std::array<std::array<double, 3>, 3>>& triangles) {
+    NumpyArray<double> array({triangles.size(), std::size_t{3}, std::size_t{3}});
     double* out = array.mutable_data();
     for (const auto& triangle : triangles) {
         for (const auto& corner : triangle)
@@ -80,35 +82,36 @@ Array<double> corners_array(const std::vector<std::array<std::array<double, 3>, 
 }
 
 structures::ContinuedStructure continued_of(const ContinuedArrays& arrays) {
-    const auto& [corners, is_continuation, kept] = arrays;
+    const auto& [corners, is_continuation, end_sides] = arrays;
     if (corners.size() != 9 * is_continuation.size())
         throw py::value_error("continued: nine coordinates for each triangle");
-    structures::ContinuedStructure own;
-    own.triangles.resize(static_cast<std::size_t>(is_continuation.size()));
+    structures::ContinuedStructure entry;
+    entry.triangles.resize(static_cast<std::size_t>(is_continuation.size()));
     const double* in = corners.data();
-    for (auto& triangle : own.triangles) {
+    for (auto& triangle : entry.triangles) {
         for (auto& corner : triangle) {
             std::copy(in, in + 3, corner.begin());
             in += 3;
         }
     }
-    own.is_continuation.assign(is_continuation.data(),
-                               is_continuation.data() + is_continuation.size());
-    own.kept_sides = kept;
-    return own;
+    entry.is_continuation.assign(is_continuation.data(),
+                                 is_continuation.data() + is_continuation.size());
+    entry.end_sides = end_sides;
+    return entry;
 }
 
 std::vector<ContinuedArrays> continued_structures(const std::vector<StructureArrays>& structures,
                                                   const std::array<std::array<double, 3>, 2>& box) {
     std::vector<ContinuedArrays> arrays;
-    for (auto& own : structures::continued_structures(views_of(structures), box))
-        arrays.emplace_back(corners_array(own.triangles), to_array(std::move(own.is_continuation)),
-                            std::move(own.kept_sides));
+    for (auto& entry : structures::continued_structures(views_of(structures), box))
+        arrays.emplace_back(corners_array(entry.triangles),
+                            to_array(std::move(entry.is_continuation)), std::move(entry.end_sides));
     return arrays;
 }
 
 /// The least corner of a grid, the size of a cell, and of each cell whether it is wanted.
-using WantedArrays = std::tuple<std::array<double, 3>, std::array<double, 3>, Array<std::uint8_t>>;
+using WantedArrays =
+    std::tuple<std::array<double, 3>, std::array<double, 3>, NumpyArray<std::uint8_t>>;
 
 strata::WantedSpace view_of(const WantedArrays& wanted) {
     const auto& [low, step, cells] = wanted;
@@ -121,51 +124,51 @@ strata::WantedSpace view_of(const WantedArrays& wanted) {
 }
 
 /// number, block, triangles
-using PartSurfaceArrays =
-    std::tuple<std::int32_t, std::int32_t, std::optional<Array<std::int64_t>>>;
+using CompartmentSurfaceArrays =
+    std::tuple<std::int32_t, std::int32_t, std::optional<NumpyArray<std::int64_t>>>;
 /// stack, surfaces, emptied, fills
-using PartStackArrays = std::tuple<RockArrays, std::vector<PartSurfaceArrays>,
-                                   std::vector<std::size_t>, std::vector<std::uint8_t>>;
+using CompartmentStackArrays = std::tuple<RockArrays, std::vector<CompartmentSurfaceArrays>,
+                                          std::vector<std::size_t>, std::vector<std::uint8_t>>;
 /// vertices, triangles, surface
-using SolidArrays = std::tuple<Array<double>, Array<std::int32_t>, std::int32_t>;
+using SolidArrays = std::tuple<NumpyArray<double>, NumpyArray<std::int32_t>, std::int32_t>;
 /// solids; of what is between them sides and rocks
 using BetweenArrays =
     std::pair<std::vector<SolidArrays>,
-              std::vector<std::pair<structures::Sides, std::vector<PartStackArrays>>>>;
+              std::vector<std::pair<structures::Sides, std::vector<CompartmentStackArrays>>>>;
 /// sides, rocks, wanted, between solids
-using PartArrays = std::tuple<structures::Sides, std::vector<PartStackArrays>,
-                              std::optional<WantedArrays>, std::optional<BetweenArrays>>;
+using CompartmentArrays = std::tuple<structures::Sides, std::vector<CompartmentStackArrays>,
+                                     std::optional<WantedArrays>, std::optional<BetweenArrays>>;
 
-structures::PartStack view_of(const PartStackArrays& arrays) {
+structures::CompartmentStack view_of(const CompartmentStackArrays& arrays) {
     const auto& [rock, surfaces, emptied, fills] = arrays;
-    structures::PartStack own{view_of(rock), {}};
-    own.stack.emptied = emptied;
-    own.stack.fills = fills;
+    structures::CompartmentStack entry{view_of(rock), {}};
+    entry.stack.emptied = emptied;
+    entry.stack.fills = fills;
     for (const auto& [number, block, triangles] : surfaces) {
-        own.surfaces.push_back({number, block, {}});
-        if (triangles) own.surfaces.back().triangles = view(*triangles);
+        entry.surfaces.push_back({number, block, {}});
+        if (triangles) entry.surfaces.back().triangles = view(*triangles);
     }
-    return own;
+    return entry;
 }
 
-structures::PartOfSpace view_of(const PartArrays& arrays) {
+structures::CompartmentInput view_of(const CompartmentArrays& arrays) {
     const auto& [sides, rocks, wanted, between] = arrays;
-    structures::PartOfSpace part{sides, {}};
-    for (const PartStackArrays& rock : rocks)
-        part.rocks.push_back(view_of(rock));
-    if (wanted) part.wanted = view_of(*wanted);
-    if (!between) return part;
+    structures::CompartmentInput compartment{sides, {}};
+    for (const CompartmentStackArrays& rock : rocks)
+        compartment.rocks.push_back(view_of(rock));
+    if (wanted) compartment.wanted = view_of(*wanted);
+    if (!between) return compartment;
     for (const auto& [vertices, triangles, surface] : between->first) {
         require_columns(vertices, 3, "vertices of a solid");
         require_columns(triangles, 3, "triangles of a solid");
-        part.solids.push_back({{view(vertices), view(triangles)}, surface});
+        compartment.solids.push_back({{view(vertices), view(triangles)}, surface});
     }
-    for (const auto& [own, stacks] : between->second) {
-        part.between.push_back({own, {}});
-        for (const PartStackArrays& rock : stacks)
-            part.between.back().rocks.push_back(view_of(rock));
+    for (const auto& [entry, stacks] : between->second) {
+        compartment.between.push_back({entry, {}});
+        for (const CompartmentStackArrays& rock : stacks)
+            compartment.between.back().rocks.push_back(view_of(rock));
     }
-    return part;
+    return compartment;
 }
 
 /// continued, largest
@@ -173,20 +176,20 @@ using PieceArrays = std::pair<std::vector<ContinuedArrays>, double>;
 
 structures::PieceOfWhole piece_of(const PieceArrays& arrays) {
     structures::PieceOfWhole piece;
-    for (const ContinuedArrays& own : arrays.first)
-        piece.continued.push_back(continued_of(own));
+    for (const ContinuedArrays& entry : arrays.first)
+        piece.continued.push_back(continued_of(entry));
     piece.largest = arrays.second;
     return piece;
 }
 
-py::dict build_parts(const std::vector<PartArrays>& parts,
+py::dict build_parts(const std::vector<CompartmentArrays>& parts,
                      const std::pair<std::int32_t, std::vector<StructureArrays>>& structures,
-                     const Array<std::uint8_t>& acts, const std::string& cells,
+                     const NumpyArray<std::uint8_t>& acts, const std::string& cells,
                      WatchedExecution* execution, const std::optional<PieceArrays>& piece) {
     if (acts.ndim() != 2) throw py::value_error("acts: (S, B)");
     structures::StructuredInput input;
-    for (const PartArrays& part : parts)
-        input.parts.push_back(view_of(part));
+    for (const CompartmentArrays& compartment : parts)
+        input.compartments.push_back(view_of(compartment));
     input.surfaces = structures.first;
     input.structures = views_of(structures.second);
     input.acts = view(acts);
@@ -194,11 +197,11 @@ py::dict build_parts(const std::vector<PartArrays>& parts,
     input.cells = kind_of(cells);
     if (piece) input.piece = piece_of(*piece);
     auto joined = unlocked([&] {
-        const MemoryGivenBack at_the_end;
-        return structures::build_parts(input, run(execution));
+        const MemoryRelease at_the_end;
+        return structures::build_compartments(input, run(execution));
     });
     py::dict result = built_arrays(std::move(joined.complex));
-    result["cell_part"] = to_array(std::move(joined.cell_part));
+    result["cell_part"] = to_array(std::move(joined.cell_compartment));
     return result;
 }
 
@@ -211,8 +214,9 @@ py::dict merge_cells(const py::dict& complex, const Indices& number, WatchedExec
     return complex_arrays(merged);
 }
 
-Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
-                                   const Array<double>& points, WatchedExecution* execution) {
+NumpyArray<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
+                                        const NumpyArray<double>& points,
+                                        WatchedExecution* execution) {
     require_columns(points, 3, "points");
     const auto views = views_of(structures);
     if (views.empty()) throw py::value_error("structures: none is given");
@@ -220,10 +224,11 @@ Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structure
         unlocked([&] { return structures::sides_of_points(views, view(points), run(execution)); }));
 }
 
-Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
-                                     const Array<double>& low, const Array<double>& high,
-                                     const Array<std::int32_t>& triangles,
-                                     WatchedExecution* execution) {
+NumpyArray<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
+                                          const NumpyArray<double>& low,
+                                          const NumpyArray<double>& high,
+                                          const NumpyArray<std::int32_t>& triangles,
+                                          WatchedExecution* execution) {
     require_columns(low, 3, "low");
     require_columns(high, 3, "high");
     require_columns(triangles, 3, "triangles");
@@ -240,8 +245,8 @@ Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
     }));
 }
 
-Array<double> structure_continuation(const std::vector<StructureArrays>& faults,
-                                     const std::array<std::array<double, 3>, 2>& box) {
+NumpyArray<double> structure_continuation(const std::vector<StructureArrays>& faults,
+                                          const std::array<std::array<double, 3>, 2>& box) {
     const auto views = views_of(faults);
     if (views.empty()) throw py::value_error("faults: none is given");
     return corners_array(structures::continuation_of(views, box));

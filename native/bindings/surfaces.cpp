@@ -24,20 +24,20 @@ namespace realmodel::bindings {
 
 namespace {
 
-Array<double> hull_corners(const Array<double>& nodes) {
-    const auto given = rows<2>(nodes, "nodes");
+NumpyArray<double> hull_corners(const NumpyArray<double>& nodes) {
+    const auto input = rows<2>(nodes, "nodes");
     return to_array(unlocked([&] {
-        return interpolation::ConvexHull({given.begin(), given.end()}).corners();
+        return interpolation::ConvexHull({input.begin(), input.end()}).corners();
     }));
 }
 
-Array<std::int32_t> hull_border(const Array<double>& nodes) {
-    const auto given = rows<2>(nodes, "nodes");
-    return to_array(unlocked([&] { return interpolation::hull_border(given); }));
+NumpyArray<std::int32_t> hull_border(const NumpyArray<double>& nodes) {
+    const auto input = rows<2>(nodes, "nodes");
+    return to_array(unlocked([&] { return interpolation::hull_border(input); }));
 }
 
-Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes,
-                         WatchedExecution* execution) {
+NumpyArray<bool> outside_hull(const NumpyArray<double>& points, const NumpyArray<double>& nodes,
+                              WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     auto outside = unlocked([&] { return interpolation::outside_hull(from, to, run(execution)); });
@@ -45,31 +45,34 @@ Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes
 }
 
 template <auto method>
-Array<double> on_triangulation(const Array<double>& points, const Array<double>& nodes,
-                               WatchedExecution* execution) {
+NumpyArray<double> on_triangulation(const NumpyArray<double>& points,
+                                    const NumpyArray<double>& nodes, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     return to_array(unlocked([&] { return method(from, to, run(execution)); }));
 }
 
 /// border, all, window, is_whole.
-using AroundPart = std::tuple<Array<double>, std::array<double, 4>, std::array<double, 4>, bool>;
+using AroundSubset =
+    std::tuple<NumpyArray<double>, std::array<double, 4>, std::array<double, 4>, bool>;
 
 template <auto method>
-std::tuple<Array<double>, Array<bool>> on_part(const Array<double>& points,
-                                               const Array<double>& nodes,
-                                               const AroundPart& around_part,
-                                               WatchedExecution* execution) {
+std::tuple<NumpyArray<double>, NumpyArray<bool>> on_subset(const NumpyArray<double>& points,
+                                                           const NumpyArray<double>& nodes,
+                                                           const AroundSubset& around_subset,
+                                                           WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    const auto& [border, all, window, is_whole] = around_part;
+    const auto& [border, all, window, is_whole] = around_subset;
     const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
-    auto found = unlocked([&] { return method(from, to, around, run(execution)); });
-    return {to_array(std::move(found.z)), to_array(std::move(found.certain)).attr("view")("bool")};
+    auto result = unlocked([&] { return method(from, to, around, run(execution)); });
+    return {to_array(std::move(result.z)),
+            to_array(std::move(result.certain)).attr("view")("bool")};
 }
 
-Array<double> surface_heights(const Array<double>& vertices, const Array<std::int32_t>& triangles,
-                              const Array<double>& nodes, WatchedExecution* execution) {
+NumpyArray<double> surface_heights(const NumpyArray<double>& vertices,
+                                   const NumpyArray<std::int32_t>& triangles,
+                                   const NumpyArray<double>& nodes, WatchedExecution* execution) {
     const auto corners = rows<3>(vertices, "vertices");
     const auto faces = rows<3>(triangles, "triangles");
     const auto to = rows<2>(nodes, "nodes");
@@ -77,27 +80,26 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
         [&] { return interpolation::heights_on_surface(corners, faces, to, run(execution)); }));
 }
 
-std::pair<Array<std::int32_t>, Array<double>> surface_places(const Array<double>& vertices,
-                                                             const Array<std::int32_t>& triangles,
-                                                             const Array<double>& nodes,
-                                                             WatchedExecution* execution) {
+std::pair<NumpyArray<std::int32_t>, NumpyArray<double>> surface_places(
+    const NumpyArray<double>& vertices, const NumpyArray<std::int32_t>& triangles,
+    const NumpyArray<double>& nodes, WatchedExecution* execution) {
     const auto corners = rows<3>(vertices, "vertices");
     const auto faces = rows<3>(triangles, "triangles");
     const auto to = rows<2>(nodes, "nodes");
-    auto found = unlocked(
+    auto result = unlocked(
         [&] { return interpolation::places_on_surface(corners, faces, to, run(execution)); });
-    return {to_array(std::move(found.triangle)), to_array(std::move(found.weights))};
+    return {to_array(std::move(result.triangle)), to_array(std::move(result.weights))};
 }
 
 /// Of each node, or empty: the height that it has, the least and the most.
-using BoundArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
+using BoundArrays = std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>;
 /// Positions, slopes.
-using SlopeArrays = std::pair<Array<double>, Array<double>>;
+using SlopeArrays = std::pair<NumpyArray<double>, NumpyArray<double>>;
 /// Points at or above which, and at or below which heights are.
-using PointBounds = std::pair<Array<double>, Array<double>>;
+using PointBounds = std::pair<NumpyArray<double>, NumpyArray<double>>;
 
-py::dict dsi(const Array<double>& points, const Array<double>& nodes,
-             const Array<std::int32_t>& triangles, const BoundArrays& bounds, double weight,
+py::dict dsi(const NumpyArray<double>& points, const NumpyArray<double>& nodes,
+             const NumpyArray<std::int32_t>& triangles, const BoundArrays& bounds, double weight,
              const std::optional<SlopeArrays>& dips, const std::optional<PointBounds>& point_bounds,
              WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
@@ -113,71 +115,75 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
         constraints.lower = rows<3>(point_bounds->first, "lower bounds");
         constraints.upper = rows<3>(point_bounds->second, "upper bounds");
     }
-    auto found = unlocked(
+    auto result = unlocked(
         [&] { return interpolation::dsi(from, to, faces, constraints, weight, run(execution)); });
     py::dict out;
-    out["z"] = to_array(std::move(found.z));
-    out["outside"] = found.outside;
-    out["missed"] = found.missed;
-    out["misfit"] = found.misfit;
-    out["dips_outside"] = found.dips_outside;
-    out["dips_missed"] = found.dips_missed;
-    out["bounds_missed"] = found.bounds_missed;
-    out["iterations"] = found.iterations;
-    out["converged"] = found.converged;
+    out["z"] = to_array(std::move(result.z));
+    out["outside"] = result.outside;
+    out["missed"] = result.missed;
+    out["misfit"] = result.misfit;
+    out["dips_outside"] = result.dips_outside;
+    out["dips_missed"] = result.dips_missed;
+    out["bounds_missed"] = result.bounds_missed;
+    out["iterations"] = result.iterations;
+    out["converged"] = result.converged;
     return out;
 }
 
 /// Heights (S, N), sides (S, F), weights (F, N).
-using SheetArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
+using SheetArrays = std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>;
 /// Places (C, 2), lower and upper bounds (C,), sheets (C,).
-using TieArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<std::int32_t>>;
+using TieArrays = std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>,
+                             NumpyArray<std::int32_t>>;
 /// Places (C, 2), lower and upper bounds (C,), margins (C,).
-using RaisedArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<double>>;
+using RaisedArrays =
+    std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>;
 /// Radii (L,), positions (M, 2), sided (M, F), coefficients (L, M).
-using TermArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<double>>;
+using TermArrays =
+    std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>;
 
-py::dict ties(const Array<double>& nodes, const Array<std::int32_t>& triangles,
+py::dict ties(const NumpyArray<double>& nodes, const NumpyArray<std::int32_t>& triangles,
               const SheetArrays& sheets, const TieArrays& data, double tolerance,
               WatchedExecution* execution) {
     const auto& [heights, sides, weights] = sheets;
     const auto& [places, lower, upper, numbers] = data;
-    const interpolation::TiedSheets given{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
+    const interpolation::TiedSheets input{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
                                           view(heights), view(sides), view(weights)};
     const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper),
                                        view(numbers)};
-    auto found =
-        unlocked([&] { return interpolation::tie(given, asked, tolerance, run(execution)); });
+    auto result =
+        unlocked([&] { return interpolation::tie(input, asked, tolerance, run(execution)); });
     py::dict out;
-    out["radii"] = to_array(std::move(found.terms.radii));
-    out["positions"] = to_array(std::move(found.terms.positions));
-    out["sided"] = to_array(std::move(found.terms.sided));
-    out["coefficients"] = to_array(std::move(found.terms.coefficients));
-    out["before"] = to_array(std::move(found.before));
-    out["after"] = to_array(std::move(found.after));
+    out["radii"] = to_array(std::move(result.terms.radii));
+    out["positions"] = to_array(std::move(result.terms.positions));
+    out["sided"] = to_array(std::move(result.terms.sided));
+    out["coefficients"] = to_array(std::move(result.terms.coefficients));
+    out["before"] = to_array(std::move(result.before));
+    out["after"] = to_array(std::move(result.after));
     return out;
 }
 
-Array<double> tied_heights(const Array<double>& heights, const Array<double>& nodes,
-                           const Array<double>& sided, const TermArrays& terms,
-                           WatchedExecution* execution) {
+NumpyArray<double> tied_heights(const NumpyArray<double>& heights, const NumpyArray<double>& nodes,
+                                const NumpyArray<double>& sided, const TermArrays& terms,
+                                WatchedExecution* execution) {
     const auto& [radii, positions, of_centers, coefficients] = terms;
     const auto centers = rows<2>(positions, "positions");
     const auto to = rows<2>(nodes, "nodes");
-    const auto copy = [](const Array<double>& array) {
+    const auto copy = [](const NumpyArray<double>& array) {
         return std::vector<double>(array.data(), array.data() + array.size());
     };
-    const interpolation::TieTerms given{
+    const interpolation::TieTerms input{
         copy(radii), {centers.begin(), centers.end()}, copy(of_centers), copy(coefficients)};
     return to_array(unlocked([&] {
-        return interpolation::tied_heights(view(heights), to, view(sided), given, run(execution));
+        return interpolation::tied_heights(view(heights), to, view(sided), input, run(execution));
     }));
 }
 
-Array<double> raised_heights(const Array<double>& nodes, const Array<std::int32_t>& triangles,
-                             const std::pair<Array<double>, Array<double>>& heights,
-                             const RaisedArrays& data, double tolerance,
-                             WatchedExecution* execution) {
+NumpyArray<double> raised_heights(const NumpyArray<double>& nodes,
+                                  const NumpyArray<std::int32_t>& triangles,
+                                  const std::pair<NumpyArray<double>, NumpyArray<double>>& heights,
+                                  const RaisedArrays& data, double tolerance,
+                                  WatchedExecution* execution) {
     const auto& [z, least] = heights;
     const auto& [places, lower, upper, margins] = data;
     const interpolation::RaisedSheet sheet{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
@@ -189,25 +195,27 @@ Array<double> raised_heights(const Array<double>& nodes, const Array<std::int32_
     }));
 }
 
-Array<std::int32_t> nodes_around(const Array<double>& nodes, const Array<std::int32_t>& triangles,
-                                 const Array<double>& places) {
+NumpyArray<std::int32_t> nodes_around(const NumpyArray<double>& nodes,
+                                      const NumpyArray<std::int32_t>& triangles,
+                                      const NumpyArray<double>& places) {
     const auto from = rows<2>(nodes, "nodes");
     const auto faces = rows<3>(triangles, "triangles");
     const auto at = rows<2>(places, "places");
     return to_array(unlocked([&] { return interpolation::nodes_around(from, faces, at); }));
 }
 
-std::pair<Array<std::int32_t>, Array<double>> crowded_data(
-    const Array<double>& nodes, const Array<std::int32_t>& triangles,
-    const std::tuple<Array<double>, Array<double>, Array<double>>& data, double least) {
+std::pair<NumpyArray<std::int32_t>, NumpyArray<double>> crowded_data(
+    const NumpyArray<double>& nodes, const NumpyArray<std::int32_t>& triangles,
+    const std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>& data,
+    double least) {
     const auto& [places, lower, upper] = data;
     const std::vector<double> zeros(static_cast<std::size_t>(nodes.shape(0)), 0.0);
     const interpolation::TiedSheets sheet{
         rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"), zeros, {}, {}};
     const std::vector<std::int32_t> one(static_cast<std::size_t>(places.shape(0)), 0);
     const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper), one};
-    auto found = unlocked([&] { return interpolation::crowded_data(sheet, asked, least); });
-    return {to_array(std::move(found.numbers)), to_array(std::move(found.room))};
+    auto result = unlocked([&] { return interpolation::crowded_data(sheet, asked, least); });
+    return {to_array(std::move(result.numbers)), to_array(std::move(result.room))};
 }
 
 void bind_ties(py::module_& module) {
@@ -282,7 +290,7 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cance
                arg("points"), arg("nodes"), py::arg("execution") = py::none(),
                R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
     module.def(
-        "tin_of_part", &on_part<interpolation::linear_on_part>, arg("points"), arg("nodes"),
+        "tin_of_part", &on_subset<interpolation::linear_on_subset>, arg("points"), arg("nodes"),
         arg("around"), py::arg("execution") = py::none(),
         R"(tin at nodes (N, 2) from a part of some points, in their order, the first of all before them.
 
@@ -292,7 +300,7 @@ around  border (B, 3), those of all points that hull_border gives, for coordinat
         all points; whether these are all points
 
 Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)");
-    module.def("natural_neighbour_of_part", &on_part<interpolation::natural_neighbors_of_part>,
+    module.def("natural_neighbour_of_part", &on_subset<interpolation::natural_neighbors_of_subset>,
                arg("points"), arg("nodes"), arg("around"), py::arg("execution") = py::none(),
                R"(natural_neighbour at nodes; arguments and result as tin_of_part.)");
     module.def(

@@ -51,7 +51,7 @@ py::list to_list(const std::vector<validation::TestResult>& results) {
 }
 
 struct ValidatedModel : ComplexArrays {
-    Array<double> block_volume, block_base;
+    NumpyArray<double> block_volume, block_base;
 
     explicit ValidatedModel(const py::dict& model) : ComplexArrays(model) {
         take(model, "block_volume", block_volume, complex.block_volume);
@@ -88,8 +88,8 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
     }));
 }
 
-Array<std::int32_t> cells_at(const py::dict& model, const Array<double>& positions,
-                             WatchedExecution* execution) {
+NumpyArray<std::int32_t> cells_at(const py::dict& model, const NumpyArray<double>& positions,
+                                  WatchedExecution* execution) {
     const ComplexArrays arrays(model);
     const auto at = rows<3>(positions, "positions");
     return to_array(

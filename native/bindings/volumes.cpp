@@ -16,9 +16,10 @@ namespace realmodel::bindings {
 
 namespace {
 
-Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-                           const Indices& face_vertices, const Indices& face_cells,
-                           std::size_t cells, WatchedExecution* execution) {
+NumpyArray<double> cell_volumes(const NumpyArray<double>& vertices,
+                                const NumpyArray<std::int64_t>& face_offsets,
+                                const Indices& face_vertices, const Indices& face_cells,
+                                std::size_t cells, WatchedExecution* execution) {
     const auto positions = rows<3, double>(vertices, "vertices");
     const auto sides = rows<2, std::int32_t>(face_cells, "face_cells");
     return to_array(unlocked([&] {

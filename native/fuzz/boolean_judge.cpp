@@ -299,13 +299,13 @@ private:
     void look_at_loops(const Refinement& r) {
         std::set<std::array<std::int32_t, 2>> edges;
         std::map<std::int32_t, int> degree;
-        const auto each_edge = [](const booleans::IntersectionLoop& loop, const auto& visit) {
+        const auto for_each_edge = [](const booleans::IntersectionLoop& loop, const auto& visit) {
             const std::size_t count = loop.vertices.size();
             for (std::size_t i = 0; i + (loop.kind == LoopKind::kHardClosed ? 0 : 1) < count; ++i)
                 visit(loop.vertices[i], loop.vertices[(i + 1) % count]);
         };
         for (const auto& loop : r.loops) {
-            each_edge(loop, [&](std::int32_t p, std::int32_t q) {
+            for_each_edge(loop, [&](std::int32_t p, std::int32_t q) {
                 if (p == q || !edges.insert({std::min(p, q), std::max(p, q)}).second)
                     add("loops", "an edge is in two loops, or has no length");
                 ++degree[p];

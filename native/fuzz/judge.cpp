@@ -55,7 +55,7 @@ void compare_volumes(const StackCase& stack, const CellComplex& complex,
 }
 
 /// Number of connected parts of each block.
-std::vector<int> parts_of(const CellComplex& c) {
+std::vector<int> compartments_of(const CellComplex& c) {
     std::vector<std::int32_t> parent(c.cell_block.size());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](std::int32_t i) {
@@ -91,7 +91,7 @@ void compare_kinds(const StackCase& stack, const CellComplex& columns, const Cel
     std::vector<int> cells(blocks.volumes.size(), 0);
     for (const std::int32_t block : blocks.cell_block)
         ++cells[static_cast<std::size_t>(block)];
-    const std::vector<int> parts = parts_of(columns);
+    const std::vector<int> parts = compartments_of(columns);
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (parts[k] != cells[k]) {
             defects.push_back({"kinds differ in parts",

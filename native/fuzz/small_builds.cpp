@@ -120,8 +120,8 @@ std::vector<SmallBuild> small_builds(std::uint64_t seed) {
              ComplexView with_fault = model;
              with_fault.blocks += 1;
              const std::array structures{structures::Structure{fault.view(), false, {}, false}};
-             const std::array models{structures::PartModel{with_fault, {-1}},
-                                     structures::PartModel{with_fault, {1}}};
+             const std::array models{structures::CompartmentModel{with_fault, {-1}},
+                                     structures::CompartmentModel{with_fault, {1}}};
              const std::vector<std::uint8_t> acts(with_fault.blocks, 1);
              return digest(
                  structures::join_models(models, structures, acts, {threads, nullptr}).complex);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "realmodel/base/errors.hpp"
-#include "realmodel/structures/build_parts.hpp"
+#include "realmodel/structures/build_compartments.hpp"
 
 namespace {
 
@@ -43,17 +43,18 @@ void print_volumes() {
 
     std::deque<Surface> surfaces;
     const std::array<std::array<double, 3>, 2> rock{{{0, 0, -4}, {100, 100, 18}}};
-    for (const structures::Part& part : structures::parts_of(rock, input.structures, {})) {
-        const double displaced = part.sides[0] > 0 ? -4 : 0;
-        structures::PartStack stack;
+    for (const structures::Compartment& compartment :
+         structures::compartments_of(rock, input.structures, {})) {
+        const double displaced = compartment.sides[0] > 0 ? -4 : 0;
+        structures::CompartmentStack stack;
         for (const double z : {0 + displaced, 10 + displaced, 18.0}) {
             const auto number = static_cast<std::int32_t>(stack.surfaces.size());
             stack.stack.surfaces.push_back(surfaces.emplace_back(level(z)).view());
             stack.surfaces.push_back({number, number == 0 ? -1 : number});
         }
-        input.parts.push_back({part.sides, {stack}});
+        input.compartments.push_back({compartment.sides, {stack}});
     }
-    const structures::Joined model = structures::build_parts(input, {});
+    const structures::Joined model = structures::build_compartments(input, {});
 
     std::printf("lower layer %.1f\n", model.complex.volumes[1]);
     std::printf("upper layer %.1f\n", model.complex.volumes[2]);

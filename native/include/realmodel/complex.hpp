@@ -15,8 +15,8 @@ namespace realmodel {
 /// What a cell is.
 enum class CellKind {
     kColumns,  ///< what lies under one facet of the surface above it
-    kBlocks    ///< a connected part of a block; its faces may touch along edges, so that it uses an
-               ///< edge more than twice, as often either way
+    kBlocks  ///< a connected component of a block; its faces may touch along edges, so that it uses
+             ///< an edge more than twice, as often either way
 };
 
 // What a face lies on, where that is no surface.

@@ -61,12 +61,12 @@ void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::Sp
                 std::swap(fan.order[k], fan.order[k - 1]);
         }
     }
-    fan.blade_begins.assign(1, 0);
+    fan.half_plane_begins.assign(1, 0);
     for (std::size_t i = 1; i <= fan.order.size(); ++i) {
         if (i == fan.order.size() || compare(fan.order[i - 1], fan.order[i]) != 0)
-            fan.blade_begins.push_back(i);
+            fan.half_plane_begins.push_back(i);
     }
-    assert(quarter[fan.order.front()] == 0 && fan.blade_begins.back() == items.size());
+    assert(quarter[fan.order.front()] == 0 && fan.half_plane_begins.back() == items.size());
 }
 
 }  // namespace realmodel::arrangement

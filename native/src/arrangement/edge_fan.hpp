@@ -58,7 +58,7 @@ struct EdgeUses {
 
 /// Calls visit(use) for all edges of some loops.
 template <class Loops, class Visit>
-void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
+void for_each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
     for (const auto& loop : loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const NodeId a = loop[i], b = loop[i + 1 < loop.size() ? i + 1 : 0];
@@ -80,9 +80,9 @@ EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of,
         nodes, (items + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
             for (std::size_t i = chunk * kChunk; i < std::min(items, (chunk + 1) * kChunk); ++i) {
-                each_edge(std::array{std::span<const NodeId>(loop_of(i))},
-                          static_cast<std::int32_t>(i),
-                          [&](const EdgeUse& use) { put(index(use.edge[0]), use); });
+                for_each_edge(std::array{std::span<const NodeId>(loop_of(i))},
+                              static_cast<std::int32_t>(i),
+                              [&](const EdgeUse& use) { put(index(use.edge[0]), use); });
             }
         },
         execution);
@@ -107,14 +107,15 @@ struct HalfPlane {
 };
 
 /// Half-planes around one edge in counter-clockwise order for one who looks along it, beginning
-/// with the first. Those that are the same make one blade.
+/// with the first. Those that are the same are one, with several items.
 struct EdgeFan {
-    std::vector<std::size_t> order;            ///< numbers of half-planes
-    std::vector<std::size_t> blade_begins{0};  ///< in `order`, and its end
+    std::vector<std::size_t> order;                 ///< numbers of half-planes
+    std::vector<std::size_t> half_plane_begins{0};  ///< in `order`, and its end
 
-    std::size_t blades() const { return blade_begins.size() - 1; }
-    std::span<const std::size_t> blade(std::size_t i) const {
-        return {order.data() + blade_begins[i], blade_begins[i + 1] - blade_begins[i]};
+    std::size_t half_planes() const { return half_plane_begins.size() - 1; }
+    std::span<const std::size_t> half_plane(std::size_t i) const {
+        return {order.data() + half_plane_begins[i],
+                half_plane_begins[i + 1] - half_plane_begins[i]};
     }
 };
 

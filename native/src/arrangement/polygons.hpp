@@ -243,14 +243,14 @@ public:
     }
     /// Calls visit(one, other) for the polygons of each pair, from both sides.
     template <class Visit>
-    void each_pair(const Visit& visit) const {
+    void for_each_pair(const Visit& visit) const {
         for (const PolygonHalfEdge& e : edges_) {
             if (e.twin >= 0) visit(e.polygon, edges_[index(e.twin)].polygon);
         }
     }
     /// Parts pairs again unless may_stay(one, other) holds of their polygons.
     template <class MayStay>
-    void part(const MayStay& may_stay) {
+    void separate(const MayStay& may_stay) {
         for (PolygonHalfEdge& e : edges_) {
             if (e.twin < 0 || may_stay(e.polygon, edges_[index(e.twin)].polygon)) continue;
             edges_[index(e.twin)].twin = -1;
@@ -259,7 +259,7 @@ public:
     }
     /// Calls visit(half-edges) for the outlines, in the order of their first half-edges.
     template <class Visit>
-    void each_outline(const Visit& visit) {
+    void for_each_outline(const Visit& visit) {
         done_.assign(edges_.size(), 0);
         for (std::size_t start = 0; start < edges_.size(); ++start) {
             if (done_[start] != 0 || edges_[start].twin >= 0) continue;

@@ -71,10 +71,10 @@ private:
 ///            under one number
 ///   use      a facet at one of its edges (EdgeUse). For one who goes round the edge, seen along it
 ///            counter-clockwise, one side of the facet is ahead of it and the other one behind
-///   blade    the uses that lie in one half-plane that begins at the edge (EdgeFan)
-///   sector   what is between a blade and the next one: the sides ahead of the first and behind the
-///            second are in one cell. So each cell is a set of sides, joined around all edges;
-///            parts of its boundary that do not touch one another are joined along rays
+///   half-plane  the uses that lie in one that begins at the edge (EdgeFan)
+///   sector   what is between a half-plane and the next one: the sides ahead of the first and
+///            behind the second are in one cell. So each cell is a set of sides, joined around all
+///            edges; components of its boundary that do not touch one another are joined along rays
 ///   way      from a cell through a facet into another one, in direction 1 from side 0 to side 1,
 ///            in direction -1 back
 ///   label    one or several numbers of each cell, with a known change at each facet: how often P
@@ -94,14 +94,14 @@ public:
 
     /// Notes that two sides are in one cell. Several threads may do so at once, until number().
     void join(std::int32_t side, std::int32_t other) { joined_.join(side, other); }
-    /// The same of all that bounds a sector of a fan: that after one of its blades.
+    /// The same of all that bounds a sector of a fan: that after one of its half-planes.
     /// @param side_of  the number of a side of an item: side_of(item, 0 or 1); -1 leaves it out
     template <class Fan, class SideOf>
-    void join_sector(std::span<const EdgeUse> uses, const Fan& fan, std::size_t blade,
+    void join_sector(std::span<const EdgeUse> uses, const Fan& fan, std::size_t half_plane,
                      const SideOf& side_of) {
         std::int32_t first = -1;
         const auto join_all = [&](std::size_t of, bool is_ahead) {
-            for (const std::size_t i : fan.blade(of)) {
+            for (const std::size_t i : fan.half_plane(of)) {
                 const EdgeUse& use = uses[i];
                 const std::int32_t side =
                     side_of(index(use.item), is_ahead ? use.ahead() : use.behind());
@@ -110,8 +110,8 @@ public:
                 join(first, side);
             }
         };
-        join_all(blade, true);
-        join_all((blade + 1) % fan.blades(), false);
+        join_all(half_plane, true);
+        join_all((half_plane + 1) % fan.half_planes(), false);
     }
 
     /// Numbers the cells in the order of their first sides.
@@ -120,7 +120,7 @@ public:
     void number(const Counts& counts, const Execution& execution) {
         const std::size_t sides = joined_.size();
         cell_.resize(sides);
-        parallel_each(sides, execution, [&](std::size_t i) {
+        parallel_for_each(sides, execution, [&](std::size_t i) {
             cell_[i] = counts(i) ? joined_.find(static_cast<std::int32_t>(i)) : -1;
         });
         std::vector<std::int32_t> of_set(sides, -1);
@@ -140,12 +140,12 @@ public:
     std::size_t first_side(std::size_t cell) const { return index(first_[cell]); }
 
     /// Takes facets as ways.
-    /// @param each_facet  each_facet(visit) calls visit(facet, cell at side 0, cell at side 1) for
-    ///                    all facets between two cells; it is called twice
-    template <class EachFacet>
-    void connect(const EachFacet& each_facet) {
+    /// @param visit_facets  visit_facets(visit) calls visit(facet, cell at side 0, cell at side 1)
+    ///                    for all facets between two cells; it is called twice
+    template <class VisitFacets>
+    void connect(const VisitFacets& visit_facets) {
         ways_ = bucketize<Way>(size(), [&](const auto& put) {
-            each_facet([&](std::size_t facet, std::int32_t low, std::int32_t high) {
+            visit_facets([&](std::size_t facet, std::int32_t low, std::int32_t high) {
                 assert(low >= 0 && high >= 0 && index(low) < size() && index(high) < size());
                 put(index(low), Way{high, static_cast<std::int32_t>(facet), 1});
                 put(index(high), Way{low, static_cast<std::int32_t>(facet), -1});

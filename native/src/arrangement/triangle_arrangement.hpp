@@ -141,7 +141,7 @@ private:
     };
     /// The ends of one segment, then those of another.
     using SegmentPair = std::array<SpacePointId, 4>;
-    using Edge = std::array<SpacePointId, 2>;
+    using SpaceEdge = std::array<SpacePointId, 2>;
     class NodesOnLines;
     struct LineRange;
     struct BoxedSegments;
@@ -167,16 +167,16 @@ private:
     static std::vector<std::vector<LineRange>> line_chunks(std::span<const std::int32_t> among,
                                                            const Count& count);
     template <class Prepared, class Visit>
-    void each_range(const std::vector<std::vector<LineRange>>& chunks, const Execution& execution,
-                    const Visit& visit) const;
+    void for_each_range(const std::vector<std::vector<LineRange>>& chunks,
+                        const Execution& execution, const Visit& visit) const;
     void sort_all(const Execution& execution);
     bool do_cross(const ArrangedTriangle& t, const SegmentPair& pair) const;
     void intersect_segments(const Execution& execution);
-    std::vector<std::vector<Edge>> exchange_points(const Execution& execution);
+    std::vector<std::vector<SpaceEdge>> exchange_points(const Execution& execution);
     void messages_of(const LineRange& range, const NodesOnLines& nodes_on,
-                     std::vector<Message>& messages, std::vector<Edge>& edges);
+                     std::vector<Message>& messages, std::vector<SpaceEdge>& edges);
     class RegionFinder;
-    void find_all_regions(std::vector<std::vector<Edge>>& edges, const Execution& execution);
+    void find_all_regions(std::vector<std::vector<SpaceEdge>>& edges, const Execution& execution);
 
     exact::SpacePoints& points_;
     std::vector<ArrangedTriangle> triangles_;

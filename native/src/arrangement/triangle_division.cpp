@@ -72,8 +72,8 @@ std::vector<std::vector<TriangleArrangement::LineRange>> TriangleArrangement::li
 /// Calls visit(chunk, range, prepared) for all ranges, those of a chunk one after another on one
 /// thread. What is prepared for a triangle is made once.
 template <class Prepared, class Visit>
-void TriangleArrangement::each_range(const std::vector<std::vector<LineRange>>& chunks,
-                                     const Execution& execution, const Visit& visit) const {
+void TriangleArrangement::for_each_range(const std::vector<std::vector<LineRange>>& chunks,
+                                         const Execution& execution, const Visit& visit) const {
     std::vector<std::int32_t> shared;
     for (const auto& chunk : chunks) {
         if (chunk[0].shared == static_cast<std::int32_t>(shared.size()))
@@ -153,7 +153,7 @@ private:
 
 /// Puts the points and segments of all triangles in order, each once.
 void TriangleArrangement::sort_all(const Execution& execution) {
-    parallel_each(triangles_.size(), execution, [this](std::size_t i) {
+    parallel_for_each(triangles_.size(), execution, [this](std::size_t i) {
         sort_unique(triangles_[i].points);
         sort_unique(triangles_[i].segments);
     });
@@ -241,7 +241,7 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
         return t.facing == 0 || t.segments.size() < 2 ? 0 : t.segments.size();
     });
     std::vector<std::vector<std::pair<std::size_t, SegmentPair>>> crossings(chunks.size());
-    each_range<BoxedSegments>(
+    for_each_range<BoxedSegments>(
         chunks, execution,
         [&](std::size_t chunk, const LineRange& range, const BoxedSegments& segments) {
             const auto& [axis, boxed] = segments;
@@ -281,7 +281,8 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
 /// The points on some lines of a triangle, for the others that share these; and what they divide
 /// the lines into.
 void TriangleArrangement::messages_of(const LineRange& range, const NodesOnLines& nodes_on,
-                                      std::vector<Message>& messages, std::vector<Edge>& edges) {
+                                      std::vector<Message>& messages,
+                                      std::vector<SpaceEdge>& edges) {
     const std::int32_t triangle = range.triangle;
     const ArrangedTriangle& t = triangles_[index(triangle)];
     const auto send = [&](std::int32_t to, SpacePointId p) {
@@ -322,9 +323,9 @@ void TriangleArrangement::messages_of(const LineRange& range, const NodesOnLines
 /// Sends the points on edges and segments to the other triangles that share these, until all of
 /// them know them.
 /// @return for each triangle what its lines are divided into; none where nothing divides it
-std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchange_points(
+std::vector<std::vector<TriangleArrangement::SpaceEdge>> TriangleArrangement::exchange_points(
     const Execution& execution) {
-    std::vector<std::vector<Edge>> edges(triangles_.size());
+    std::vector<std::vector<SpaceEdge>> edges(triangles_.size());
     std::vector<std::int32_t> changed = all_triangles();
     while (!changed.empty()) {
         // of a triangle without area one corner may lie on the edge between the others
@@ -335,8 +336,9 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
         for (const std::int32_t triangle : changed)
             edges[index(triangle)].clear();
         std::vector<std::vector<Message>> messages(chunks.size());
-        std::vector<std::vector<Edge>> of_shared(chunks.size());  // each the only one of its chunk
-        each_range<NodesOnLines>(
+        std::vector<std::vector<SpaceEdge>> of_shared(
+            chunks.size());  // each the only one of its chunk
+        for_each_range<NodesOnLines>(
             chunks, execution,
             [&](std::size_t chunk, const LineRange& range, const NodesOnLines& nodes_on) {
                 messages_of(range, nodes_on, messages[chunk],
@@ -368,7 +370,7 @@ public:
         : arrangement_(arrangement), graph_(arrangement.points_) {}
 
     /// @param edges  all that its lines are divided into; put in order. None: nothing divides it
-    void add_regions(std::int32_t triangle, std::vector<Edge>& edges, Regions& regions) {
+    void add_regions(std::int32_t triangle, std::vector<SpaceEdge>& edges, Regions& regions) {
         const ArrangedTriangle& t = arrangement_.triangles_[index(triangle)];
         if (t.facing == 0) return;
         if (edges.empty()) {
@@ -387,7 +389,7 @@ public:
 private:
     /// Whether regions tile a triangle: of their edges, those have no twin that lie on its outline.
     bool tile(const ArrangedTriangle& t, const Regions& regions, std::size_t first) const {
-        std::vector<std::pair<Edge, int>> edges;
+        std::vector<std::pair<SpaceEdge, int>> edges;
         for (std::size_t r = first; r < regions.size(); ++r) {
             for (const auto loop : regions.loops[r]) {
                 for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -455,7 +457,7 @@ Regions joined(std::vector<Regions>& ranges, const Execution& execution) {
 }  // namespace
 
 /// @param edges  of each triangle, as exchange_points() gives them
-void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges,
+void TriangleArrangement::find_all_regions(std::vector<std::vector<SpaceEdge>>& edges,
                                            const Execution& execution) {
     // those of triangles with many lines are begun first
     struct Range {

@@ -111,11 +111,11 @@ void PlaneGraph::find_components() {
     leftmost_.clear();
     outer_.clear();
     is_outer_.assign(loop_begins_.size() - 1, 0);
-    is_found_.assign(nodes_.size(), 0);
+    is_reached_.assign(nodes_.size(), 0);
     for (std::size_t start = 0; start < nodes_.size(); ++start) {
-        if (is_found_[start] != 0) continue;
+        if (is_reached_[start] != 0) continue;
         open_.assign(1, start);
-        is_found_[start] = 1;
+        is_reached_[start] = 1;
         std::size_t first = start;
         while (!open_.empty()) {
             const std::size_t at = open_.back();
@@ -123,8 +123,8 @@ void PlaneGraph::find_components() {
             if (is_before(nodes_[at], nodes_[first])) first = at;
             for (const std::int32_t h : leaving(at)) {
                 const std::size_t to = half(twin(h)).origin;
-                if (is_found_[to] == 0) open_.push_back(to);
-                is_found_[to] = 1;
+                if (is_reached_[to] == 0) open_.push_back(to);
+                is_reached_[to] = 1;
             }
         }
         // at the leftmost node nothing leaves to the left: that sector is outside

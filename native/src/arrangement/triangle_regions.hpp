@@ -66,12 +66,12 @@ private:
     std::vector<std::int32_t> leaving_;       ///< of nodes: counter-clockwise
     std::vector<SpacePointId> loop_nodes_;
     std::vector<std::size_t> loop_begins_;
-    std::vector<std::uint8_t> is_found_;   ///< of nodes
-    std::vector<std::size_t> open_;        ///< nodes of which the neighbors are still to be found
-    std::vector<std::size_t> leftmost_;    ///< of components: the position of their first node
-    std::vector<std::int32_t> outer_;      ///< of components: the loop around them
-    std::vector<std::uint8_t> is_outer_;   ///< of loops
-    std::vector<std::int32_t> region_of_;  ///< of loops, -1 of outer ones
+    std::vector<std::uint8_t> is_reached_;  ///< of nodes
+    std::vector<std::size_t> open_;         ///< nodes of which the neighbors are still to be found
+    std::vector<std::size_t> leftmost_;     ///< of components: the position of their first node
+    std::vector<std::int32_t> outer_;       ///< of components: the loop around them
+    std::vector<std::uint8_t> is_outer_;    ///< of loops
+    std::vector<std::int32_t> region_of_;   ///< of loops, -1 of outer ones
     /// Holes: the region around each, and its loop.
     std::vector<std::pair<std::int32_t, std::int32_t>> holes_;
 };

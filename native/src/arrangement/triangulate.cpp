@@ -541,7 +541,7 @@ bool left_or_straight(const Loop& loop, std::size_t corner, const PlanePosition&
 
 /// Whether the corners of a loop go there and back once along an axis, up to rounding. One that
 /// turns left or goes straight on everywhere may still run back along itself, or wind round twice.
-bool goes_there_and_back(const Loop& loop, std::size_t axis, const PlanePosition& rounding) {
+bool retraces_itself(const Loop& loop, std::size_t axis, const PlanePosition& rounding) {
     int changes = 0;
     double last = 0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -616,8 +616,7 @@ private:
         const std::size_t n = merged.size();
         if (!left_or_straight(merged, 0, rounding_) || !left_or_straight(merged, seam, rounding_))
             return;
-        if (!goes_there_and_back(merged, 0, rounding_) ||
-            !goes_there_and_back(merged, 1, rounding_))
+        if (!retraces_itself(merged, 0, rounding_) || !retraces_itself(merged, 1, rounding_))
             return;
         for (std::size_t k = seam + 1; k < n; ++k) {
             for (std::size_t l = 0; l <= seam; ++l) {
@@ -643,8 +642,7 @@ bool is_convex(const Loop& loop, const PlanePosition& rounding) {
     for (std::size_t i = 0; i < n; ++i) {
         if (!left_or_straight(loop, i, rounding)) return false;
     }
-    if (!goes_there_and_back(loop, 0, rounding) || !goes_there_and_back(loop, 1, rounding))
-        return false;
+    if (!retraces_itself(loop, 0, rounding) || !retraces_itself(loop, 1, rounding)) return false;
     return !has_repeated(loop, &LoopCorner::node);
 }
 

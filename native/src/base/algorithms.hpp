@@ -116,8 +116,8 @@ std::vector<Item> concatenated(const std::vector<std::vector<Item>>& lists) {
 /// Calls work(begin, end, list) for ranges, as parallel_ranges() does.
 /// @return what they have added to their `list`, in the order of ranges
 template <class Item, class Work>
-std::vector<Item> found_in_ranges(std::size_t count, std::size_t size, const Execution& execution,
-                                  const Work& work, double share = 0.2) {
+std::vector<Item> collect_ranges(std::size_t count, std::size_t size, const Execution& execution,
+                                 const Work& work, double share = 0.2) {
     std::vector<std::vector<Item>> lists((count + size - 1) / size);
     parallel_ranges(
         count, size, execution,
@@ -125,14 +125,14 @@ std::vector<Item> found_in_ranges(std::size_t count, std::size_t size, const Exe
     return concatenated(lists);
 }
 
-/// The same of work(i, list) for every item, many of them in a chunk, as parallel_each() does.
+/// The same of work(i, list) for every item, many of them in a chunk, as parallel_for_each() does.
 template <class Item, class Work>
-std::vector<Item> found_in_each(std::size_t count, const Execution& execution, const Work& work) {
-    return found_in_ranges<Item>(count, 1 << 12, execution,
-                                 [&](std::size_t begin, std::size_t end, auto& list) {
-                                     for (std::size_t i = begin; i < end; ++i)
-                                         work(i, list);
-                                 });
+std::vector<Item> collect_items(std::size_t count, const Execution& execution, const Work& work) {
+    return collect_ranges<Item>(count, 1 << 12, execution,
+                                [&](std::size_t begin, std::size_t end, auto& list) {
+                                    for (std::size_t i = begin; i < end; ++i)
+                                        work(i, list);
+                                });
 }
 
 }  // namespace realmodel

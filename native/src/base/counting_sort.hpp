@@ -127,8 +127,8 @@ template <class Value, class Produce>
 Buckets<Value> sorted_in_buckets(std::size_t buckets, std::size_t chunks, const Produce& produce,
                                  const Execution& execution) {
     Buckets<Value> made = bucketize_in_any_order<Value>(buckets, chunks, produce, execution);
-    parallel_each(buckets, execution,
-                  [&](std::size_t b) { std::sort(made[b].begin(), made[b].end()); });
+    parallel_for_each(buckets, execution,
+                      [&](std::size_t b) { std::sort(made[b].begin(), made[b].end()); });
     return made;
 }
 

@@ -139,8 +139,9 @@ void keep_waiting_threads_asleep() {
 #endif
 }
 
-void parallel_tasks(std::size_t count, const Execution& execution, double share,
-                    const std::function<void(std::size_t task, const Execution& part)>& work) {
+void parallel_tasks(
+    std::size_t count, const Execution& execution, double share,
+    const std::function<void(std::size_t task, const Execution& task_execution)>& work) {
     const int all = thread_count(execution.threads);
     const int at_once = static_cast<int>(std::min(count, static_cast<std::size_t>(all)));
     // Twice as many threads as there are: while one task keeps one busy, another uses the rest.

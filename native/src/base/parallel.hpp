@@ -150,7 +150,7 @@ void parallel_ranges(std::size_t count, std::size_t size, const Execution& execu
 
 /// Calls work(i) for every item from 0 to count - 1, many of them in a chunk: work is short.
 template <class Work>
-void parallel_each(std::size_t count, const Execution& execution, const Work& work) {
+void parallel_for_each(std::size_t count, const Execution& execution, const Work& work) {
     parallel_ranges(count, 1 << 10, execution, [&work](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             work(i);
@@ -178,7 +178,8 @@ void parallel_even(std::size_t count, int threads, const Work& work) {
 /// those below it still run.
 /// @param share  of the whole progress: how much all tasks take
 /// @throws Cancelled, or what the work threw
-void parallel_tasks(std::size_t count, const Execution& execution, double share,
-                    const std::function<void(std::size_t task, const Execution& part)>& work);
+void parallel_tasks(
+    std::size_t count, const Execution& execution, double share,
+    const std::function<void(std::size_t task, const Execution& task_execution)>& work);
 
 }  // namespace realmodel

@@ -112,18 +112,18 @@ private:
             return;
         }
         const double scale = static_cast<double>(count);
-        const auto part_of = [&](const Element& e) {
+        const auto range_of = [&](const Element& e) {
             const double in_bucket = position(e, buckets) - static_cast<double>(bucket);
             return std::min(static_cast<std::size_t>(in_bucket * scale), count - 1);
         };
         scratch.assign(first, first + count);
         ends.assign(count + 1, 0);
         for (const Element& e : scratch)
-            ++ends[part_of(e) + 1];
+            ++ends[range_of(e) + 1];
         for (std::size_t i = 1; i <= count; ++i)
             ends[i] += ends[i - 1];
         for (const Element& e : scratch)
-            first[ends[part_of(e)]++] = e;
+            first[ends[range_of(e)]++] = e;
         // now they are the ends, and each begins where the one before it ends
         for (std::size_t i = 0, from = 0; i < count; from = ends[i++]) {
             if (ends[i] - from > 1) std::sort(first + from, first + ends[i], less_);

@@ -50,7 +50,7 @@ void Progress::report(double fraction, const char* text) noexcept {
 }
 
 void Progress::begin(double start, double end, const char* text) noexcept {
-    part_end_.store(std::clamp(end, 0.0, 1.0));
+    phase_end_.store(std::clamp(end, 0.0, 1.0));
     report(start, text);
 }
 
@@ -74,7 +74,7 @@ CountedLoop::CountedLoop(Progress* progress, std::size_t rounds, double share) n
     : progress_(progress) {
     if (progress == nullptr || rounds == 0) return;
     from_ = progress->fraction();
-    const double left = std::max(0.0, progress->part_end_.load() - from_);
+    const double left = std::max(0.0, progress->phase_end_.load() - from_);
     step_ = left * std::clamp(share, 0.0, 1.0) / static_cast<double>(rounds);
 }
 

@@ -338,7 +338,7 @@ bool has_plan_of(const TriangleView& a, const TriangleView& b) {
 class BeddingCorners {
 public:
     BeddingCorners(const ComplexView& complex, std::span<const History> histories,
-                   std::span<const Polygon> polygons,
+                   std::span<const BedPolygon> polygons,
                    std::span<const std::int32_t> histories_of_corners, const Execution& execution);
     Bedding bedding();
 
@@ -355,7 +355,7 @@ private:
         return {at[0], at[1]};
     }
     /// The vertex of a corner, counted from the first of its polygon.
-    std::int32_t vertex(const Polygon& polygon, std::size_t corner) const {
+    std::int32_t vertex(const BedPolygon& polygon, std::size_t corner) const {
         const auto face = complex_.face(index(polygon.face));
         return polygon.reversed ? face[face.size() - 1 - corner] : face[corner];
     }
@@ -365,8 +365,8 @@ private:
         std::array<double, 3> normal;
         PlanPosition middle;
     };
-    Facing facing(const Polygon& polygon) const;
-    PlanPosition beside(const PlanPosition& position, const Polygon& polygon) const;
+    Facing facing(const BedPolygon& polygon) const;
+    PlanPosition beside(const PlanPosition& position, const BedPolygon& polygon) const;
 
     double height_of(const PolygonCorner& corner) const {
         return complex_.vertex(corner.vertex)[2];
@@ -391,7 +391,7 @@ private:
 
     const ComplexView& complex_;
     std::span<const History> histories_;
-    std::span<const Polygon> polygons_;
+    std::span<const BedPolygon> polygons_;
     std::span<const std::int32_t> histories_of_corners_;
     Execution execution_;
     double largest_plan_ = 0, largest_height_ = 0;
@@ -408,7 +408,7 @@ private:
 };
 
 BeddingCorners::BeddingCorners(const ComplexView& complex, std::span<const History> histories,
-                               std::span<const Polygon> polygons,
+                               std::span<const BedPolygon> polygons,
                                std::span<const std::int32_t> histories_of_corners,
                                const Execution& execution)
     : complex_(complex),
@@ -431,7 +431,7 @@ BeddingCorners::BeddingCorners(const ComplexView& complex, std::span<const Histo
 void BeddingCorners::check() {
     for (std::size_t n = 0; n < polygons_.size(); ++n) {
         const auto refuse = [n](const char* what) { refuse_index("polygon", n, what); };
-        const Polygon& polygon = polygons_[n];
+        const BedPolygon& polygon = polygons_[n];
         if (polygon.face < 0 || std::cmp_greater_equal(polygon.face, complex_.face_count()))
             refuse("is a face that does not exist");
         if (polygon.history < 0 || std::cmp_greater_equal(polygon.history, histories_.size()))
@@ -464,7 +464,7 @@ void BeddingCorners::check_histories() const {
 void BeddingCorners::number_corners() {
     std::size_t count = 0;
     begin_.reserve(polygons_.size() + 1);
-    for (const Polygon& polygon : polygons_) {
+    for (const BedPolygon& polygon : polygons_) {
         begin_.push_back(static_cast<std::uint32_t>(count));
         count += complex_.face(index(polygon.face)).size();
         check_total(count, INT32_MAX);
@@ -588,7 +588,7 @@ void BeddingCorners::replay(std::size_t history, std::span<const std::size_t> us
         auto& at = locations[plan_of_[sheets[k]]];
         const bool is_new = at.empty();
         at.resize(used.size());
-        parallel_each(used.size(), execution_, [&](std::size_t n) {
+        parallel_for_each(used.size(), execution_, [&](std::size_t n) {
             if (is_new) at[n] = plan.at(positions_[used[n]]);
             columns[n].lay(histories_[history], k, sheets_[sheets[k]]->at(at[n]));
         });
@@ -624,7 +624,7 @@ void BeddingCorners::set_at_borders(std::size_t history, std::vector<PolygonCorn
             locations.push_back(plan->at(position));
         std::map<std::vector<std::int32_t>, std::vector<HistoryColumn>> sides;
         for (const PolygonCorner& corner : corners) {
-            const Polygon& polygon = polygons_[index(corner.polygon)];
+            const BedPolygon& polygon = polygons_[index(corner.polygon)];
             const PlanPosition inside = beside(position, polygon);
             std::vector<std::int32_t> triangles;  // in each plan, at borders
             for (std::size_t plan = 0; plan < plans_.size(); ++plan) {
@@ -661,7 +661,7 @@ std::vector<HistoryColumn> BeddingCorners::columns_at(
     return columns;
 }
 
-BeddingCorners::Facing BeddingCorners::facing(const Polygon& polygon) const {
+BeddingCorners::Facing BeddingCorners::facing(const BedPolygon& polygon) const {
     const auto face = complex_.face(index(polygon.face));
     const auto origin = complex_.vertex(face[0]);
     Facing facing{};
@@ -682,7 +682,7 @@ BeddingCorners::Facing BeddingCorners::facing(const Polygon& polygon) const {
 }
 
 /// A position in plan that lies in the polygon, or inside of an upright one, near its corner.
-PlanPosition BeddingCorners::beside(const PlanPosition& position, const Polygon& polygon) const {
+PlanPosition BeddingCorners::beside(const PlanPosition& position, const BedPolygon& polygon) const {
     const auto [normal, middle] = facing(polygon);
     PlanPosition inner = moved(position, kInwards, minus({middle[0], middle[1]}, position));
     const double across = elementary::hypot(normal[0], normal[1]);
@@ -697,7 +697,7 @@ PlanPosition BeddingCorners::beside(const PlanPosition& position, const Polygon&
 /// Height and thickness of a corner. column: as far as the sheet over its layer.
 void BeddingCorners::set(const PolygonCorner& corner, const HistoryColumn& column, bool has_layer,
                          Bedding& bedding) const {
-    const Polygon& polygon = polygons_[index(corner.polygon)];
+    const BedPolygon& polygon = polygons_[index(corner.polygon)];
     const double rounding = kNear * largest_height_, z = height_of(corner);
     const double thickness = has_layer ? std::max(0.0, column.top - column.base) : 0.0;
     bedding.thickness[corner.number] = static_cast<float>(thickness);
@@ -717,7 +717,7 @@ void BeddingCorners::set(const PolygonCorner& corner, const HistoryColumn& colum
 }  // namespace
 
 Bedding bedding_of(const ComplexView& complex, std::span<const History> histories,
-                   std::span<const Polygon> polygons,
+                   std::span<const BedPolygon> polygons,
                    std::span<const std::int32_t> histories_of_corners, const Execution& execution) {
     return BeddingCorners(complex, histories, polygons, histories_of_corners, execution).bedding();
 }

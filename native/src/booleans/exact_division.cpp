@@ -176,7 +176,7 @@ void ExactDivision::find_candidates() {
     const auto filter_of = [&](const TriangleCorners& c) {
         return exact::SideFilter(points.rounded(c[0]), points.rounded(c[1]), points.rounded(c[2]));
     };
-    candidates_ = found_in_ranges<std::array<std::int32_t, 2>>(
+    candidates_ = collect_ranges<std::array<std::int32_t, 2>>(
         tree.leaf_count(), kFacetsAtOnce, execution_,
         [&](std::size_t begin, std::size_t end, auto& pairs) {
             std::size_t last = count;  // the pairs of a piece follow one another
@@ -224,7 +224,7 @@ void ExactDivision::find_meetings() {
         for (std::int32_t& i : pair)
             i = triangle_of[index(i)];
     }
-    meetings_ = found_in_ranges<Meeting>(
+    meetings_ = collect_ranges<Meeting>(
         candidates_.size(), kFacetsAtOnce, execution_,
         [&](std::size_t begin, std::size_t end, std::vector<Meeting>& contacts) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -260,13 +260,13 @@ bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
         for (std::size_t k = 0; k < 3; ++k) {
             const SpacePointId from = a[k], to = a[(k + 1) % 3];
             std::vector<SpacePointId> on;
-            bool parts = true;
+            bool separates = true;
             for (const SpacePointId p : b) {
                 const int side = facing * exact::orient2d(points, axis, from, to, p);
-                parts = parts && side <= 0;
+                separates = separates && side <= 0;
                 if (side == 0) on.push_back(p);
             }
-            if (!parts) continue;
+            if (!separates) continue;
             for (const SpacePointId p : on) {
                 if (is_within(p, from, to)) return true;
             }
@@ -337,9 +337,9 @@ std::vector<ExactDivision::Copy> ExactDivision::coinciding_regions() const {
     return copies;
 }
 
-/// The parts of all triangles, one after another: their regions in triangles, whose points that no
+/// The pieces of all triangles, one after another: their regions in triangles, whose points that no
 /// doubles are become the nearest doubles.
-std::vector<std::vector<TrianglePiece>> ExactDivision::parts_of_triangles() {
+std::vector<std::vector<TrianglePiece>> ExactDivision::pieces_of_triangles() {
     const auto& regions = arrangement_.regions();
     const std::vector<Copy> copies = coinciding_regions();
     std::vector<std::vector<TriangleCorners>> triangles(regions.size());
@@ -385,7 +385,7 @@ std::vector<std::vector<TrianglePiece>> ExactDivision::parts_of_triangles() {
 }
 
 void ExactDivision::divide_regions() {
-    auto made = parts_of_triangles();
+    auto made = pieces_of_triangles();
     std::vector<std::pair<PieceId, std::int32_t>> changed;  // and the triangle
     for (std::size_t t = 0; t < made.size(); ++t) {
         poll(execution_.progress, t);

@@ -61,7 +61,7 @@ private:
         bool is_reversed = false;  ///< whether the two are seen from different sides
     };
     std::vector<Copy> coinciding_regions() const;
-    std::vector<std::vector<TrianglePiece>> parts_of_triangles();
+    std::vector<std::vector<TrianglePiece>> pieces_of_triangles();
     void divide_regions();
 
     TrianglePieces& pieces_;

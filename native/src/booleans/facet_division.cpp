@@ -47,7 +47,7 @@ public:
             divide_edge(local[k], local[(k + 1) % 3], facet.on_edges[k]);
         for (const SpacePointId p : facet.within)
             insert(p, local);
-        for (const Edge& edge : facet.wanted)
+        for (const SpaceEdge& edge : facet.wanted)
             insert_edge(edge);
         improve();
         assert(is_triangulation(facet));
@@ -236,7 +236,7 @@ private:
 
     /// The edges that the line between two corners crosses, from one to the other; nothing where it
     /// runs over a point or crosses an edge that is kept.
-    std::optional<std::vector<Edge>> crossed_edges(SpacePointId p, SpacePointId q) const {
+    std::optional<std::vector<SpaceEdge>> crossed_edges(SpacePointId p, SpacePointId q) const {
         HalfEdge crossed;
         bool is_free = true;
         mesh_.visit_star(around_[index(p)], [&](HalfEdge edge) {
@@ -248,7 +248,7 @@ private:
             if (to_b < 0 && to_c > 0) crossed = edge.next();
         });
         if (!is_free || crossed.is_none()) return std::nullopt;
-        std::vector<Edge> edges;
+        std::vector<SpaceEdge> edges;
         for (;;) {
             if (mesh_.is_fixed(crossed)) return std::nullopt;
             edges.push_back({from(crossed), to(crossed)});
@@ -269,7 +269,7 @@ private:
     /// Flips what crosses an edge until nothing does (S. W. Sloan, "A fast algorithm for generating
     /// constrained Delaunay triangulations", 1993). Nothing where it runs over a point or crosses
     /// an edge that is kept.
-    void insert_edge(const Edge& edge) {
+    void insert_edge(const SpaceEdge& edge) {
         if (progress_ != nullptr) progress_->check();
         const SpacePointId p = place_of(edge[0]), q = place_of(edge[1]);
         if (!p.has_value() || !q.has_value() || p == q) return;

@@ -12,7 +12,7 @@ namespace realmodel::booleans {
 using exact::SpacePointId;
 using exact::SpacePoints;
 using TriangleCorners = std::array<SpacePointId, 3>;
-using Edge = std::array<SpacePointId, 2>;
+using SpaceEdge = std::array<SpacePointId, 2>;
 
 inline bool has(const TriangleCorners& corners, SpacePointId p) {
     return corners[0] == p || corners[1] == p || corners[2] == p;
@@ -25,7 +25,7 @@ struct FacetPoints {
     /// from point to point.
     std::array<std::vector<SpacePointId>, 3> on_edges;
     std::vector<SpacePointId> within;
-    std::vector<Edge>
+    std::vector<SpaceEdge>
         wanted;  ///< edges between these points that it gets where nothing crosses them
 };
 
@@ -35,7 +35,7 @@ std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b)
 /// The triangle in triangles of its corners and these points, turned as it is. Where points lie is
 /// decided where they are moved onto the edges and into the plane of the triangle, exactly; points
 /// within that fall outside or together there are left out. The same for the same triangle and
-/// points, however its corners are ordered. Each part of an edge has one triangle.
+/// points, however its corners are ordered. Each piece of an edge has one triangle.
 /// @throws Cancelled
 std::vector<TriangleCorners> divided(const SpacePoints& points, const FacetPoints& facet,
                                      Progress* progress);

@@ -28,31 +28,31 @@ bool turn_alike(const std::array<std::int32_t, 3>& a, const std::array<std::int3
     return false;
 }
 
-struct KeyedPart {
+struct KeyedPiece {
     std::array<std::int32_t, 3> sorted;
-    std::int32_t part;
-    auto operator<=>(const KeyedPart&) const = default;
+    std::int32_t piece;
+    auto operator<=>(const KeyedPiece&) const = default;
 };
 
-void find_facets(const RefinedTriangles& parts, FacetMesh& mesh, const Execution& execution) {
-    const std::size_t count = parts.triangles.size();
+void find_facets(const RefinedTriangles& refined, FacetMesh& mesh, const Execution& execution) {
+    const std::size_t count = refined.triangles.size();
     constexpr std::size_t kChunk = 1 << 12;
     const auto keyed =
-        sorted_in_buckets<KeyedPart>(
-            parts.vertices.size(), (count + kChunk - 1) / kChunk,
+        sorted_in_buckets<KeyedPiece>(
+            refined.vertices.size(), (count + kChunk - 1) / kChunk,
             [&](std::size_t chunk, const auto& put) {
                 for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk);
                      ++i) {
-                    KeyedPart key{parts.triangles[i].corners, static_cast<std::int32_t>(i)};
+                    KeyedPiece key{refined.triangles[i].corners, static_cast<std::int32_t>(i)};
                     std::sort(key.sorted.begin(), key.sorted.end());
                     put(index(key.sorted[0]), key);
                 }
             },
             execution)
             .values;
-    // parts that coincide lie one after another, the first of them first
-    const auto each_first = [&](const auto& visit) {
-        parallel_each(count, execution, [&](std::size_t i) {
+    // pieces that coincide lie one after another, the first of them first
+    const auto for_each_group = [&](const auto& visit) {
+        parallel_for_each(count, execution, [&](std::size_t i) {
             if (i > 0 && keyed[i].sorted == keyed[i - 1].sorted) return;
             std::size_t end = i + 1;
             while (end < count && keyed[end].sorted == keyed[i].sorted)
@@ -60,43 +60,42 @@ void find_facets(const RefinedTriangles& parts, FacetMesh& mesh, const Execution
             visit(std::span(keyed.begin() + i, keyed.begin() + end));
         });
     };
-    mesh.first_part.resize(count);
-    each_first([&](std::span<const KeyedPart> parts_of_one) {
-        for (const KeyedPart& key : parts_of_one)
-            mesh.first_part[index(key.part)] = parts_of_one[0].part;
+    mesh.first_piece.resize(count);
+    for_each_group([&](std::span<const KeyedPiece> equal_pieces) {
+        for (const KeyedPiece& key : equal_pieces)
+            mesh.first_piece[index(key.piece)] = equal_pieces[0].piece;
     });
-    mesh.of_part.resize(count);
+    mesh.of_piece.resize(count);
     number_in_order(
         count, execution,
-        [&](std::size_t i) { return mesh.first_part[i] == static_cast<std::int32_t>(i); },
+        [&](std::size_t i) { return mesh.first_piece[i] == static_cast<std::int32_t>(i); },
         [&](std::size_t facets) { mesh.facets.resize(facets); },
         [&](std::size_t i, std::size_t facet) {
-            mesh.facets[facet].corners = parts.triangles[i].corners;
-            mesh.of_part[i] = static_cast<std::int32_t>(facet);
+            mesh.facets[facet].corners = refined.triangles[i].corners;
+            mesh.of_piece[i] = static_cast<std::int32_t>(facet);
         });
-    each_first([&](std::span<const KeyedPart> parts_of_one) {
-        const std::int32_t number = mesh.of_part[index(parts_of_one[0].part)];
+    for_each_group([&](std::span<const KeyedPiece> equal_pieces) {
+        const std::int32_t number = mesh.of_piece[index(equal_pieces[0].piece)];
         Facet& facet = mesh.facets[index(number)];
-        for (const KeyedPart& key : parts_of_one) {
-            const RefinedTriangle& part = parts.triangles[index(key.part)];
-            mesh.of_part[index(key.part)] = number;
-            facet.times[part.source] += turn_alike(part.corners, facet.corners) ? 1 : -1;
-            facet.is_of[part.source] = true;
+        for (const KeyedPiece& key : equal_pieces) {
+            const RefinedTriangle& piece = refined.triangles[index(key.piece)];
+            mesh.of_piece[index(key.piece)] = number;
+            facet.times[piece.source] += turn_alike(piece.corners, facet.corners) ? 1 : -1;
+            facet.is_of[piece.source] = true;
         }
     });
 }
 
 }  // namespace
 
-FacetMesh facets_of(const RefinedTriangles& parts, const Execution& execution) {
+FacetMesh facets_of(const RefinedTriangles& refined, const Execution& execution) {
     FacetMesh mesh;
-    find_facets(parts, mesh, execution);
+    find_facets(refined, mesh, execution);
     const std::size_t count = mesh.facets.size();
     checked_number(2 * count + 1, "sides of triangles");  // those who ask number them
     mesh.edges = arrangement::edges_of(
-        count,
-        parts.vertices.size(), [&](std::size_t f) -> const auto& { return mesh.facets[f].corners; },
-        execution);
+        count, refined.vertices.size(),
+        [&](std::size_t f) -> const auto& { return mesh.facets[f].corners; }, execution);
     assert(mesh.edges.uses.size() == 3 * count);
     return mesh;
 }
@@ -121,8 +120,8 @@ public:
         : mesh_(mesh) {
         result_.of_edge.assign(mesh.edges.size(), -1);
         std::vector<std::uint8_t> is_in_loop(mesh.edges.size());
-        parallel_each(mesh.edges.size(), execution,
-                      [&](std::size_t e) { is_in_loop[e] = is_intersection(mesh, e); });
+        parallel_for_each(mesh.edges.size(), execution,
+                          [&](std::size_t e) { is_in_loop[e] = is_intersection(mesh, e); });
         edges_at_ = bucketize<std::int32_t>(vertices, [&](const auto& put) {
             for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
                 poll(execution.progress, e);
@@ -231,7 +230,7 @@ private:
 
 /// What is between two facets that follow one another around an edge is one place.
 void CellFinder::join_around_edges() {
-    parallel_each(mesh_.edges.size(), execution_, [&](std::size_t e) {
+    parallel_for_each(mesh_.edges.size(), execution_, [&](std::size_t e) {
         const auto uses = mesh_.edges[e];
         for (const EdgeUse& use : uses)
             connected_.join(uses[0].item, use.item);
@@ -244,8 +243,8 @@ void CellFinder::join_around_edges() {
             return;
         }
         const arrangement::EdgeFan fan = fan_of(e);
-        for (std::size_t blade = 0; blade < fan.blades(); ++blade)
-            cells_.join_sector(uses, fan, blade, side_of);
+        for (std::size_t half_plane = 0; half_plane < fan.half_planes(); ++half_plane)
+            cells_.join_sector(uses, fan, half_plane, side_of);
     });
 }
 
@@ -263,40 +262,42 @@ arrangement::EdgeFan CellFinder::fan_of(std::size_t edge) const {
     }
     arrangement::EdgeFan fan;
     find_fan(points, point(a), point(b), items, fan);
-    assert(fan.blades() == uses.size());  // facets that coincide are one
+    assert(fan.half_planes() == uses.size());  // facets that coincide are one
     return fan;
 }
 
-/// Of the facets that a ray crosses, each sees the next one: so parts of the surfaces that do not
-/// touch one another are known to lie in one place. One ray for each such part.
+/// Of the facets that a ray crosses, each sees the next one: so components of the surfaces that do
+/// not touch one another are known to lie in one place. One ray for each such component.
 void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
     Array<Box> boxes(count);
-    parallel_each(count, execution_, [&](std::size_t f) {
+    parallel_for_each(count, execution_, [&](std::size_t f) {
         boxes[f] = spatial::bounding_box(
             mesh_.facets[f].corners,
             [&](std::int32_t v) -> const Position& { return vertices_[index(v)]; });
     });
     arrangement::RayBoxes ray_boxes(std::move(boxes));
-    // facets of each part, of which one after another is tried
-    std::vector<std::vector<std::int32_t>> parts;
-    std::vector<std::int32_t> root(count), part_of(count, -1);
-    parallel_each(count, execution_,
-                  [&](std::size_t f) { root[f] = connected_.find(static_cast<std::int32_t>(f)); });
+    // facets of each component, of which one after another is tried
+    std::vector<std::vector<std::int32_t>> components;
+    std::vector<std::int32_t> root(count), component_of(count, -1);
+    parallel_for_each(count, execution_, [&](std::size_t f) {
+        root[f] = connected_.find(static_cast<std::int32_t>(f));
+    });
     constexpr std::size_t kTried = 64;
     for (std::size_t f = 0; f < count; ++f) {
         poll(execution_.progress, f);
-        std::int32_t& part = part_of[index(root[f])];
-        if (part < 0) {
-            part = static_cast<std::int32_t>(parts.size());
-            parts.emplace_back();
+        std::int32_t& component = component_of[index(root[f])];
+        if (component < 0) {
+            component = static_cast<std::int32_t>(components.size());
+            components.emplace_back();
         }
-        auto& part_facets = parts[index(part)];
-        if (part_facets.size() < kTried) part_facets.push_back(static_cast<std::int32_t>(f));
+        auto& component_facets = components[index(component)];
+        if (component_facets.size() < kTried)
+            component_facets.push_back(static_cast<std::int32_t>(f));
     }
     // of the places that are tried in a facet two at most are in line with an edge
     const std::size_t most_places = 2 * mesh_.edges.size() + 1;
-    for (const auto& facets : parts) {
+    for (const auto& facets : components) {
         std::size_t attempt = 0;
         while (!cast(facets[attempt % facets.size()], static_cast<int>(attempt / facets.size()),
                      ray_boxes)) {
@@ -370,13 +371,13 @@ bool CellFinder::cast(std::int32_t facet, int attempt, arrangement::RayBoxes& bo
 /// The outside, then the cells in the order of the facets around them. Their windings follow from
 /// the outside's, as each facet changes them by what it is of either surface.
 FacetCells CellFinder::number_cells() {
-    using Winding = std::array<std::int32_t, 2>;
+    using WindingPair = std::array<std::int32_t, 2>;
     const std::size_t count = mesh_.facets.size();
     cells_.number([](std::size_t) { return true; }, execution_);
     assert(cells_.of(kOutsideSide) == FacetCells::kOutside);
     FacetCells cells;
     cells.of_facet.resize(count);
-    parallel_each(count, execution_, [&](std::size_t f) {
+    parallel_for_each(count, execution_, [&](std::size_t f) {
         for (std::size_t side = 0; side < 2; ++side)
             cells.of_facet[f][side] = cells_.of(index(side_of(f, side)));
     });
@@ -389,19 +390,19 @@ FacetCells CellFinder::number_cells() {
             last = cells.of_facet[f];
         }
     });
-    std::vector<std::optional<Winding>> windings(cells_.size());
-    windings[FacetCells::kOutside] = Winding{0, 0};
+    std::vector<std::optional<WindingPair>> windings(cells_.size());
+    windings[FacetCells::kOutside] = WindingPair{0, 0};
     std::size_t round = 0;
-    const auto beyond = [&](const arrangement::SpaceCells::Way& way, const Winding& winding) {
+    const auto beyond = [&](const arrangement::SpaceCells::Way& way, const WindingPair& winding) {
         poll(execution_.progress, round++);
-        Winding next = winding;
+        WindingPair next = winding;
         for (std::size_t source = 0; source < 2; ++source)
             next[source] -= way.direction * mesh_.facets[index(way.facet)].times[source];
         return std::optional(next);
     };
     cells_.spread(FacetCells::kOutside, windings, beyond, [](const auto&) {});
     for (const auto& winding : windings)
-        cells.winding.push_back(winding.value_or(Winding{0, 0}));
+        cells.winding.push_back(winding.value_or(WindingPair{0, 0}));
     return cells;
 }
 

@@ -11,25 +11,25 @@
 
 namespace realmodel::booleans {
 
-/// A triangle of the refinement, once for all parts that coincide there.
+/// A triangle of the refinement, once for all pieces that coincide there.
 struct Facet {
-    std::array<std::int32_t, 3> corners;  ///< as the first of its parts has them
-    /// How often it is a part of either surface: parts that face the other way count -1.
+    std::array<std::int32_t, 3> corners;  ///< as the first of its pieces has them
+    /// How often it is a piece of either surface: pieces that face the other way count -1.
     std::array<std::int32_t, 2> times{};
-    std::array<bool, 2> is_of{};  ///< whether it is a part of either surface
+    std::array<bool, 2> is_of{};  ///< whether it is a piece of either surface
 };
 
 /// The facets, their edges, and which facets meet there.
 struct FacetMesh {
     std::vector<Facet> facets;
-    std::vector<std::int32_t> of_part;     ///< the facet of each part
-    std::vector<std::int32_t> first_part;  ///< of each part, of those that coincide with it
-    arrangement::EdgeUses edges;           ///< of facets as items
+    std::vector<std::int32_t> of_piece;     ///< the facet of each piece
+    std::vector<std::int32_t> first_piece;  ///< of each piece, of those that coincide with it
+    arrangement::EdgeUses edges;            ///< of facets as items
 };
 
 /// @throws InputError kind too_large, where the two sides of all facets cannot be numbered;
 /// Cancelled
-FacetMesh facets_of(const RefinedTriangles& parts, const Execution& execution);
+FacetMesh facets_of(const RefinedTriangles& refined, const Execution& execution);
 
 /// The edges along which both surfaces meet, and the loops that these make.
 struct IntersectionLoops {
@@ -37,7 +37,7 @@ struct IntersectionLoops {
     std::vector<std::int32_t> of_edge;  ///< the loop of each edge of the mesh, -1 none
 };
 
-/// An edge of facets of both surfaces is an intersection edge, but within a part that they share:
+/// An edge of facets of both surfaces is an intersection edge, but within a region that they share:
 /// there all of its facets are of both.
 /// @param vertices  how many there are
 /// @throws Cancelled

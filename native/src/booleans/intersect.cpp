@@ -34,12 +34,12 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Execution& exec
             if (net[source] != 0) atomic_set(is_open[source]);
         }
     };
-    parallel_each(mesh.edges.size(), execution, look_at);
+    parallel_for_each(mesh.edges.size(), execution, look_at);
     return {is_open[0] == 0, is_open[1] == 0};
 }
 
 /// Whether the winding of each closed surface changes with each facet by how often that is one of
-/// its parts: around each edge all changes add up to zero.
+/// its pieces: around each edge all changes add up to zero.
 [[maybe_unused]] bool are_wound(const FacetMesh& mesh, const FacetCells& cells,
                                 const std::array<bool, 2>& is_closed) {
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -54,12 +54,12 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Execution& exec
     return true;
 }
 
-/// The parts of each surface that hang together across edges that are in no loop.
-void find_sub_surfaces(const RefinedTriangles& parts, const FacetMesh& mesh,
+/// The components of each surface that hang together across edges that are in no loop.
+void find_sub_surfaces(const RefinedTriangles& refined, const FacetMesh& mesh,
                        const IntersectionLoops& loops, const FacetCells& cells, Refinement& result,
                        const Execution& execution) {
     const std::size_t count = mesh.facets.size();
-    // a facet of both surfaces is in a part of either
+    // a facet of both surfaces is in a sub-surface of either
     DisjointSets joined(2 * count);
     const auto side_of = [](std::int32_t facet, std::size_t source) {
         return 2 * facet + static_cast<std::int32_t>(source);
@@ -79,20 +79,20 @@ void find_sub_surfaces(const RefinedTriangles& parts, const FacetMesh& mesh,
             }
         }
     };
-    parallel_each(mesh.edges.size(), execution, join_along);
-    std::vector<std::int32_t> root(parts.triangles.size()), number(2 * count, -1);
-    parallel_each(root.size(), execution, [&](std::size_t t) {
-        root[t] = joined.find(side_of(mesh.of_part[t], parts.triangles[t].source));
+    parallel_for_each(mesh.edges.size(), execution, join_along);
+    std::vector<std::int32_t> root(refined.triangles.size()), number(2 * count, -1);
+    parallel_for_each(root.size(), execution, [&](std::size_t t) {
+        root[t] = joined.find(side_of(mesh.of_piece[t], refined.triangles[t].source));
     });
     for (std::size_t t = 0; t < root.size(); ++t) {
         poll(execution.progress, t);
         std::int32_t& sub_surface = number[index(root[t])];
         if (sub_surface < 0) {
             sub_surface = static_cast<std::int32_t>(result.sub_surfaces.size());
-            const auto& [below, above] = cells.of_facet[index(mesh.of_part[t])];
+            const auto& [below, above] = cells.of_facet[index(mesh.of_piece[t])];
             const bool is_between =
                 below != above && below != FacetCells::kOutside && above != FacetCells::kOutside;
-            result.sub_surfaces.push_back({parts.triangles[t].source, {}, {}, is_between});
+            result.sub_surfaces.push_back({refined.triangles[t].source, {}, {}, is_between});
         }
         result.sub_surfaces[index(sub_surface)].triangles.push_back(static_cast<std::int32_t>(t));
     }
@@ -102,13 +102,14 @@ void find_sub_surfaces(const RefinedTriangles& parts, const FacetMesh& mesh,
         for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             for (std::size_t source = 0; source < 2; ++source) {
                 if (!mesh.facets[index(use.item)].is_of[source]) continue;
-                const std::int32_t part = number[index(joined.find(side_of(use.item, source)))];
-                result.sub_surfaces[index(part)].loops.push_back(loops.of_edge[e]);
+                const std::int32_t sub_surface =
+                    number[index(joined.find(side_of(use.item, source)))];
+                result.sub_surfaces[index(sub_surface)].loops.push_back(loops.of_edge[e]);
             }
         }
     }
-    for (SubSurface& part : result.sub_surfaces)
-        sort_unique(part.loops);
+    for (SubSurface& sub_surface : result.sub_surfaces)
+        sort_unique(sub_surface.loops);
 }
 
 void find_sub_blocks(const FacetMesh& mesh, const FacetCells& cells, Refinement& result,
@@ -140,22 +141,22 @@ void find_sub_blocks(const FacetMesh& mesh, const FacetCells& cells, Refinement&
 }
 
 /// The vertices and triangles, and what these are inside of.
-void write_triangles(const RefinedTriangles& parts, const FacetMesh& mesh, const FacetCells& cells,
-                     Refinement& result, const Execution& execution) {
-    const std::size_t count = parts.triangles.size();
-    result.vertices.resize(3 * parts.vertices.size());
-    std::memcpy(result.vertices.data(), parts.vertices.data(),
+void write_triangles(const RefinedTriangles& refined, const FacetMesh& mesh,
+                     const FacetCells& cells, Refinement& result, const Execution& execution) {
+    const std::size_t count = refined.triangles.size();
+    result.vertices.resize(3 * refined.vertices.size());
+    std::memcpy(result.vertices.data(), refined.vertices.data(),
                 sizeof(double) * result.vertices.size());
     result.triangles.resize(count);
     result.source.resize(count);
     result.source_triangle.resize(count);
     result.is_in.resize(count);
-    parallel_each(count, execution, [&](std::size_t t) {
-        result.triangles[t] = parts.triangles[t].corners;
-        result.source[t] = parts.triangles[t].source;
-        result.source_triangle[t] = parts.triangles[t].origin;
-        // the first part of a facet is turned as that is, the others are not asked
-        const auto& sides = cells.of_facet[index(mesh.of_part[t])];
+    parallel_for_each(count, execution, [&](std::size_t t) {
+        result.triangles[t] = refined.triangles[t].corners;
+        result.source[t] = refined.triangles[t].source;
+        result.source_triangle[t] = refined.triangles[t].origin;
+        // the first piece of a facet is turned as that is, the others are not asked
+        const auto& sides = cells.of_facet[index(mesh.of_piece[t])];
         for (std::size_t side = 0; side < 2; ++side) {
             for (std::size_t source = 0; source < 2; ++source)
                 result.is_in[t][source][side] =
@@ -164,7 +165,7 @@ void write_triangles(const RefinedTriangles& parts, const FacetMesh& mesh, const
     });
 }
 
-bool is_kept(Operation operation, bool in_first, bool in_second) {
+bool is_in_result(Operation operation, bool in_first, bool in_second) {
     switch (operation) {
         case Operation::kUnion:
             return in_first || in_second;
@@ -181,26 +182,26 @@ bool is_kept(Operation operation, bool in_first, bool in_second) {
 
 Refinement intersect(const TriangleView& first, const TriangleView& second,
                      const Execution& execution) {
-    const RefinedTriangles parts = refine({first, second}, execution);
+    const RefinedTriangles refined = refine({first, second}, execution);
     begin_phase(execution.progress, 0.8, 0.9, "finding facets");
-    FacetMesh mesh = facets_of(parts, execution);
+    FacetMesh mesh = facets_of(refined, execution);
     begin_phase(execution.progress, 0.9, 0.99, "finding what is inside");
-    const FacetCells cells = cells_of(parts.vertices, mesh, execution);
-    IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution);
+    const FacetCells cells = cells_of(refined.vertices, mesh, execution);
+    IntersectionLoops loops = find_loops(mesh, refined.vertices.size(), execution);
     Refinement result;
     result.is_closed = closed_surfaces(mesh, execution);
     assert(are_wound(mesh, cells, result.is_closed));
     parallel_tasks(3, execution, 0.01, [&](std::size_t task, const Execution& task_execution) {
         if (task == 0) {
-            find_sub_surfaces(parts, mesh, loops, cells, result, task_execution);
+            find_sub_surfaces(refined, mesh, loops, cells, result, task_execution);
         } else if (task == 1) {
             find_sub_blocks(mesh, cells, result, task_execution.progress);
         } else {
-            write_triangles(parts, mesh, cells, result, task_execution);
+            write_triangles(refined, mesh, cells, result, task_execution);
         }
     });
     result.loops = std::move(loops.loops);
-    result.coinciding = std::move(mesh.first_part);
+    result.coinciding = std::move(mesh.first_piece);
     if (execution.progress != nullptr) execution.progress->report(1.0, nullptr);
     return result;
 }
@@ -217,8 +218,8 @@ std::vector<std::array<std::int32_t, 3>> Refinement::boundary(Operation operatio
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         if (coinciding[t] != static_cast<std::int32_t>(t)) continue;
         const auto& [in_first, in_second] = is_in[t];
-        const bool below = is_kept(operation, in_first[0], in_second[0]);
-        const bool above = is_kept(operation, in_first[1], in_second[1]);
+        const bool below = is_in_result(operation, in_first[0], in_second[0]);
+        const bool above = is_in_result(operation, in_first[1], in_second[1]);
         if (below == above) continue;
         const auto& [a, b, c] = triangles[t];
         result.push_back(below ? std::array{a, b, c} : std::array{a, c, b});

@@ -41,7 +41,7 @@ FacetPair pair_of(TriangleCorners one, TriangleCorners other) {
     return other < one ? FacetPair{other, one} : FacetPair{one, other};
 }
 
-void NearParts::take(NearParts& other) {
+void NearFeatures::take(NearFeatures& other) {
     const auto move = [](auto& to, auto& from) {
         to.insert(to.end(), from.begin(), from.end());
         from.clear();
@@ -52,7 +52,7 @@ void NearParts::take(NearParts& other) {
     move(crossings, other.crossings);
 }
 
-void NearParts::make_unique() {
+void NearFeatures::make_unique() {
     sort_unique(same);
     sort_unique(on_edges);
     sort_unique(over);
@@ -80,14 +80,14 @@ double Nearness::distance_of(const FacetPair& pair) const {
     return std::min(distance_at(largest), std::max(distance_at(shared), kMostOfShared * shared));
 }
 
-bool Nearness::is_between(SpacePointId p, const Edge& edge) const {
+bool Nearness::is_between(SpacePointId p, const SpaceEdge& edge) const {
     const std::size_t axis = edge_axis(points_, edge[0], edge[1]);
     const double x = points_.rounded(p)[axis], from = points_.rounded(edge[0])[axis],
                  to = points_.rounded(edge[1])[axis];
     return std::min(from, to) < x && x < std::max(from, to);
 }
 
-bool Nearness::is_near_edge(SpacePointId p, const Edge& edge, double within) const {
+bool Nearness::is_near_edge(SpacePointId p, const SpaceEdge& edge, double within) const {
     if (p == edge[0] || p == edge[1]) return false;
     const Position &at = points_.rounded(p), &a = points_.rounded(edge[0]),
                    &b = points_.rounded(edge[1]);
@@ -110,7 +110,7 @@ bool Nearness::is_over(SpacePointId p, const TriangleCorners& t, double within) 
     return s > 0 && r > 0 && s + r < 1;
 }
 
-void Nearness::find_same(const FacetPair& pair, double within, NearParts& parts) const {
+void Nearness::find_same(const FacetPair& pair, double within, NearFeatures& features) const {
     std::array<SpacePointId, 6> all;
     std::copy(pair[0].begin(), pair[0].end(), all.begin());
     std::copy(pair[1].begin(), pair[1].end(), all.begin() + 3);
@@ -119,14 +119,15 @@ void Nearness::find_same(const FacetPair& pair, double within, NearParts& parts)
             if (all[i] == all[j]) continue;
             const Position &p = points_.rounded(all[i]), &q = points_.rounded(all[j]);
             if (std::abs(p[0] - q[0]) > within || length(minus(p, q)) > within) continue;
-            parts.same.push_back(unordered(all[i], all[j]));
+            features.same.push_back(unordered(all[i], all[j]));
         }
     }
 }
 
 /// Two edges that pass each other get a common vertex, unless the end of one is near the other:
 /// then that gets this end, and a new vertex would only make more edges that are nearly parallel.
-void Nearness::find_crossing(const Edge& e, const Edge& f, double within, NearParts& parts) const {
+void Nearness::find_crossing(const SpaceEdge& e, const SpaceEdge& f, double within,
+                             NearFeatures& features) const {
     const Position &a = points_.rounded(e[0]), &b = points_.rounded(e[1]),
                    &c = points_.rounded(f[0]), &d = points_.rounded(f[1]);
     if (!are_boxes_near({a, b}, {c, d}, within)) return;
@@ -144,18 +145,18 @@ void Nearness::find_crossing(const Edge& e, const Edge& f, double within, NearPa
     if (!(r > 0 && r < 1)) return;
     const Position on_f = along(c, d, r);
     if (length(minus(on_e, on_f)) > within) return;
-    parts.crossings.push_back({e, f, along(on_e, on_f, 0.5), within});
+    features.crossings.push_back({e, f, along(on_e, on_f, 0.5), within});
 }
 
-void Nearness::find(const FacetPair& pair, NearParts& parts) const {
+void Nearness::find(const FacetPair& pair, NearFeatures& features) const {
     const double within = distance_of(pair);
-    find_same(pair, within, parts);
+    find_same(pair, within, features);
     // whether a vertex is near edges of a triangle, which then get it
     const auto find_near_edges = [&](SpacePointId p, const TriangleCorners& t) {
         bool is_near = false;
-        for (const Edge& edge : edges_of(t)) {
+        for (const SpaceEdge& edge : edges_of(t)) {
             if (!is_near_edge(p, edge, within)) continue;
-            parts.on_edges.emplace_back(edge, p);
+            features.on_edges.emplace_back(edge, p);
             is_near = true;
         }
         return is_near;
@@ -165,14 +166,14 @@ void Nearness::find(const FacetPair& pair, NearParts& parts) const {
         for (const SpacePointId p : t) {
             find_near_edges(p, t);  // a corner near the edge across it: a triangle of no width
             if (has(other, p) || find_near_edges(p, other) || !is_over(p, other, within)) continue;
-            parts.over.emplace_back(other, p);
+            features.over.emplace_back(other, p);
         }
     }
-    for (const Edge& e : edges_of(pair[0])) {
-        for (const Edge& f : edges_of(pair[1])) {
+    for (const SpaceEdge& e : edges_of(pair[0])) {
+        for (const SpaceEdge& f : edges_of(pair[1])) {
             if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
             // one place for two edges, whichever triangles they are of
-            find_crossing(std::min(e, f), std::max(e, f), within, parts);
+            find_crossing(std::min(e, f), std::max(e, f), within, features);
         }
     }
 }

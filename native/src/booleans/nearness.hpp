@@ -15,22 +15,22 @@ using FacetPair = std::array<TriangleCorners, 2>;
 FacetPair pair_of(TriangleCorners one, TriangleCorners other);
 
 /// What of two triangles is nearer than rounding can keep apart.
-struct NearParts {
+struct NearFeatures {
     /// Two edges that pass each other, and where.
     struct NearCrossing {
-        Edge one, other;  ///< in order
+        SpaceEdge one, other;  ///< in order
         exact::SpacePosition at;
         double within;
         auto operator<=>(const NearCrossing&) const = default;
     };
-    std::vector<Edge> same;  ///< vertices that are to become one
-    std::vector<std::pair<Edge, SpacePointId>> on_edges;
+    std::vector<SpaceEdge> same;  ///< vertices that are to become one
+    std::vector<std::pair<SpaceEdge, SpacePointId>> on_edges;
     std::vector<std::pair<TriangleCorners, SpacePointId>>
         over;  ///< vertices over the inside of triangles
     std::vector<NearCrossing> crossings;
 
-    /// Takes over the parts of another one, which is empty then.
-    void take(NearParts& other);
+    /// Takes over the features of another one, which is empty then.
+    void take(NearFeatures& other);
     void make_unique();
     bool empty() const {
         return same.empty() && on_edges.empty() && over.empty() && crossings.empty();
@@ -48,19 +48,20 @@ public:
     /// The largest one where no coordinate is larger than this.
     double distance_at(double coordinate) const;
     /// Adds what is near in a pair.
-    void find(const FacetPair& pair, NearParts& parts) const;
+    void find(const FacetPair& pair, NearFeatures& features) const;
     /// Whether one of two triangles passes through the plane of the other by so little that all of
     /// it on one side of that plane is near the plane.
     bool is_shallow(const FacetPair& pair) const;
 
-    bool is_near_edge(SpacePointId p, const Edge& edge, double within) const;
+    bool is_near_edge(SpacePointId p, const SpaceEdge& edge, double within) const;
     bool is_over(SpacePointId p, const TriangleCorners& t, double within) const;
     /// Whether a point is between the ends of an edge, along its longest axis.
-    bool is_between(SpacePointId p, const Edge& edge) const;
+    bool is_between(SpacePointId p, const SpaceEdge& edge) const;
 
 private:
-    void find_same(const FacetPair& pair, double within, NearParts& parts) const;
-    void find_crossing(const Edge& e, const Edge& f, double within, NearParts& parts) const;
+    void find_same(const FacetPair& pair, double within, NearFeatures& features) const;
+    void find_crossing(const SpaceEdge& e, const SpaceEdge& f, double within,
+                       NearFeatures& features) const;
     bool passes_little(const TriangleCorners& triangle, const TriangleCorners& plane,
                        double within) const;
 
@@ -68,7 +69,7 @@ private:
     double ulps_;
 };
 
-inline std::array<Edge, 3> edges_of(const TriangleCorners& c) {
+inline std::array<SpaceEdge, 3> edges_of(const TriangleCorners& c) {
     return {unordered(c[0], c[1]), unordered(c[1], c[2]), unordered(c[2], c[0])};
 }
 

@@ -137,7 +137,7 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
     if (state_ == RefinementStage::kUntouched) {
         inputs = fresh_;
     } else {
-        inputs = found_in_ranges<std::int32_t>(
+        inputs = collect_ranges<std::int32_t>(
             fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end, Numbers& near) {
                 for (std::size_t i = begin; i < end; ++i) {
                     for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
@@ -274,9 +274,9 @@ std::vector<std::uint8_t> Refiner::near_meetings(const ExactDivision& division) 
     parallel_ranges(meetings.size(), kItemsAtOnce, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
-                            NearParts parts;
-                            nearness.find(pair_of(division, meetings[i]), parts);
-                            is_near[i] = parts.empty() ? 0 : 1;
+                            NearFeatures features;
+                            nearness.find(pair_of(division, meetings[i]), features);
+                            is_near[i] = features.empty() ? 0 : 1;
                         }
                     });
     return is_near;
@@ -322,29 +322,29 @@ std::optional<RefinedTriangles> Refiner::run() {
 }
 
 RefinedTriangles Refiner::result() const {
-    RefinedTriangles parts;
-    parts.vertices.reserve(pieces_.points.size());
-    parts.triangles.reserve(pieces_.count());
+    RefinedTriangles refined;
+    refined.vertices.reserve(pieces_.points.size());
+    refined.triangles.reserve(pieces_.count());
     std::vector<std::int32_t> number(pieces_.points.size(), -1);
     for (std::size_t i = 0; i < pieces_.input_count(); ++i) {
         poll(execution_.progress, i);
         const auto input = static_cast<std::int32_t>(i);
         for (const TrianglePiece& piece : pieces_.of(input)) {
             assert(!piece.is_fresh && !has_equal_corners(piece.corners));
-            RefinedTriangle part{{}, pieces_.row(input), pieces_.source(input)};
+            RefinedTriangle refined_triangle{{}, pieces_.row(input), pieces_.source(input)};
             for (std::size_t k = 0; k < 3; ++k) {
                 std::int32_t& vertex = number[index(piece.corners[k])];
                 if (vertex < 0) {
-                    vertex = checked_number(parts.vertices.size(), "vertices");
-                    parts.vertices.push_back(pieces_.points.rounded(piece.corners[k]));
+                    vertex = checked_number(refined.vertices.size(), "vertices");
+                    refined.vertices.push_back(pieces_.points.rounded(piece.corners[k]));
                 }
-                part.corners[k] = vertex;
+                refined_triangle.corners[k] = vertex;
             }
-            parts.triangles.push_back(part);
+            refined.triangles.push_back(refined_triangle);
         }
     }
-    checked_number(parts.triangles.size(), "triangles");
-    return parts;
+    checked_number(refined.triangles.size(), "triangles");
+    return refined;
 }
 
 }  // namespace

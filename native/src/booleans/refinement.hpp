@@ -26,9 +26,9 @@ using Position = std::array<double, 3>;
 //             an edge or a facet; two edges that pass each other
 //   round     fresh pieces are divided where they meet out of order (ExactDivision), or what is
 //             near there is brought together (Snapping). When no piece is fresh, what is left are
-//   part      a piece of the result, which meets all others in order (RefinedTriangles)
-//   facet     parts that coincide, as one (FacetMesh); times: how often it is a part of P and of
-//             Q, -1 for each that faces the other way
+//   refined   a piece of the result, which meets all others in order (RefinedTriangles)
+//   facet     refined pieces that coincide, as one (FacetMesh); times: how often it is a piece of P
+//             and of Q, -1 for each that faces the other way
 //   winding   how often P and Q go round a cell of space. They go once round what is below them, so
 //             from below a facet to above it they change by -times; around an edge of a closed
 //             surface these changes add up to zero (FacetCells)

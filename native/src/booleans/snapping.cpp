@@ -69,18 +69,18 @@ Snapping::Snapping(TrianglePieces& pieces, std::span<const FacetPair> pairs, con
     }
     sort_unique(facets);
     first_ = facets_.size();
-    NearParts parts;
+    NearFeatures features;
     Waves waves;
     for (std::int32_t wave = 0; !facets.empty(); ++wave) {
         waves.resize(facets_.size(), -1);
         for (const std::int32_t facet : facets)
             waves[index(facet)] = wave;
         const auto around = pairs_around(facets, waves);
-        facets = find_near(around, waves, parts);
+        facets = find_near(around, waves, features);
     }
-    merge_vertices(parts.same);
+    merge_vertices(features.same);
     // where vertices become one the rest is found again, with those that remain
-    if (merged_.empty()) place(std::move(parts));
+    if (merged_.empty()) place(std::move(features));
 }
 
 Snapping::Snapping(TrianglePieces& pieces, std::span<const TriangleCorners> flat,
@@ -88,7 +88,7 @@ Snapping::Snapping(TrianglePieces& pieces, std::span<const TriangleCorners> flat
     : pieces_(pieces), wide_(pieces.points, 0), narrow_(pieces.points, 0), execution_(execution) {
     for (const TriangleCorners& t : flat) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const Edge edge = unordered(t[k], t[(k + 1) % 3]);
+            const SpaceEdge edge = unordered(t[k], t[(k + 1) % 3]);
             if (!narrow_.is_between(t[(k + 2) % 3], edge)) continue;
             const std::int32_t number = edges_.add(edge);
             on_edges_.resize(edges_.size());
@@ -136,32 +136,32 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
 /// Looks for what is near in pairs of facets.
 /// @return facets of near pairs that were not asked before what is around them
 std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pairs,
-                                              const Waves& waves, NearParts& all) {
+                                              const Waves& waves, NearFeatures& all) {
     struct NearPairs {
-        NearParts parts;
+        NearFeatures features;
         std::vector<FacetNumbers> near;
         double moved = 0;
     };
     std::vector<NearPairs> chunks((pairs.size() + kPairs - 1) / kPairs);
     const auto work = [&](std::size_t begin, std::size_t end) {
         NearPairs& chunk = chunks[begin / kPairs];
-        NearParts parts;
+        NearFeatures features;
         for (std::size_t i = begin; i < end; ++i) {
             const FacetPair pair = pair_of(facets_[pairs[i][0]], facets_[pairs[i][1]]);
-            const Nearness& own_nearness = nearness(pairs[i]);
-            own_nearness.find(pair, parts);
-            if (parts.empty()) continue;
+            const Nearness& pair_nearness = nearness(pairs[i]);
+            pair_nearness.find(pair, features);
+            if (features.empty()) continue;
             chunk.near.push_back(pairs[i]);
-            chunk.moved = std::max(chunk.moved, own_nearness.distance_of(pair));
-            chunk.parts.take(parts);
+            chunk.moved = std::max(chunk.moved, pair_nearness.distance_of(pair));
+            chunk.features.take(features);
         }
-        chunk.parts.make_unique();
+        chunk.features.make_unique();
     };
     parallel_ranges(pairs.size(), kPairs, execution_, work);
     std::vector<std::int32_t> next;
     for (NearPairs& chunk : chunks) {
         if (execution_.progress != nullptr) execution_.progress->check();
-        all.take(chunk.parts);
+        all.take(chunk.features);
         near_.insert(near_.end(), chunk.near.begin(), chunk.near.end());
         moved_ = std::max(moved_, chunk.moved);
         for (const FacetNumbers& pair : chunk.near) {
@@ -176,11 +176,11 @@ std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pair
 }
 
 /// Of vertices that become one the first stands for all: the inputs' come before new ones.
-void Snapping::merge_vertices(const std::vector<Edge>& same) {
+void Snapping::merge_vertices(const std::vector<SpaceEdge>& same) {
     if (same.empty()) return;
     moved_ = 0;
     std::vector<SpacePointId> vertices;
-    for (const Edge& pair : same)
+    for (const SpaceEdge& pair : same)
         vertices.insert(vertices.end(), pair.begin(), pair.end());
     sort_unique(vertices);
     const auto number = [&](SpacePointId p) {
@@ -203,7 +203,7 @@ void Snapping::merge_vertices(const std::vector<Edge>& same) {
 }
 
 /// Gives what was found to the edges and facets.
-void Snapping::place(NearParts&& parts) {
+void Snapping::place(NearFeatures&& features) {
     places_.resize(facets_.size());
     for (std::size_t i = 0; i < near_.size(); ++i) {
         poll(execution_.progress, i);
@@ -219,16 +219,16 @@ void Snapping::place(NearParts&& parts) {
         }
     }
     near_ = {};
-    for (const auto& [corners, p] : parts.over)
+    for (const auto& [corners, p] : features.over)
         places_[index(facets_.find(corners))].over.push_back(p);
     std::vector<OnEdge> on_edges;
-    const auto give = [&](const Edge& edge, SpacePointId p) {
+    const auto give = [&](const SpaceEdge& edge, SpacePointId p) {
         on_edges.emplace_back(edges_.add(edge), p);
     };
-    for (const auto& [edge, p] : parts.on_edges)
+    for (const auto& [edge, p] : features.on_edges)
         give(edge, p);
-    sort_unique(parts.crossings);
-    if (!parts.crossings.empty()) {
+    sort_unique(features.crossings);
+    if (!features.crossings.empty()) {
         std::vector<SpacePointId> vertices;
         for (const TriangleCorners& facet : facets_.keys())
             vertices.insert(vertices.end(), facet.begin(), facet.end());
@@ -238,7 +238,7 @@ void Snapping::place(NearParts&& parts) {
             poll(execution_.progress, i);
             grid.add(pieces_.points.rounded(vertices[i]));
         }
-        for (const NearParts::NearCrossing& crossing : parts.crossings) {
+        for (const NearFeatures::NearCrossing& crossing : features.crossings) {
             if (execution_.progress != nullptr) execution_.progress->check();
             // the nearest vertex, of equally near ones the first
             std::pair<double, SpacePointId> nearest{crossing.within, kNone};
@@ -255,7 +255,7 @@ void Snapping::place(NearParts&& parts) {
                 vertices.push_back(p);
                 grid.add(crossing.at);
             }
-            for (const Edge& edge : {crossing.one, crossing.other}) {
+            for (const SpaceEdge& edge : {crossing.one, crossing.other}) {
                 if (p != edge[0] && p != edge[1] && narrow_.is_between(p, edge)) give(edge, p);
             }
         }
@@ -299,7 +299,7 @@ void Snapping::spread_points() {
         for (std::size_t i = begin; i < end; ++i)
             take_points(facets[i], on_edges);
     };
-    while (add_points(found_in_ranges<OnEdge>(facets.size(), kTrianglesAtOnce, execution_, take))) {
+    while (add_points(collect_ranges<OnEdge>(facets.size(), kTrianglesAtOnce, execution_, take))) {
     }
 }
 
@@ -310,8 +310,8 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& on_edges) {
     spatial::Box box = pieces_.box(t);
     box.widen(wide_.distance_at(pieces_.largest_coordinate()));
     for (const std::int32_t near : place.near) {
-        const Nearness& own_nearness = nearness({facet, near});
-        const double within = own_nearness.distance_of({t, facets_[near]});
+        const Nearness& pair_nearness = nearness({facet, near});
+        const double within = pair_nearness.distance_of({t, facets_[near]});
         for (const std::int32_t e : places_[index(near)].edges) {
             const DividedEdge& edge = on_edges_[index(e)];
             for (std::size_t i = edge.old; i < edge.points.size(); ++i) {
@@ -322,11 +322,11 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& on_edges) {
                 place.seen.insert(at, p);
                 bool is_on_edge = false;
                 for (const std::int32_t facet_edge : place.edges) {
-                    if (!own_nearness.is_near_edge(p, edges_[facet_edge], within)) continue;
+                    if (!pair_nearness.is_near_edge(p, edges_[facet_edge], within)) continue;
                     on_edges.emplace_back(facet_edge, p);
                     is_on_edge = true;
                 }
-                if (!is_on_edge && own_nearness.is_over(p, t, within)) place.over.push_back(p);
+                if (!is_on_edge && pair_nearness.is_over(p, t, within)) place.over.push_back(p);
             }
         }
     }
@@ -336,7 +336,7 @@ void Snapping::order_points() {
     const auto& points = pieces_.points;
     parallel_ranges(on_edges_.size(), kPairs, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {
-            const Edge& edge = edges_[static_cast<std::int32_t>(e)];
+            const SpaceEdge& edge = edges_[static_cast<std::int32_t>(e)];
             auto& on = on_edges_[e].points;
             const std::size_t axis = edge_axis(points, edge[0], edge[1]);
             const bool grows = points.rounded(edge[0])[axis] < points.rounded(edge[1])[axis];
@@ -366,7 +366,7 @@ SpacePointId Snapping::merged(SpacePointId p) const {
 }
 
 /// The points that an edge is to get, in the order along it.
-std::span<const SpacePointId> Snapping::points_on(const Edge& edge) const {
+std::span<const SpacePointId> Snapping::points_on(const SpaceEdge& edge) const {
     const std::int32_t number = edges_.find(edge);
     if (number < 0) return {};
     return on_edges_[index(number)].points;
@@ -378,7 +378,7 @@ const Snapping::NearFacet* Snapping::place_of(const TriangleCorners& in_order) c
 }
 
 bool Snapping::is_divided(const TriangleCorners& in_order) const {
-    for (const Edge& edge : edges_of(in_order)) {
+    for (const SpaceEdge& edge : edges_of(in_order)) {
         if (!points_on(edge).empty()) return true;
     }
     const NearFacet* place = place_of(in_order);
@@ -405,7 +405,7 @@ std::vector<TriangleCorners> Snapping::divided(const TriangleCorners& in_order) 
         };
         for (const std::int32_t near : place->near) {
             for (const std::int32_t number : places_[index(near)].edges) {
-                const Edge& edge = edges_[number];
+                const SpaceEdge& edge = edges_[number];
                 SpacePointId last = edge[0];
                 bool has_last = has_point(last);
                 const auto want = [&](SpacePointId next) {
@@ -439,7 +439,7 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
         if (!places_[f].over.empty())
             boxes.push_back(pieces_.box(facets_[static_cast<std::int32_t>(f)]));
     }
-    auto inputs = found_in_ranges<std::int32_t>(
+    auto inputs = collect_ranges<std::int32_t>(
         boxes.size(), kTrianglesAtOnce, execution_,
         [&](std::size_t begin, std::size_t end, std::vector<std::int32_t>& near) {
             for (std::size_t i = begin; i < end; ++i)

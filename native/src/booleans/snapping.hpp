@@ -83,15 +83,15 @@ private:
     }
     std::vector<FacetNumbers> pairs_around(std::span<const std::int32_t> facets, Waves& waves);
     std::vector<std::int32_t> find_near(std::span<const FacetNumbers> pairs, const Waves& waves,
-                                        NearParts& all);
-    void merge_vertices(const std::vector<Edge>& same);
-    void place(NearParts&& parts);
+                                        NearFeatures& all);
+    void merge_vertices(const std::vector<SpaceEdge>& same);
+    void place(NearFeatures&& features);
     void spread_points();
     using OnEdge = std::pair<std::int32_t, SpacePointId>;
     void take_points(std::int32_t facet, std::vector<OnEdge>& on_edges);
     bool add_points(std::vector<OnEdge>&& on_edges);
     void order_points();
-    std::span<const SpacePointId> points_on(const Edge& edge) const;
+    std::span<const SpacePointId> points_on(const SpaceEdge& edge) const;
     const NearFacet* place_of(const TriangleCorners& in_order) const;
     bool is_divided(const TriangleCorners& in_order) const;
     std::vector<TriangleCorners> divided(const TriangleCorners& in_order) const;
@@ -102,7 +102,7 @@ private:
     Execution execution_;
     KeyNumbers<TriangleCorners> facets_;  ///< those of the pairs first
     std::size_t first_ = 0;               ///< so many
-    KeyNumbers<Edge> edges_;              ///< of facets that are near others, and divided ones
+    KeyNumbers<SpaceEdge> edges_;         ///< of facets that are near others, and divided ones
     std::vector<FacetNumbers> near_;      ///< facets that are near one another
     std::vector<NearFacet> places_;       ///< of facets
     std::vector<DividedEdge> on_edges_;   ///< of edges

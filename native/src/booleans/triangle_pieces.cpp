@@ -78,7 +78,7 @@ void TrianglePieces::add_triangles(const std::array<TriangleView, 2>& surfaces,
 void TrianglePieces::make_tree(const std::array<TriangleView, 2>& surfaces,
                                const Execution& execution) {
     std::vector<spatial::Box> boxes(second_ + surfaces[1].triangle_count());
-    parallel_each(boxes.size(), execution, [&](std::size_t i) {
+    parallel_for_each(boxes.size(), execution, [&](std::size_t i) {
         const TriangleView& mesh = surfaces[i < second_ ? 0 : 1];
         const std::size_t t = i < second_ ? i : i - second_;
         for (std::size_t k = 0; k < 3; ++k)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cutting/assembly.hpp"
 
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 #include "strata/cells/volumes.hpp"
 
 namespace realmodel::cutting {
@@ -45,8 +45,8 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
         half.complex.cell_block.push_back(model.block(half_cells[i].cell));
     }
     // calls visit(half, polygon, piece, cells in the half) for what the halves have of a chunk
-    const auto each_of_half = [&](std::size_t chunk, const auto& visit) {
-        pieces.each_of(chunk, [&](std::span<const NodeId> polygon, const CutPiece& piece) {
+    const auto for_each_of_half = [&](std::size_t chunk, const auto& visit) {
+        pieces.for_each_of(chunk, [&](std::span<const NodeId> polygon, const CutPiece& piece) {
             std::array<std::array<std::int32_t, 2>, 2> cells{{{-1, -1}, {-1, -1}}};
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::int32_t part = piece.parts[k];
@@ -63,10 +63,10 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
             cut.section = assemble_section(model, new_positions, pieces.near());
             return;
         }
-        each_of_half(chunk - 1,
-                     [&](HalfAssembly& half, const auto& polygon, const CutPiece&, const auto&) {
-                         half.chunked.count(chunk - 1, polygon.size());
-                     });
+        for_each_of_half(
+            chunk - 1, [&](HalfAssembly& half, const auto& polygon, const CutPiece&, const auto&) {
+                half.chunked.count(chunk - 1, polygon.size());
+            });
     });
     for (HalfAssembly& half : halves)
         half.chunked.make_room();
@@ -74,8 +74,9 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
         std::array<ChunkedComplex::Writer, 2> writers{
             ChunkedComplex::Writer(halves[0].chunked, chunk),
             ChunkedComplex::Writer(halves[1].chunked, chunk)};
-        each_of_half(chunk, [&](HalfAssembly& half, std::span<const NodeId> polygon,
-                                const CutPiece& piece, const std::array<std::int32_t, 2>& cells) {
+        for_each_of_half(chunk, [&](HalfAssembly& half, std::span<const NodeId> polygon,
+                                    const CutPiece& piece,
+                                    const std::array<std::int32_t, 2>& cells) {
             const bool is_exposed = (cells[0] < 0 || cells[1] < 0) && piece.cells[1] >= 0;
             writers[static_cast<std::size_t>(&half - halves.data())].write(
                 polygon, cells,

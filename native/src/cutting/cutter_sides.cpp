@@ -10,7 +10,7 @@
 
 namespace realmodel::cutting {
 
-using arrangement::each_edge;
+using arrangement::for_each_edge;
 
 namespace {
 
@@ -35,7 +35,7 @@ void add(Winding& winding, std::int32_t cell, std::int32_t times) {
 
 }  // namespace
 
-CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : overlay_(overlay) {
+CutterWinding::CutterWinding(CutterOverlay& overlay, Progress* progress) : overlay_(overlay) {
     number({});
     find_coinciding(progress);
     collect_uses(progress);
@@ -95,8 +95,8 @@ void CutterWinding::find_borders() {
     borders_ = bucketize<UndividedBorder>(undivided.components(), [&](const auto& put) {
         for (std::size_t component = 0; component < undivided.components(); ++component) {
             for (const auto& border : undivided.borders(component)) {
-                const NodeId a = overlay_.surface_node(border.edge[0]),
-                             b = overlay_.surface_node(border.edge[1]);
+                const NodeId a = overlay_.cutter_node(border.edge[0]),
+                             b = overlay_.cutter_node(border.edge[1]);
                 const std::int32_t number = edge_number(unordered(a, b));
                 if (number < 0)
                     throw InternalError("where undivided triangles end there is a region",
@@ -121,7 +121,7 @@ void CutterWinding::find_coinciding(Progress* progress) {
     const auto outline = [this](std::size_t r) -> std::span<const NodeId> {
         return overlay_.loops(r)[0];
     };
-    KeyTable first;  // of the regions of the surface with one outline
+    KeyTable first;  // of the regions of the cutter with one outline
     for (std::size_t r = 0; r < count; ++r) {
         if (!overlay_.of_cutter(r)) continue;
         const auto entry = first.find_or_add(arrangement::loop_hash(outline(r)),
@@ -132,7 +132,7 @@ void CutterWinding::find_coinciding(Progress* progress) {
         auto& counts = counts_[index(entry.number)];
         if (entry.is_new) {
             counts = 1;
-        } else if (overlay_.surface().is_closed) {
+        } else if (overlay_.cutter().is_closed) {
             counts ^= 1;
         }
     }
@@ -140,13 +140,13 @@ void CutterWinding::find_coinciding(Progress* progress) {
         count, 1 << 12, {overlay_.threads(), progress}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
                 std::int8_t facing = 0;
-                const std::int32_t surface_region =
+                const std::int32_t cutter_region =
                     first.find(arrangement::loop_hash(outline(r)), [&](std::int32_t other) {
                         facing = arrangement::facing_of(outline(r), outline(index(other)));
                         return facing != 0;
                     });
-                if (surface_region < 0 || counts_[index(surface_region)] == 0) continue;
-                coincident_[r] = surface_region;
+                if (cutter_region < 0 || counts_[index(cutter_region)] == 0) continue;
+                coincident_[r] = cutter_region;
                 coincident_facing_[r] = facing;
             }
         });
@@ -160,26 +160,27 @@ void CutterWinding::find_coinciding(Progress* progress) {
 
 void CutterWinding::collect_uses(Progress* progress) {
     const std::size_t count = overlay_.size(), nodes = overlay_.node_count();
-    std::vector<std::uint8_t> is_on_surface(nodes, 0);
+    std::vector<std::uint8_t> is_on_cutter(nodes, 0);
     for (std::size_t r = 0; r < count; ++r) {
         if (!counts(r)) continue;
         for (const auto& loop : overlay_.loops(r)) {
             for (const NodeId node : loop)
-                is_on_surface[index(node)] = 1;
+                is_on_cutter[index(node)] = 1;
         }
     }
-    // of each edge that may be one of the surface's: all uses
+    // of each edge that may be one of the cutter's: all uses
     constexpr std::size_t kChunk = 1 << 12;
     auto uses_by_node = sorted_in_buckets<EdgeUse>(
         nodes, (count + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
             for (std::size_t r = chunk * kChunk; r < std::min(count, (chunk + 1) * kChunk); ++r) {
                 if (overlay_.of_cutter(r) && !counts(r)) continue;
-                each_edge(overlay_.loops(r), static_cast<std::int32_t>(r), [&](const EdgeUse& use) {
-                    if (is_on_surface[index(use.edge[0])] != 0 &&
-                        is_on_surface[index(use.edge[1])] != 0)
-                        put(index(use.edge[0]), use);
-                });
+                for_each_edge(overlay_.loops(r), static_cast<std::int32_t>(r),
+                              [&](const EdgeUse& use) {
+                                  if (is_on_cutter[index(use.edge[0])] != 0 &&
+                                      is_on_cutter[index(use.edge[1])] != 0)
+                                      put(index(use.edge[0]), use);
+                              });
             }
         },
         {overlay_.threads(), progress});
@@ -211,8 +212,8 @@ void CutterWinding::collect_uses(Progress* progress) {
 void CutterWinding::find_fans(Progress* progress) {
     order_.resize(edges_.uses.size());
     windings_.assign(edges_.uses.size(), 0);
-    blade_begins_.resize(edges_.uses.size() + edge_count());
-    blades_.resize(edge_count());
+    half_plane_begins_.resize(edges_.uses.size() + edge_count());
+    half_plane_counts_.resize(edge_count());
     is_known_.assign(edge_count(), 0);
     [[maybe_unused]] const std::size_t points = overlay_.points().size();
     parallel_ranges(
@@ -223,9 +224,9 @@ void CutterWinding::find_fans(Progress* progress) {
             for (std::size_t e = begin; e < end; ++e) {
                 overlay_.find_fan(edge(e), scratch, fan);
                 std::ranges::transform(fan.order, order_.data() + edges_.begins[e], to_number);
-                std::ranges::transform(fan.blade_begins,
-                                       blade_begins_.data() + edges_.begins[e] + e, to_number);
-                blades_[e] = to_number(fan.blades());
+                std::ranges::transform(fan.half_plane_begins,
+                                       half_plane_begins_.data() + edges_.begins[e] + e, to_number);
+                half_plane_counts_[e] = to_number(fan.half_planes());
             }
         });
     assert(overlay_.points().size() == points);  // all are known, so threads add none
@@ -252,13 +253,13 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
     if (progress != nullptr && (e & 0xff) == 0) progress->check();
     const auto uses = edge(e);
     const Fan fan = sectors(e).fan;
-    const std::size_t blades = fan.blades();
+    const std::size_t half_planes = fan.half_planes();
     is_known_[e] = 1;
-    // the blade of a region that is known; a region may come to the edge from both sides
-    std::size_t start = blades;
+    // the half-plane of a region that is known; a region may come to the edge from both sides
+    std::size_t start = half_planes;
     std::int32_t behind = 0;
-    for (std::size_t b = 0; b < blades && start == blades; ++b) {
-        for (const std::size_t i : fan.blade(b)) {
+    for (std::size_t b = 0; b < half_planes && start == half_planes; ++b) {
+        for (const std::size_t i : fan.half_plane(b)) {
             const auto region = index(uses[i].item);
             if (!overlay_.of_cutter(region) || winding_[2 * region] < 0) continue;
             start = b;
@@ -266,21 +267,21 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
             break;
         }
     }
-    for (std::size_t n = 0; n < blades; ++n) {
-        const std::size_t b = (start + n) % blades;
+    for (std::size_t n = 0; n < half_planes; ++n) {
+        const std::size_t b = (start + n) % half_planes;
         std::int32_t ahead = behind;
         bool faces = false;
-        for (const std::size_t i : fan.blade(b))
+        for (const std::size_t i : fan.half_plane(b))
             faces = faces || !overlay_.of_cutter(index(uses[i].item));
         if (faces) {
             Winding winding = known_[index(behind)];
-            for (const std::size_t i : fan.blade(b)) {
+            for (const std::size_t i : fan.half_plane(b)) {
                 if (!overlay_.of_cutter(index(uses[i].item)))
                     cross(winding, index(uses[i].item), uses[i].ahead());
             }
             ahead = number(winding);
         }
-        for (const std::size_t i : fan.blade(b)) {
+        for (const std::size_t i : fan.half_plane(b)) {
             const auto region = index(uses[i].item);
             if (!overlay_.of_cutter(region) || winding_[2 * region] >= 0) continue;
             winding_[2 * region + uses[i].behind()] = behind;
@@ -312,8 +313,8 @@ Winding CutterWinding::cast(std::size_t region, Progress* progress) {
     return winding;
 }
 
-std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
-                                             const CutterWinding& winding) {
+std::vector<std::uint8_t> cells_near_cutter(const CutterOverlay& overlay,
+                                            const CutterWinding& winding) {
     std::vector<std::uint8_t> reaches(overlay.model().cell_block.size(), 0);
     const auto reach = [&reaches](std::int32_t cell) {
         if (cell >= 0) reaches[index(cell)] = 1;
@@ -332,9 +333,9 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
     return reaches;
 }
 
-SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding,
-                           std::span<const std::uint8_t> reaches, const Rules& rules,
-                           Progress* progress)
+CutterCompartments::CutterCompartments(CutterOverlay& overlay, const CutterWinding& winding,
+                                       std::span<const std::uint8_t> reaches, const Rules& rules,
+                                       Progress* progress)
     : overlay_(overlay),
       items_(overlay.size() + overlay.model().face_count()),
       cells_(items_ + overlay.size() + 2 * overlay.undivided().components()) {
@@ -349,8 +350,8 @@ SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding
         return side < items_ && winding.coincident(item) < 0;
     };
     cells_.number(counts, {1, progress});
-    for (std::size_t part = 0; part < size(); ++part)
-        first_.push_back(cells_.first_side(part));
+    for (std::size_t compartment = 0; compartment < size(); ++compartment)
+        first_.push_back(cells_.first_side(compartment));
     for (std::size_t item = items_; item-- > 0;) {
         if (of(item) < 0 || (item < overlay.size() && overlay.of_cutter(item))) continue;
         first_[index(of(item))] = item;
@@ -362,11 +363,11 @@ SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding
     });
 }
 
-/// Joins items that are in the same part: those around a cell that does not reach the surface, and
-/// those around an edge that is none of the surface's.
-void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std::uint8_t> reaches,
-                               Progress* progress) {
-    const SurfaceOverlay& overlay = overlay_;
+/// Joins items that are in the same compartment: those around a cell that does not reach the
+/// cutter, and those around an edge that is none of the cutter's.
+void CutterCompartments::join_beside(const CutterWinding& winding,
+                                     std::span<const std::uint8_t> reaches, Progress* progress) {
+    const CutterOverlay& overlay = overlay_;
     const ComplexView& model = overlay.model();
     const auto regions = static_cast<std::int32_t>(overlay.size());
     // of an item, -1 where it is none: its face
@@ -409,10 +410,10 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
                     continue;
                 const auto add = [&](const EdgeUse& use) { put(index(use.edge[0]), use); };
                 if (i < overlay.size()) {
-                    each_edge(overlay.loops(i), static_cast<std::int32_t>(i), add);
+                    for_each_edge(overlay.loops(i), static_cast<std::int32_t>(i), add);
                 } else {
-                    each_edge(std::array{model.face(index(face))}, static_cast<std::int32_t>(i),
-                              add);
+                    for_each_edge(std::array{model.face(index(face))}, static_cast<std::int32_t>(i),
+                                  add);
                 }
             }
         },
@@ -430,10 +431,11 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
                     });
 }
 
-/// What bounds one sector around an edge is in one part. This is said of sectors beside the model,
-/// too, for the sake of cells that rounding flattened away, but where the rules say otherwise.
-void SurfaceCells::join_sectors(const CutterWinding& winding, const Rules& rules,
-                                Progress* progress) {
+/// What bounds one sector around an edge is in one compartment. This is said of sectors beside the
+/// model, too, for the sake of cells that rounding flattened away, but where the rules say
+/// otherwise.
+void CutterCompartments::join_sectors(const CutterWinding& winding, const Rules& rules,
+                                      Progress* progress) {
     const auto side_of = [&](std::size_t item, std::size_t side) -> std::int32_t {
         if (!overlay_.of_cutter(item))
             return winding.coincident(item) < 0 ? static_cast<std::int32_t>(item) : -1;
@@ -446,7 +448,7 @@ void SurfaceCells::join_sectors(const CutterWinding& winding, const Rules& rules
                             const auto uses = winding.edge(e);
                             const auto sectors = winding.sectors(e);
                             const bool in_model_alone = rules.in_model_alone(uses);
-                            for (std::size_t b = 0; b < sectors.fan.blades(); ++b) {
+                            for (std::size_t b = 0; b < sectors.fan.half_planes(); ++b) {
                                 if (!in_model_alone || sectors.windings[b] != 0)
                                     cells_.join_sector(uses, sectors.fan, b, side_of);
                             }
@@ -454,8 +456,8 @@ void SurfaceCells::join_sectors(const CutterWinding& winding, const Rules& rules
                     });
 }
 
-/// Along undivided triangles the part on either side is the same, where the model is.
-void SurfaceCells::join_undivided(const CutterWinding& winding, const Rules& rules) {
+/// Along undivided triangles the compartment on either side is the same, where the model is.
+void CutterCompartments::join_undivided(const CutterWinding& winding, const Rules& rules) {
     for (std::size_t component = 0; component < overlay_.undivided().components(); ++component) {
         for (const UndividedBorder& border : winding.borders(component)) {
             const auto region = index(border.region);
@@ -468,43 +470,44 @@ void SurfaceCells::join_undivided(const CutterWinding& winding, const Rules& rul
     }
 }
 
-CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress)
-    : PartSides(cells_near_surface(overlay, winding)),
+CutterSides::CutterSides(CutterOverlay& overlay, const CutterWinding& winding, Progress* progress)
+    : PartSides(cells_near_cutter(overlay, winding)),
       overlay_(overlay),
       winding_(winding),
-      parts_(overlay, winding, cells_reaching(), rules(), progress),
-      sides_(parts_.size()) {
+      compartments_(overlay, winding, cells_reaching(), rules(), progress),
+      sides_(compartments_.size()) {
     refuse_borders();
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         poll(progress, r);
-        if (!overlay.of_cutter(r) || parts_.of(r) < 0) continue;
-        const auto part = index(parts_.of(r));
-        if (!sides_[part]) settle(part, side_at(r, true));
-        if (overlay.surface().is_closed || sides_[part] == kBelow) continue;
+        if (!overlay.of_cutter(r) || compartments_.of(r) < 0) continue;
+        const auto compartment = index(compartments_.of(r));
+        if (!sides_[compartment]) settle(compartment, side_at(r, true));
+        if (overlay.cutter().is_closed || sides_[compartment] == kBelow) continue;
         const auto outline = overlay.loops(r)[0];
         refuse("two_sides",
                "a point of the model is above one part of the surface and below another",
                {outline[0], outline[1]});
     }
-    for (std::size_t part = 0; part < sides_.size(); ++part) {
-        if (!sides_[part]) sides_[part] = side_at(parts_.first_side(part).first, false);
+    for (std::size_t compartment = 0; compartment < sides_.size(); ++compartment) {
+        if (!sides_[compartment])
+            sides_[compartment] = side_at(compartments_.first_side(compartment).first, false);
     }
 }
 
-/// Sectors outside of the model count where an open surface does not end; of a closed one nothing
+/// Sectors outside of the model count where an open cutter does not end; of a closed one nothing
 /// need be said of them.
-SurfaceCells::Rules CutterSides::rules() const {
+CutterCompartments::Rules CutterSides::rules() const {
     return {[this](std::span<const EdgeUse> uses) {
-                return overlay_.surface().is_closed || own_uses(uses) % 2 == 1;
+                return overlay_.cutter().is_closed || count_cutter_uses(uses) % 2 == 1;
             },
             [this](std::size_t region) { return !winding_.touches_model(region); }};
 }
 
-/// Takes the side of a part to all that can be reached from it.
-void CutterSides::settle(std::size_t part, std::int8_t side) {
-    sides_[part] = side;
-    parts_.cells().spread(
-        part, sides_,
+/// Takes the side of a compartment to all that can be reached from it.
+void CutterSides::settle(std::size_t compartment, std::int8_t side) {
+    sides_[compartment] = side;
+    compartments_.cells().spread(
+        compartment, sides_,
         [](const auto&, std::int8_t of) { return std::optional(static_cast<std::int8_t>(-of)); },
         [this](const auto& way) {
             const auto outline = overlay_.loops(index(way.facet))[0];
@@ -522,30 +525,30 @@ void CutterSides::refuse(const char* kind, const char* text,
     throw InputError(kind, text, -1, {}, middle);
 }
 
-/// How many of the uses of an edge are the surface's.
-std::ptrdiff_t CutterSides::own_uses(std::span<const EdgeUse> uses) const {
+/// How many of the uses of an edge are the cutter's.
+std::ptrdiff_t CutterSides::count_cutter_uses(std::span<const EdgeUse> uses) const {
     return std::ranges::count_if(
         uses, [this](const EdgeUse& use) { return overlay_.of_cutter(index(use.item)); });
 }
 
-/// An edge in the model at which an odd number of regions meet: the surface ends there.
+/// An edge in the model at which an odd number of regions meet: the cutter ends there.
 void CutterSides::refuse_borders() const {
     for (std::size_t e = 0; e < winding_.edge_count(); ++e) {
         const auto uses = winding_.edge(e);
         const auto windings = winding_.sectors(e).windings;
-        if (own_uses(uses) % 2 == 0 || std::count(windings.begin(), windings.end(), 0) > 0)
+        if (count_cutter_uses(uses) % 2 == 0 || std::count(windings.begin(), windings.end(), 0) > 0)
             continue;
         refuse("ends_inside", "the surface does not part the model: it ends inside of it",
                uses[0].edge);
     }
 }
 
-/// The side of something that is not joined with the surface, or of one of its regions.
+/// The side of something that is not joined with the cutter, or of one of its regions.
 std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
-    if (of_cutter && !overlay_.surface().is_closed) return kBelow;
-    if (!nearest_) nearest_.emplace(overlay_.surface());
+    if (of_cutter && !overlay_.cutter().is_closed) return kBelow;
+    if (!nearest_) nearest_.emplace(overlay_.cutter());
     const bool is_region = item < overlay_.size();
-    if (!overlay_.surface().is_closed) {
+    if (!overlay_.cutter().is_closed) {
         const auto face =
             overlay_.model().face(is_region ? overlay_.face_of(item) : item - overlay_.size());
         return (*nearest_)(overlay_.middle_of(face));

@@ -44,26 +44,26 @@ bool plane_meets(const std::array<Position, 3>& triangle, const Box& box) {
     return std::abs(distance) <= reach + kRounding * size;
 }
 
-std::vector<Box> boxes_of(const CutterSurface& surface) {
-    return transformed(surface.triangles, [&](const auto& t) {
-        return spatial::bounding_box(t, [&](NodeId v) { return surface.vertices[index(v)]; });
+std::vector<Box> boxes_of(const Cutter& cutter) {
+    return transformed(cutter.triangles, [&](const auto& t) {
+        return spatial::bounding_box(t, [&](NodeId v) { return cutter.vertices[index(v)]; });
     });
 }
 
 }  // namespace
 
-NearestSide::NearestSide(const CutterSurface& surface, const Execution& execution)
-    : surface_(surface), tree_(boxes_of(surface), execution), border_(surface.triangles.size(), 0) {
-    if (surface.is_closed) return;
+NearestSide::NearestSide(const Cutter& cutter, const Execution& execution)
+    : cutter_(cutter), tree_(boxes_of(cutter), execution), border_(cutter.triangles.size(), 0) {
+    if (cutter.is_closed) return;
     const auto edges = arrangement::edges_of(
         border_.size(),
-        surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
+        cutter.vertices.size(), [&](std::size_t t) -> const auto& { return cutter.triangles[t]; },
         execution);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].size() != 1) continue;
         const auto t = index(edges[e][0].item);
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto& triangle = surface.triangles[t];
+            const auto& triangle = cutter.triangles[t];
             if (unordered(triangle[i], triangle[(i + 1) % 3]) == edges.ends(e))
                 border_[t] |= static_cast<std::uint8_t>(1U << i);
         }
@@ -159,10 +159,10 @@ std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double r
             const double least_distance = radius * length(normal) + kRounding * length(ab) *
                                                                         length(ac) *
                                                                         (length(off) + radius);
-            const std::int8_t own_side = distance < 0 ? kBelow : kAbove;
-            is_certain &=
-                std::abs(distance) > least_distance && side.value_or(own_side) == own_side;
-            side = own_side;
+            const std::int8_t triangle_side = distance < 0 ? kBelow : kAbove;
+            is_certain &= std::abs(distance) > least_distance &&
+                          side.value_or(triangle_side) == triangle_side;
+            side = triangle_side;
             is_certain &= border_within(t, center, reach) == 0;
         });
     return is_certain ? side : std::nullopt;

@@ -103,7 +103,7 @@ FaceTriangles triangulate_faces(std::span<const double> vertices,
                          complex.vertex_count());
     FaceTriangles face_triangles;
     face_triangles.offsets.resize(faces + 1, 0);
-    face_triangles.triangles = found_in_ranges<std::array<std::int32_t, 3>>(
+    face_triangles.triangles = collect_ranges<std::array<std::int32_t, 3>>(
         faces, kFacesOfChunk, execution, [&](std::size_t begin, std::size_t end, auto& of_chunk) {
             std::vector<std::array<std::int32_t, 3>> triangles;
             for (std::size_t f = begin; f < end; ++f) {

@@ -3,26 +3,29 @@
 
 // The words of this folder:
 //
-// cutter   a plane, or a surface of triangles (CutterSurface), open or closed
-// side     of a cutter: kAbove, where its triangles turn counter-clockwise seen from, or outside of
-//          a closed one; kBelow; kOn. Of a region of the cutter: 0 below it, 1 above it
-// half     what of a model is on one side (Cut::below, Cut::above)
-// node     a vertex of the model, or a new point; new ones have the numbers after the vertices
-// region   of a triangle of the model or of the cutter: what is connected and no other triangle
-//          passes through (SurfaceOverlay). A face's region may coincide with one of the cutter's
-// winding  winding numbers of cells at a point: how often the boundary of each goes round it, once
-//          within it (CutterWinding). Of a loop: which way it goes from its least node (winding_of)
-// fan      the regions around an edge, in order; a blade of it: those in one half-plane; a sector:
-//          what is between a blade and the next
-// patch    regions of one face that no edge of the cutter lies between; cap: a region of the
-//          cutter as one of the cells around it sees it; half-face: either of them, as seen from
-//          one cell
-// part     what is connected of a cell on one side (HalfCell): a cell of a half
-// piece    a polygon between two parts, or around one (CutPiece): of a patch, a whole face or a cap
-// shell    what is connected of the boundary of a part; around a hollow its volume is negative
-// slit     an edge in a cap that the cap's outline passes there and back (CellCutter)
-// near     cells that may meet the cutter; the others are far and are copied (NearPart), as are
-//          far faces of near cells (FarFaces)
+// cutter      a plane, or triangles of one surface or several (Cutter), open or closed
+// side        of a cutter: kAbove, where its triangles turn counter-clockwise seen from, or outside
+//             of a closed one; kBelow; kOn. As an index 0 is below and 1 above
+// half        what of a model is on one side (Cut::below, Cut::above)
+// node        a vertex of the model, or a new point; new ones have the numbers after the vertices
+// region      of a triangle of the model or of the cutter: what is connected and no other triangle
+//             passes through (CutterOverlay). A face's region may coincide with one of the cutter's
+// winding     winding numbers of cells at a point: how often the boundary of each goes round it,
+//             once within it (CutterWinding). Of a loop: which way it goes from its least node
+//             (winding_of)
+// fan         the regions around an edge, in the order of the half-planes that they are in; a
+//             sector: what is between a half-plane and the next
+// face piece  regions of one face that no edge of the cutter lies between
+// cut face    a region of the cutter as one of the cells around it sees it
+// half-face   a face piece or a cut face, as seen from one cell
+// compartment what is connected of space where the cutter is not (CutterCompartments)
+// part        what is connected of a cell on one side (HalfCell): a cell of a half
+// piece       a polygon between two parts, or around one (CutPiece): of a face piece, a whole face
+//             or a cut face
+// shell       what is connected of the boundary of a part; around a hollow its volume is negative
+// slit        an edge in a cut face that its outline passes there and back (CellCutter)
+// near        cells that may meet the cutter; the others are far and are copied (NearModel), as are
+//             far faces of near cells (FarFaces)
 
 #include <algorithm>
 #include <array>
@@ -79,10 +82,10 @@ void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons)
 // What a cutter makes of them.
 
 /// Where a polygon of a cut model comes from, and what is on either side of it. It turns
-/// counter-clockwise seen from outside of the first of its two cells. A cap has one cell twice:
-/// first the part below it, then the part above.
+/// counter-clockwise seen from outside of the first of its two cells. A cut face has one cell
+/// twice: first the part below it, then the part above.
 struct CutPiece {
-    std::int32_t face;                  ///< the model's face; a cap: below 0 (PartSides::cap_face)
+    std::int32_t face;  ///< the model's face; a cut face: below 0 (PartSides::cut_face_number)
     std::array<std::int32_t, 2> cells;  ///< the model's cells, -1 outside
     std::array<std::int8_t, 2> sides;   ///< of either cell's part; kOn: no cell there
     bool is_on_cutter;                  ///< whether it lies on the cutter
@@ -93,7 +96,7 @@ struct CutPiece {
     bool is_in_section() const { return is_on_cutter && sides[0] != sides[1]; }
 };
 
-/// Faces of a model cut up by a cutter, and the caps: what halves are put together from.
+/// Faces of a model cut up by a cutter, and the cut faces: what halves are put together from.
 struct CutPieces {
     Polygons polygons;
     std::vector<CutPiece> origins;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model cut by a plane: sides of vertices, cut edges, parts of faces, caps and parts of
+// A model cut by a plane: sides of vertices, cut edges, parts of faces, cut faces and parts of
 // cells, halves.
 #include <algorithm>
 #include <cassert>
@@ -13,7 +13,7 @@
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "cutting/assembly.hpp"
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 #include "cutting/pieces.hpp"
 #include "cutting/plane_division.hpp"
 #include "cutting/rounding/part_rounding.hpp"
@@ -131,7 +131,7 @@ private:
     std::vector<std::int32_t> cut_cells_;  ///< the model's numbers, ascending
     Buckets<PieceRef> cell_pieces_;        ///< of these
     std::vector<CellCut> cell_cuts_;
-    std::size_t first_cap_ = 0;
+    std::size_t first_cut_face_ = 0;
     std::set<std::pair<std::int32_t, std::size_t>>
         reversed_;  ///< faces in the plane, and their cell
 };
@@ -237,7 +237,7 @@ void PlaneCutter::divide_faces(bool all) {
     parallel_ranges(
         model_.face_count(), kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
             FaceSplitter splitter(model_, sides_, *cuts_);
-            SplitFace parts;
+            SplitFace split;
             CutPieces& pieces = chunk_pieces[begin / kFacesAtOnce];
             for (std::size_t f = begin; f < end; ++f) {
                 const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
@@ -249,26 +249,26 @@ void PlaneCutter::divide_faces(bool all) {
                     });
                     if (on < 2) continue;
                 }
-                parts.clear();
+                split.clear();
                 if (face_sides_[f] == kCut) {
-                    splitter.split(face, parts);
+                    splitter.split(face, split);
                 } else if (face_sides_[f] == 0) {
-                    divide_face(model_, f, parts.polygons);
-                    parts.sides.assign(parts.polygons.size(), kOn);
+                    divide_face(model_, f, split.polygons);
+                    split.sides.assign(split.polygons.size(), kOn);
                 } else {
-                    parts.polygons.add(face);
-                    parts.sides.push_back(face_sides_[f] == kHasAbove ? kAbove : kBelow);
+                    split.polygons.add(face);
+                    split.sides.push_back(face_sides_[f] == kHasAbove ? kAbove : kBelow);
                 }
-                for (std::size_t p = 0; p < parts.sides.size(); ++p) {
-                    if (parts.polygons[p].size() < 3) continue;
-                    pieces.add(parts.polygons[p], origin(f, parts.sides[p], parts.polygons[p]));
+                for (std::size_t p = 0; p < split.sides.size(); ++p) {
+                    if (split.polygons[p].size() < 3) continue;
+                    pieces.add(split.polygons[p], origin(f, split.sides[p], split.polygons[p]));
                 }
             }
         });
     pieces_ = {};
     for (const CutPieces& pieces : chunk_pieces)
         pieces_.add(pieces, 0, pieces.size());
-    first_cap_ = pieces_.size();
+    first_cut_face_ = pieces_.size();
 }
 
 void PlaneCutter::cut_cells(bool parts) {
@@ -281,7 +281,7 @@ void PlaneCutter::cut_cells(bool parts) {
     }
     const std::size_t count = cut_cells_.size();
     cell_pieces_ = bucketize<PieceRef>(count, [&](const auto& put) {
-        for (std::size_t p = 0; p < first_cap_; ++p) {
+        for (std::size_t p = 0; p < first_cut_face_; ++p) {
             for (std::int32_t k = 0; k < 2; ++k) {
                 const std::int32_t cell = pieces_[p].cells[index(k)];
                 if (cell >= 0 && number[index(cell)] >= 0)
@@ -296,22 +296,23 @@ void PlaneCutter::cut_cells(bool parts) {
             if (parts) {
                 cutter.cut(cell_pieces_[i], cell_cuts_[i]);
             } else {
-                cutter.cap(cell_pieces_[i], cell_cuts_[i]);
+                cutter.cut_face(cell_pieces_[i], cell_cuts_[i]);
             }
         }
     });
     for (std::size_t i = 0; i < count; ++i) {
-        const Polygons& caps = cell_cuts_[i].caps;
-        for (std::size_t c = 0; c < caps.size(); ++c) {
+        const Polygons& cut_faces = cell_cuts_[i].cut_faces;
+        for (std::size_t c = 0; c < cut_faces.size(); ++c) {
             const std::int32_t cell = cut_cells_[i];
-            pieces_.add(caps[c], {-1, {cell, cell}, {kBelow, kAbove}, true});
+            pieces_.add(cut_faces[c], {-1, {cell, cell}, {kBelow, kAbove}, true});
         }
     }
 }
 
 /// Where a part of a cell has no thickness in doubles: gives the faces in the plane that it
 /// consists of to the other side, or takes its vertices to lie on the plane, if they do but for
-/// some rounding (true: to be done again), else moves a corner of its cap by as little as possible.
+/// some rounding (true: to be done again), else moves a corner of its cut face by as little as
+/// possible.
 bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
                               std::span<const PieceRef> refs) {
     spatial::Box box;
@@ -365,7 +366,7 @@ bool PlaneCutter::straighten_walls() {
     bool moved = false;
     std::vector<NodeId> near;
     std::vector<Position> corners;
-    for (std::size_t p = 0; p < first_cap_; ++p) {
+    for (std::size_t p = 0; p < first_cut_face_; ++p) {
         poll(execution_.progress, p);
         const auto face = index(pieces_[p].face);
         if (face_sides_[face] != kCut || model_.face_surface[face] != kWall) continue;
@@ -412,24 +413,24 @@ void PlaneCutter::number_cells(std::vector<HalfCell>& half_cells) {
         ++next_cut;
     }
     assert(next_cut == cell_cuts_.size());
-    for (std::size_t p = 0; p < first_cap_; ++p) {
+    for (std::size_t p = 0; p < first_cut_face_; ++p) {
         for (std::size_t k = 0; k < 2; ++k) {
             const std::int32_t cell = pieces_[p].cells[k];
             pieces_[p].parts[k] = cell < 0 ? -1 : whole[index(cell)];
         }
     }
-    std::size_t cap = first_cap_;
+    std::size_t cut_face = first_cut_face_;
     for (std::size_t i = 0; i < cell_cuts_.size(); ++i) {
         const CellCut& cut = cell_cuts_[i];
         const auto refs = cell_pieces_[i];
         for (std::size_t r = 0; r < refs.size(); ++r)
             pieces_[index(refs[r].piece)].parts[index(refs[r].which)] = first_part[i] + cut.part[r];
-        for (std::size_t c = 0; c < cut.caps.size(); ++c, ++cap) {
+        for (std::size_t c = 0; c < cut.cut_faces.size(); ++c, ++cut_face) {
             for (std::size_t k = 0; k < 2; ++k)
-                pieces_[cap].parts[k] = first_part[i] + cut.part[refs.size() + 2 * c + k];
+                pieces_[cut_face].parts[k] = first_part[i] + cut.part[refs.size() + 2 * c + k];
         }
     }
-    assert(cap == pieces_.size());
+    assert(cut_face == pieces_.size());
 }
 
 }  // namespace

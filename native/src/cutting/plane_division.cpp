@@ -92,7 +92,7 @@ int PlanePoints::tetrahedron(NodeId a, NodeId b, NodeId c, NodeId d) const {
 }
 
 /// A part of a triangle on one side of the plane. Its edges are those of the triangle, or the cut.
-struct FaceSplitter::TrianglePart {
+struct FaceSplitter::TrianglePiece {
     std::vector<NodeId> nodes;
     std::int8_t side = kOn;
 };
@@ -121,11 +121,11 @@ private:
     std::vector<std::array<NodeId, 2>> edges_;  ///< of all triangles: diagonals are there twice
 };
 
-void FaceSplitter::split(std::span<const NodeId> face, SplitFace& parts) {
-    if (!split_in_two(face, parts)) split_by_triangles(face, parts);
+void FaceSplitter::split(std::span<const NodeId> face, SplitFace& split) {
+    if (!split_in_two(face, split)) split_by_triangles(face, split);
 }
 
-bool FaceSplitter::split_in_two(std::span<const NodeId> face, SplitFace& parts) {
+bool FaceSplitter::split_in_two(std::span<const NodeId> face, SplitFace& split) {
     cycle_.clear();
     std::array<std::size_t, 2> on{};
     std::size_t on_count = 0;
@@ -145,12 +145,12 @@ bool FaceSplitter::split_in_two(std::span<const NodeId> face, SplitFace& parts) 
     if (on_count != 2 || on[1] - on[0] < 2 || on[0] + cycle_.size() - on[1] < 2) return false;
     const auto side_after = [&](std::size_t i) { return side(cycle_[(i + 1) % cycle_.size()]); };
     for (const auto& [from, to] : {std::pair(on[0], on[1]), std::pair(on[1], on[0])}) {
-        parts.sides.push_back(side_after(from));
+        split.sides.push_back(side_after(from));
         for (std::size_t i = from;; i = (i + 1) % cycle_.size()) {
-            parts.polygons.nodes.push_back(cycle_[i]);
+            split.polygons.nodes.push_back(cycle_[i]);
             if (i == to) break;
         }
-        parts.polygons.close();
+        split.polygons.close();
     }
     return true;
 }
@@ -158,8 +158,8 @@ bool FaceSplitter::split_in_two(std::span<const NodeId> face, SplitFace& parts) 
 /// The parts of a triangle above the plane and below it; the whole of it where it lies in the
 /// plane.
 void FaceSplitter::split_triangle(const std::array<LoopCorner, 3>& t, const Cuts& cuts,
-                                  std::vector<TrianglePart>& parts) const {
-    TrianglePart above{{}, kAbove}, below{{}, kBelow}, whole{{}, kOn};
+                                  std::vector<TrianglePiece>& pieces) const {
+    TrianglePiece above{{}, kAbove}, below{{}, kBelow}, whole{{}, kOn};
     bool has_above = false, has_below = false;
     for (std::size_t i = 0; i < 3; ++i) {
         const NodeId a = t[i].node, b = t[(i + 1) % 3].node;
@@ -174,17 +174,17 @@ void FaceSplitter::split_triangle(const std::array<LoopCorner, 3>& t, const Cuts
             below.nodes.push_back(c);
         }
     }
-    if (has_above) parts.push_back(std::move(above));
-    if (has_below) parts.push_back(std::move(below));
-    if (!has_above && !has_below) parts.push_back(std::move(whole));
+    if (has_above) pieces.push_back(std::move(above));
+    if (has_below) pieces.push_back(std::move(below));
+    if (!has_above && !has_below) pieces.push_back(std::move(whole));
 }
 
-void FaceSplitter::split_by_triangles(std::span<const NodeId> face, SplitFace& parts) {
+void FaceSplitter::split_by_triangles(std::span<const NodeId> face, SplitFace& split) {
     const auto [loop, rounding] = loop_of(model_, face);
     std::vector<std::array<LoopCorner, 3>> triangles;
     triangulate(std::span(&loop, 1), rounding, triangles);
     const Cuts cuts(triangles, cuts_);
-    std::vector<TrianglePart> pieces;
+    std::vector<TrianglePiece> pieces;
     for (const auto& t : triangles)
         split_triangle(t, cuts, pieces);
 
@@ -200,23 +200,24 @@ void FaceSplitter::split_by_triangles(std::span<const NodeId> face, SplitFace& p
         [&](const auto&, std::int32_t p, std::int32_t q) { return side_of(p) * side_of(q) >= 0; });
     for (bool changed = true; changed;) {
         changed = false;
-        joined.each_pair([&](std::int32_t p, std::int32_t q) {
+        joined.for_each_pair([&](std::int32_t p, std::int32_t q) {
             if (side_of(p) != kOn || side_of(q) == kOn) return;
             side_of(p) = side_of(q);
             changed = true;
         });
     }
-    joined.part([&](std::int32_t p, std::int32_t q) { return side_of(p) == side_of(q); });
-    joined.each_outline([&](std::span<const arrangement::JoinedPolygons::PolygonHalfEdge> outline) {
-        for (const auto& edge : outline) {
-            if (edge.from >= 0) parts.polygons.nodes.push_back(edge.from);
-        }
-        parts.polygons.close();
-        parts.sides.push_back(side_of(outline[0].polygon));
-    });
+    joined.separate([&](std::int32_t p, std::int32_t q) { return side_of(p) == side_of(q); });
+    joined.for_each_outline(
+        [&](std::span<const arrangement::JoinedPolygons::PolygonHalfEdge> outline) {
+            for (const auto& edge : outline) {
+                if (edge.from >= 0) split.polygons.nodes.push_back(edge.from);
+            }
+            split.polygons.close();
+            split.sides.push_back(side_of(outline[0].polygon));
+        });
 }
 
-void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {
+void CellCutter::cut_face(std::span<const PieceRef> refs, CellCut& result) {
     collect_uses(refs, true);
     close(refs, result);
 }
@@ -224,27 +225,27 @@ void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {
 void CellCutter::close(std::span<const PieceRef> refs, CellCut& result) {
     collect_open_edges(refs);
     trace_loops();
-    result.caps.clear();
+    result.cut_faces.clear();
     result.is_clean = true;
     if (whole_loops_) {
-        take_whole_loops(result.caps);
+        take_whole_loops(result.cut_faces);
     } else if (!loops_.empty()) {
-        result.is_clean = divide_convex(loops_, rounding_, slits_, result.caps, points_);
+        result.is_clean = divide_convex(loops_, rounding_, slits_, result.cut_faces, points_);
     }
 }
 
 /// Each loop as one polygon, several where it passes a node twice.
-void CellCutter::take_whole_loops(Polygons& caps) const {
+void CellCutter::take_whole_loops(Polygons& cut_faces) const {
     std::vector<NodeId> path;
     for (const Loop& loop : loops_) {
         path.clear();
         for (const LoopCorner& corner : loop) {
             const auto met = std::find(path.begin(), path.end(), corner.node);
-            if (path.end() - met >= 3) caps.add({met, path.end()});
+            if (path.end() - met >= 3) cut_faces.add({met, path.end()});
             path.erase(met, path.end());
             path.push_back(corner.node);
         }
-        if (path.size() >= 3) caps.add(path);
+        if (path.size() >= 3) cut_faces.add(path);
     }
 }
 
@@ -265,13 +266,13 @@ void CellCutter::collect_uses(std::span<const PieceRef> refs, bool in_plane_only
     piece_side_.clear();
     for (std::size_t i = 0; i < refs.size(); ++i) {
         piece_side_.push_back(pieces_[index(refs[i].piece)].sides[index(refs[i].which)]);
-        each_edge(std::array{pieces_.polygons[index(refs[i].piece)]}, static_cast<std::int32_t>(i),
-                  [&](EdgeUse use) {
-                      if (in_plane_only && !in_plane(use.edge)) return;
-                      if (refs[i].which == 1)
-                          use.direction = static_cast<std::int8_t>(-use.direction);
-                      uses_.push_back(use);
-                  });
+        for_each_edge(std::array{pieces_.polygons[index(refs[i].piece)]},
+                      static_cast<std::int32_t>(i), [&](EdgeUse use) {
+                          if (in_plane_only && !in_plane(use.edge)) return;
+                          if (refs[i].which == 1)
+                              use.direction = static_cast<std::int8_t>(-use.direction);
+                          uses_.push_back(use);
+                      });
     }
     std::sort(uses_.begin(), uses_.end());
 }
@@ -287,8 +288,8 @@ NodeId CellCutter::far_node(const EdgeUse& use, std::span<const PieceRef> refs) 
 /// Of an edge in the plane whose faces all rise from it, or all fall: whether the cell lies on both
 /// sides of it. It does where the lowest of the rising faces, going round from the right side of
 /// the edge, is one that the cell ends at.
-bool CellCutter::caps_on_both_sides(std::span<const EdgeUse> uses,
-                                    std::span<const PieceRef> refs) const {
+bool CellCutter::has_cut_faces_on_both_sides(std::span<const EdgeUse> uses,
+                                             std::span<const PieceRef> refs) const {
     for (const std::int8_t side : {kAbove, kBelow}) {
         const EdgeUse* flattest = nullptr;
         for (const EdgeUse& use : uses) {
@@ -323,21 +324,22 @@ void CellCutter::collect_open_edges(std::span<const PieceRef> refs) {
             on_cutter = on_cutter || pieces_[index(refs[index(use.item)].piece)].is_on_cutter;
         }
         for (int i = 0; i < std::abs(net); ++i)
-            open_.push_back(net > 0 ? CapEdge{edge[0], edge[1]} : CapEdge{edge[1], edge[0]});
+            open_.push_back(net > 0 ? CutFaceEdge{edge[0], edge[1]}
+                                    : CutFaceEdge{edge[1], edge[0]});
         const bool may_pass = net == 0 && !on_cutter && (above > 1 || below > 1);
         if (may_pass && !std::binary_search(dissolved_.begin(), dissolved_.end(), edge) &&
-            caps_on_both_sides(of_edge, refs))
+            has_cut_faces_on_both_sides(of_edge, refs))
             slits_.push_back(edge);
     }
-    keep_slits_in_caps();
+    keep_slits_in_cut_faces();
 }
 
 /// Whether the open edges go round the middle of an edge in the plane.
-bool CellCutter::is_in_caps(const std::array<NodeId, 2>& edge) const {
+bool CellCutter::is_in_cut_faces(const std::array<NodeId, 2>& edge) const {
     const PlanePosition a = corner(edge[0]).at, b = corner(edge[1]).at;
     const PlanePosition middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
     int times = 0;
-    for (const CapEdge& e : open_) {
+    for (const CutFaceEdge& e : open_) {
         const PlanePosition p = corner(e.from).at, q = corner(e.to).at;
         if ((p[1] > middle[1]) == (q[1] > middle[1])) continue;
         if (q[1] > p[1] ? twice_area(p, q, middle) > 0 : twice_area(p, q, middle) < 0)
@@ -348,8 +350,8 @@ bool CellCutter::is_in_caps(const std::array<NodeId, 2>& edge) const {
 
 /// A part of the cell's boundary may touch the plane where the cell has a face in it. There nothing
 /// is open on either side, however steep the faces are that meet in the edge.
-void CellCutter::keep_slits_in_caps() {
-    std::erase_if(slits_, [this](const auto& edge) { return !is_in_caps(edge); });
+void CellCutter::keep_slits_in_cut_faces() {
+    std::erase_if(slits_, [this](const auto& edge) { return !is_in_cut_faces(edge); });
     for (const auto& edge : slits_) {
         open_.push_back({edge[0], edge[1]});
         open_.push_back({edge[1], edge[0]});
@@ -358,10 +360,11 @@ void CellCutter::keep_slits_in_caps() {
 
 /// Of the edges that leave the node where one arrives, the first clockwise from the edge that
 /// arrives: the one that bounds the same piece of the region, which lies to the left.
-std::size_t CellCutter::next_edge(const CapEdge& arriving, const std::vector<bool>& taken) const {
+std::size_t CellCutter::next_edge(const CutFaceEdge& arriving,
+                                  const std::vector<bool>& taken) const {
     const auto begin = static_cast<std::size_t>(
         std::lower_bound(open_.begin(), open_.end(), arriving.to,
-                         [](const CapEdge& e, NodeId node) { return e.from < node; }) -
+                         [](const CutFaceEdge& e, NodeId node) { return e.from < node; }) -
         open_.begin());
     std::size_t best = open_.size();
     LoopCorner at{}, back{};
@@ -389,7 +392,7 @@ std::size_t CellCutter::next_edge(const CapEdge& arriving, const std::vector<boo
 
 void CellCutter::trace_loops() {
     loops_.clear();
-    std::sort(open_.begin(), open_.end(), [](const CapEdge& a, const CapEdge& b) {
+    std::sort(open_.begin(), open_.end(), [](const CutFaceEdge& a, const CutFaceEdge& b) {
         return std::pair(a.from, a.to) < std::pair(b.from, b.to);
     });
     std::vector<bool> taken(open_.size(), false);
@@ -414,29 +417,29 @@ void CellCutter::trace_loops() {
 
 // The parts that a cell falls into.
 
-/// The side of an item: a piece, or what is below or above a cap.
+/// The side of an item: a piece, or what is below or above a cut face.
 std::int8_t CellCutter::side_of(std::int32_t item) const {
     const std::size_t i = index(item);
     if (i < piece_side_.size()) return piece_side_[i];
     return (i - piece_side_.size()) % 2 == 0 ? kBelow : kAbove;
 }
 
-/// The edges of the caps, as seen from below, beside the others.
-void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
-    const auto cap_begin = static_cast<std::ptrdiff_t>(uses_.size());
-    for (std::int32_t c = 0; index(c) < caps.size(); ++c)
-        each_edge(std::array{caps[index(c)]}, pieces + 2 * c,
-                  [this](const EdgeUse& use) { uses_.push_back(use); });
-    std::sort(uses_.begin() + cap_begin, uses_.end());
-    std::inplace_merge(uses_.begin(), uses_.begin() + cap_begin, uses_.end());
+/// The edges of the cut faces, as seen from below, beside the others.
+void CellCutter::add_uses_of_cut_faces(const Polygons& cut_faces, std::int32_t pieces) {
+    const auto first_cut_face_item = static_cast<std::ptrdiff_t>(uses_.size());
+    for (std::int32_t c = 0; index(c) < cut_faces.size(); ++c)
+        for_each_edge(std::array{cut_faces[index(c)]}, pieces + 2 * c,
+                      [this](const EdgeUse& use) { uses_.push_back(use); });
+    std::sort(uses_.begin() + first_cut_face_item, uses_.end());
+    std::inplace_merge(uses_.begin(), uses_.begin() + first_cut_face_item, uses_.end());
 }
 
-/// Joins what meets at an edge on one side of the plane: each cap with a face, and what finds no
-/// partner. As often as the edge is used one way it is used the other: so it is within each pair,
-/// and among all that stay together.
+/// Joins what meets at an edge on one side of the plane: each cut face with a face, and what finds
+/// no partner. As often as the edge is used one way it is used the other: so it is within each
+/// pair, and among all that stay together.
 void CellCutter::join_at_edge(std::span<const EdgeUse> uses, std::int8_t side, DisjointSets& sets) {
     const auto pieces = static_cast<std::int32_t>(piece_side_.size());
-    const std::int32_t cap_side = side == kBelow ? 0 : 1;
+    const std::int32_t cut_face_side = side == kBelow ? 0 : 1;
     auto& faces = faces_at_edge_;
     faces.clear();
     for (const EdgeUse& use : uses) {
@@ -447,15 +450,15 @@ void CellCutter::join_at_edge(std::span<const EdgeUse> uses, std::int8_t side, D
         if (unpaired >= 0) sets.join(unpaired, local);
         unpaired = local;
     };
-    for (const EdgeUse& cap : uses) {
-        if (cap.item < pieces) continue;
+    for (const EdgeUse& cut_face : uses) {
+        if (cut_face.item < pieces) continue;
         const auto met = std::ranges::find_if(faces, [&](const EdgeUse* face) {
-            return face->direction == (side == kBelow ? -cap.direction : cap.direction);
+            return face->direction == (side == kBelow ? -cut_face.direction : cut_face.direction);
         });
         if (met == faces.end()) {
-            join_unpaired(cap.item + cap_side);
+            join_unpaired(cut_face.item + cut_face_side);
         } else {
-            sets.join((*met)->item, cap.item + cap_side);
+            sets.join((*met)->item, cut_face.item + cut_face_side);
             faces.erase(met);
         }
     }
@@ -463,13 +466,14 @@ void CellCutter::join_at_edge(std::span<const EdgeUse> uses, std::int8_t side, D
         join_unpaired(face->item);
 }
 
-/// Joins pieces that meet along an edge. Where caps end at an edge each of them closes the part
-/// whose face it meets there. False where one part would use an edge four times, though the model's
-/// cells use theirs twice: then those edges are among the dissolved, to be tried again without.
+/// Joins pieces that meet along an edge. Where cut faces end at an edge each of them closes the
+/// part whose face it meets there. False where one part would use an edge four times, though the
+/// model's cells use theirs twice: then those edges are among the dissolved, to be tried again
+/// without.
 bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     const auto pieces = static_cast<std::int32_t>(refs.size());
-    const std::size_t count = refs.size() + 2 * result.caps.size();
-    add_uses_of_caps(result.caps, pieces);
+    const std::size_t count = refs.size() + 2 * result.cut_faces.size();
+    add_uses_of_cut_faces(result.cut_faces, pieces);
     DisjointSets sets(count);
     for (const auto of_edge : groups_of(uses_, &EdgeUse::key)) {
         for (const std::int8_t side : {kBelow, kAbove})
@@ -499,7 +503,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
 }
 
 /// Whether each part uses its edges twice. If not, what was done at them is noted to be done
-/// otherwise: slits are dissolved; where rounding has folded a cap over itself, its loops stay
+/// otherwise: slits are dissolved; where rounding has folded a cut face over itself, its loops stay
 /// undivided.
 bool CellCutter::use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces) {
     const std::size_t dissolved_before = dissolved_.size();
@@ -532,7 +536,7 @@ bool CellCutter::use_edges_twice(const std::vector<std::int32_t>& root, std::int
 /// Joins the walls of hollows within parts with the parts around them.
 void CellCutter::attach_hollows(std::span<const PieceRef> refs, const CellCut& result,
                                 DisjointSets& sets) const {
-    const auto count = static_cast<std::int32_t>(refs.size() + 2 * result.caps.size());
+    const auto count = static_cast<std::int32_t>(refs.size() + 2 * result.cut_faces.size());
     std::vector<Position> corners;
     for (const std::int8_t side : {kBelow, kAbove}) {
         std::vector<std::int32_t> items;
@@ -541,11 +545,11 @@ void CellCutter::attach_hollows(std::span<const PieceRef> refs, const CellCut& r
         }
         join_hollows(items, sets, [&](std::int32_t item, const VisitShellPolygon& visit) {
             const std::size_t i = index(item);
-            const bool is_cap = i >= refs.size();
-            const bool reversed = is_cap ? side == kAbove : refs[i].which == 1;
+            const bool is_cut_face = i >= refs.size();
+            const bool reversed = is_cut_face ? side == kAbove : refs[i].which == 1;
             corners.clear();
-            for (const NodeId node : is_cap ? result.caps[(i - refs.size()) / 2]
-                                            : pieces_.polygons[index(refs[i].piece)])
+            for (const NodeId node : is_cut_face ? result.cut_faces[(i - refs.size()) / 2]
+                                                 : pieces_.polygons[index(refs[i].piece)])
                 corners.push_back(points_.rounded(node));
             visit(corners, reversed ? -1 : 1);
         });

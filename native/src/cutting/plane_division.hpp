@@ -97,16 +97,16 @@ public:
                  const EdgeIntersections& cuts)
         : model_(model), sides_(sides), cuts_(cuts) {}
 
-    void split(std::span<const NodeId> face, SplitFace& parts);
+    void split(std::span<const NodeId> face, SplitFace& split);
 
 private:
-    struct TrianglePart;
+    struct TrianglePiece;
     class Cuts;
 
     void split_triangle(const std::array<LoopCorner, 3>& t, const Cuts& cuts,
-                        std::vector<TrianglePart>& parts) const;
-    bool split_in_two(std::span<const NodeId> face, SplitFace& parts);
-    void split_by_triangles(std::span<const NodeId> face, SplitFace& parts);
+                        std::vector<TrianglePiece>& pieces) const;
+    bool split_in_two(std::span<const NodeId> face, SplitFace& split);
+    void split_by_triangles(std::span<const NodeId> face, SplitFace& split);
     std::int8_t side(NodeId v) const { return sides_[index(v)]; }
 
     const ComplexView& model_;
@@ -117,19 +117,19 @@ private:
 
 /// How a plane divides one cell.
 struct CellCut {
-    Polygons caps;         ///< counter-clockwise seen from above
+    Polygons cut_faces;    ///< counter-clockwise seen from above
     bool is_clean = true;  ///< false: what bounds them crosses itself, or runs back along itself
-    /// The part of the cell that each of its pieces belongs to, then, cap after cap, the part below
-    /// it and the part above it. Parts are counted in the order of their first piece.
+    /// The part of the cell that each of its pieces belongs to, then, cut face after cut face, the
+    /// part below it and the part above it. Parts are counted in the order of their first piece.
     std::vector<std::int32_t> part;
     std::vector<std::int8_t> part_side;
 };
 
 /// Closes the parts of cells where a plane has cut them.
 ///
-/// The edges in the plane that the pieces above it leave open bound the caps. Along an edge of the
-/// cell that only touches the plane nothing is open; whether the caps pass on both of its sides or
-/// on neither follows from which of the two faces there is steeper.
+/// The edges in the plane that the pieces above it leave open bound the cut faces. Along an edge of
+/// the cell that only touches the plane nothing is open; whether the cut faces pass on both of its
+/// sides or on neither follows from which of the two faces there is steeper.
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
@@ -137,13 +137,13 @@ public:
                const exact::OrientedPlane& plane)
         : model_(model), sides_(sides), cuts_(cuts), pieces_(pieces), points_(model, plane, cuts) {}
 
-    /// The caps alone.
-    void cap(std::span<const PieceRef> refs, CellCut& result);
-    /// Caps and parts.
+    /// The cut faces alone.
+    void cut_face(std::span<const PieceRef> refs, CellCut& result);
+    /// Cut faces and parts.
     void cut(std::span<const PieceRef> refs, CellCut& result);
 
 private:
-    struct CapEdge {
+    struct CutFaceEdge {
         NodeId from, to;
     };
 
@@ -155,19 +155,20 @@ private:
     void collect_uses(std::span<const PieceRef> refs, bool in_plane_only);
     void close(std::span<const PieceRef> refs, CellCut& result);
     void collect_open_edges(std::span<const PieceRef> refs);
-    bool caps_on_both_sides(std::span<const EdgeUse> uses, std::span<const PieceRef> refs) const;
-    bool is_in_caps(const std::array<NodeId, 2>& edge) const;
-    void keep_slits_in_caps();
+    bool has_cut_faces_on_both_sides(std::span<const EdgeUse> uses,
+                                     std::span<const PieceRef> refs) const;
+    bool is_in_cut_faces(const std::array<NodeId, 2>& edge) const;
+    void keep_slits_in_cut_faces();
     NodeId far_node(const EdgeUse& use, std::span<const PieceRef> refs) const;
     void trace_loops();
-    void take_whole_loops(Polygons& caps) const;
-    std::size_t next_edge(const CapEdge& arriving, const std::vector<bool>& taken) const;
+    void take_whole_loops(Polygons& cut_faces) const;
+    std::size_t next_edge(const CutFaceEdge& arriving, const std::vector<bool>& taken) const;
     bool find_parts(std::span<const PieceRef> refs, CellCut& result);
     bool use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces);
     void attach_hollows(std::span<const PieceRef> refs, const CellCut& result,
                         DisjointSets& sets) const;
     std::int8_t side_of(std::int32_t item) const;
-    void add_uses_of_caps(const Polygons& caps, std::int32_t pieces);
+    void add_uses_of_cut_faces(const Polygons& cut_faces, std::int32_t pieces);
     void join_at_edge(std::span<const EdgeUse> uses, std::int8_t side, DisjointSets& sets);
 
     const ComplexView& model_;
@@ -177,11 +178,11 @@ private:
     PlanePoints points_;
 
     /// Edges in the order of their nodes, as the cell sees them; items are numbers among its
-    /// pieces, then two for each cap.
+    /// pieces, then two for each cut face.
     std::vector<EdgeUse> uses_;
     std::vector<std::int8_t> piece_side_;
     std::vector<const EdgeUse*> faces_at_edge_;
-    std::vector<CapEdge> open_;
+    std::vector<CutFaceEdge> open_;
     std::vector<std::array<NodeId, 2>> slits_, dissolved_;
     std::vector<Loop> loops_;
     bool whole_loops_ = false;

@@ -59,9 +59,9 @@ void ask(Question& question, std::span<const Position> corners, int sign, bool i
 }
 
 void ask_all(std::vector<Question>& questions,
-             const std::function<void(const VisitOfShell&)>& each_polygon) {
+             const std::function<void(const VisitOfShell&)>& for_each_polygon) {
     std::sort(questions.begin(), questions.end());
-    each_polygon([&](std::int32_t shell, std::span<const Position> corners, int sign) {
+    for_each_polygon([&](std::int32_t shell, std::span<const Position> corners, int sign) {
         spatial::Box box;
         for (const Position& corner : corners)
             box.include(corner);
@@ -87,7 +87,7 @@ void join_hollows(
     if (std::ranges::all_of(items,
                             [&](std::int32_t i) { return sets.find(i) == sets.find(items[0]); }))
         return;
-    const auto each_polygon = [&](const VisitOfShell& visit) {
+    const auto for_each_polygon = [&](const VisitOfShell& visit) {
         for (const std::int32_t item : items) {
             polygons_of(item, [&](std::span<const Position> corners, int sign) {
                 visit(sets.find(item), corners, sign);
@@ -96,7 +96,7 @@ void join_hollows(
     };
     Shells shells;
     std::optional<Position> origin;  // near them
-    each_polygon([&](std::int32_t of, std::span<const Position> corners, int sign) {
+    for_each_polygon([&](std::int32_t of, std::span<const Position> corners, int sign) {
         if (!origin) origin = corners[0];
         PartShell& shell = shells[of];
         for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -126,7 +126,7 @@ void join_hollows(
     std::vector<Question> questions;
     if (!asked.empty()) {
         std::map<std::int32_t, std::size_t> taken;
-        each_polygon([&](std::int32_t of, std::span<const Position> corners, int) {
+        for_each_polygon([&](std::int32_t of, std::span<const Position> corners, int) {
             const auto hollow = asked.find(of);
             if (hollow == asked.end()) return;
             std::size_t& number = taken[of];
@@ -135,7 +135,7 @@ void join_hollows(
                     questions.push_back({around, corners[i], of, number});
             }
         });
-        ask_all(questions, each_polygon);
+        ask_all(questions, for_each_polygon);
         std::sort(questions.begin(), questions.end(), [](const Question& a, const Question& b) {
             return std::tie(a.hollow, a.number, a.around) < std::tie(b.hollow, b.number, b.around);
         });

@@ -6,10 +6,10 @@
 
 #include "base/parallel.hpp"
 #include "cutting/assembly.hpp"
-#include "cutting/near_part.hpp"
+#include "cutting/cell_parts.hpp"
+#include "cutting/near_model.hpp"
 #include "cutting/pieces.hpp"
 #include "cutting/rounding/part_rounding.hpp"
-#include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
@@ -17,21 +17,21 @@ namespace realmodel::cutting {
 namespace {
 
 /// The cut where only a part of the model is near; nothing where rounding went beyond it.
-std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface, const NearPart& part,
+std::optional<Cut> cut(const ComplexView& model, const Cutter& cutter, const NearModel& near_model,
                        std::span<const std::int8_t> sides_beside, const Execution& execution) {
-    const ComplexView near = part.view();
-    SurfaceOverlay overlay(near, surface, execution, 0, {}, part.far());
+    const ComplexView near = near_model.view();
+    CutterOverlay overlay(near, cutter, execution, 0, {}, near_model.far());
     if (overlay.reaches_far_faces()) return std::nullopt;
     begin_phase(execution.progress, 0.3, 0.5, "finding what the surface goes through");
     const CutterWinding winding(overlay, execution.progress);
     const CutterSides sides(overlay, winding, execution.progress);
     begin_phase(execution.progress, 0.5, 0.68, "finding the parts of cells");
-    SurfaceParts made(overlay, winding, sides, execution.progress);
+    CellParts made(overlay, winding, sides, execution.progress);
     begin_phase(execution.progress, 0.85, 0.92, "rounding what was cut");
-    round_parts(
-        {near, overlay.new_positions(), made.pieces, made.half_cells, false, execution, part.far()},
-        made.touches);
-    const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
+    round_parts({near, overlay.new_positions(), made.pieces, made.half_cells, false, execution,
+                 near_model.far()},
+                made.touches);
+    const auto pieces = near_model.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
     begin_phase(execution.progress, 0.95, 1.0, "putting the halves together");
     Cut halves =
@@ -41,21 +41,21 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface, c
     return halves;
 }
 
-Cut cut(const ComplexView& model, const CutterSurface& surface, const Execution& execution) {
+Cut cut(const ComplexView& model, const Cutter& cutter, const Execution& execution) {
     std::vector<std::uint8_t> is_near;
     std::vector<std::int8_t> sides;
-    std::optional<NearPart> part;
+    std::optional<NearModel> near_model;
     {
-        const NearestSide nearest(surface, execution);
+        const NearestSide nearest(cutter, execution);
         const CellBoxes cells(model, {&nearest, 1}, execution);
         is_near = cells_near(cells, nearest, execution);
         sides = sides_of_far_cells(model, nearest, is_near, execution);
-        part.emplace(model, is_near, execution, &nearest, margin_of(cells, nearest));
+        near_model.emplace(model, is_near, execution, &nearest, margin_of(cells, nearest));
     }
-    if (auto halves = cut(model, surface, *part, sides, execution)) return *std::move(halves);
+    if (auto halves = cut(model, cutter, *near_model, sides, execution)) return *std::move(halves);
     is_near.assign(is_near.size(), 1);
     sides.assign(sides.size(), kOn);
-    return *cut(model, surface, NearPart(model, is_near, execution), sides, execution);
+    return *cut(model, cutter, NearModel(model, is_near, execution), sides, execution);
 }
 
 bool is_same(const ComplexView& one, const ComplexView& other) {
@@ -68,7 +68,7 @@ bool is_same(const ComplexView& one, const ComplexView& other) {
 }
 
 /// A model's own block taken out of it: no cell is cut.
-Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution& execution) {
+Cut separate_block(const ComplexView& model, std::int32_t block, const Execution& execution) {
     if (std::find(model.cell_block.begin(), model.cell_block.end(), block) ==
         model.cell_block.end())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
@@ -105,14 +105,14 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution&
 Cut cut_by_surface(const ComplexView& model, const TriangleView& surface,
                    const Execution& execution) {
     check_model(model);
-    return cut(model, oriented_surface(surface), execution);
+    return cut(model, oriented_cutter(surface), execution);
 }
 
 Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_t block,
                  const Execution& execution) {
     check_model(model);
     check_model(other);
-    if (is_same(model, other)) return part_by_block(model, block, execution);
+    if (is_same(model, other)) return separate_block(model, block, execution);
     return cut(model, block_boundary(other, block), execution);
 }
 

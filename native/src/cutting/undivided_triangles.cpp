@@ -7,7 +7,7 @@
 #include "arrangement/edge_fan.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
-#include "cutting/surface_overlay.hpp"
+#include "cutting/cutter_overlay.hpp"
 #include "exact/orientation.hpp"
 
 namespace realmodel::cutting {
@@ -31,7 +31,7 @@ bool is_beside_plane(const TrianglePositions& one, const TrianglePositions& plan
 
 /// Whether a plane at right angles to some axis surely parts two triangles.
 /// @param margin  of products with the axis, by its length
-bool does_part(const Position& axis, const TrianglePositions& one, const TrianglePositions& other,
+bool separates(const Position& axis, const TrianglePositions& one, const TrianglePositions& other,
                double margin) {
     const auto [low, high] = std::minmax({dot(axis, one[0]), dot(axis, one[1]), dot(axis, one[2])});
     const auto [low_beyond, high_beyond] =
@@ -83,12 +83,12 @@ bool are_parted_along_edges(const TrianglePositions& one, const TrianglePosition
     for (std::size_t i = 0; i < 3; ++i) {
         const Position edge = minus(a[(i + 1) % 3], a[i]), facing = minus(b[(i + 1) % 3], b[i]);
         // of triangles that are nearly in one plane, too
-        if (does_part(cross(normal, edge), a, b, kRounding * size) ||
-            does_part(cross(beyond, facing), a, b, kRounding * size))
+        if (separates(cross(normal, edge), a, b, kRounding * size) ||
+            separates(cross(beyond, facing), a, b, kRounding * size))
             return true;
         for (std::size_t k = 0; k < 3; ++k) {
             const Position axis = cross(edge, minus(b[(k + 1) % 3], b[k]));
-            if (does_part(axis, a, b, kRounding * size)) return true;
+            if (separates(axis, a, b, kRounding * size)) return true;
         }
     }
     return false;
@@ -103,7 +103,7 @@ bool are_parted_by_line(const TrianglePositions& one, const TrianglePositions& o
                                         unit(minus(other[1], one[0])),
                                         unit(minus(other[2], one[0]))};
     const Position normal = unit(polygon_normal(one));
-    const auto parts = [&](const Position& line) {
+    const auto are_apart = [&](const Position& line) {
         const Position axis = cross(normal, line);
         const double margin = kRounding * length(axis);
         std::array<double, 4> off{};
@@ -114,7 +114,8 @@ bool are_parted_by_line(const TrianglePositions& one, const TrianglePositions& o
     };
     for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t k = i + 1; k < 4; ++k) {
-            if (parts(minus(edges[i], edges[k])) || parts(plus(edges[i], edges[k]))) return true;
+            if (are_apart(minus(edges[i], edges[k])) || are_apart(plus(edges[i], edges[k])))
+                return true;
         }
     }
     return false;
@@ -122,11 +123,11 @@ bool are_parted_by_line(const TrianglePositions& one, const TrianglePositions& o
 
 /// The same of triangles in any position that share their first corner and nothing else by name.
 bool are_parted_at_corner(const TrianglePositions& one, const TrianglePositions& other) {
-    const auto parts = [](const TrianglePositions& plane, const TrianglePositions& beside) {
+    const auto are_apart = [](const TrianglePositions& plane, const TrianglePositions& beside) {
         const int side = sure_side(plane[0], plane[1], plane[2], beside[1]);
         return side != 0 && side == sure_side(plane[0], plane[1], plane[2], beside[2]);
     };
-    if (parts(one, other) || parts(other, one)) return true;
+    if (are_apart(one, other) || are_apart(other, one)) return true;
     for (std::size_t i = 1; i < 3; ++i) {
         for (std::size_t k = 1; k < 3; ++k) {
             const int side = sure_side(one[0], one[i], other[k], one[3 - i]);
@@ -150,7 +151,7 @@ bool are_parted_at_edge(const TrianglePositions& one, const TrianglePositions& o
 }
 
 /// Notes which triangles are not surely apart from some other one.
-void note_meeting(const CutterSurface& surface, const spatial::BoxTree& tree,
+void note_meeting(const Cutter& cutter, const spatial::BoxTree& tree,
                   std::vector<std::uint8_t>& meets, const Execution& execution) {
     const auto note = [&meets](std::size_t t) {
         std::atomic_ref(meets[t]).store(1, std::memory_order_relaxed);
@@ -163,7 +164,7 @@ void note_meeting(const CutterSurface& surface, const spatial::BoxTree& tree,
         tree.find_pairs(begin, end, [&](std::size_t i, std::size_t k) {
             const std::size_t one = index(tree.number_at(i)), other = index(tree.number_at(k));
             if ((does_meet(one) && does_meet(other)) ||
-                are_surely_apart(surface, surface.triangles[one], surface.triangles[other]))
+                are_surely_apart(cutter, cutter.triangles[one], cutter.triangles[other]))
                 return;
             note(one);
             note(other);
@@ -173,7 +174,7 @@ void note_meeting(const CutterSurface& surface, const spatial::BoxTree& tree,
 
 }  // namespace
 
-bool are_surely_apart(const CutterSurface& surface, const Triangle& one, const Triangle& other) {
+bool are_surely_apart(const Cutter& cutter, const Triangle& one, const Triangle& other) {
     // corners that both have come first, in the same order
     Triangle a = one, b = other;
     std::size_t shared = 0;
@@ -184,9 +185,9 @@ bool are_surely_apart(const CutterSurface& surface, const Triangle& one, const T
         std::swap(a[shared], a[i]);
         ++shared;
     }
-    const auto corners = [&surface](const Triangle& t) {
-        return TrianglePositions{surface.vertices[index(t[0])], surface.vertices[index(t[1])],
-                                 surface.vertices[index(t[2])]};
+    const auto corners = [&cutter](const Triangle& t) {
+        return TrianglePositions{cutter.vertices[index(t[0])], cutter.vertices[index(t[1])],
+                                 cutter.vertices[index(t[2])]};
     };
     const TrianglePositions of_a = corners(a), of_b = corners(b);
     if (shared < 2 && are_parted_between_middles(of_a, of_b, shared == 1)) return true;
@@ -197,15 +198,15 @@ bool are_surely_apart(const CutterSurface& surface, const Triangle& one, const T
     return shared == 2 && are_parted_at_edge(of_a, of_b);
 }
 
-UndividedTriangles::UndividedTriangles(const CutterSurface& surface, const spatial::BoxTree& tree,
+UndividedTriangles::UndividedTriangles(const Cutter& cutter, const spatial::BoxTree& tree,
                                        std::vector<std::uint8_t> meets,
                                        std::span<const std::int32_t> groups,
                                        const Execution& execution) {
-    const std::size_t count = surface.triangles.size();
-    note_meeting(surface, tree, meets, execution);
+    const std::size_t count = cutter.triangles.size();
+    note_meeting(cutter, tree, meets, execution);
     const auto edges = arrangement::edges_of(
         count,
-        surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
+        cutter.vertices.size(), [&](std::size_t t) -> const auto& { return cutter.triangles[t]; },
         execution);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const auto uses = edges[e];
@@ -217,7 +218,7 @@ UndividedTriangles::UndividedTriangles(const CutterSurface& surface, const spati
     }
     DisjointSets joined(count);
     std::vector<std::uint8_t> has_border(count, 0);
-    const auto each_pair = [&](const auto& visit) {
+    const auto for_each_pair = [&](const auto& visit) {
         for (std::size_t e = 0; e < edges.size(); ++e) {
             const auto uses = edges[e];
             if (uses.size() != 2) continue;
@@ -225,11 +226,11 @@ UndividedTriangles::UndividedTriangles(const CutterSurface& surface, const spati
             visit(uses[1], uses[0]);
         }
     };
-    each_pair([&](const auto& use, const auto& beyond) {
+    for_each_pair([&](const auto& use, const auto& beyond) {
         if (meets[index(use.item)] == 0 && meets[index(beyond.item)] == 0)
             joined.join(use.item, beyond.item);
     });
-    each_pair([&](const auto& use, const auto& beyond) {
+    for_each_pair([&](const auto& use, const auto& beyond) {
         if (meets[index(use.item)] == 0 && meets[index(beyond.item)] != 0)
             has_border[index(joined.find(use.item))] = 1;
     });
@@ -254,7 +255,7 @@ UndividedTriangles::UndividedTriangles(const CutterSurface& surface, const spati
         }
     });
     borders_ = bucketize<Border>(index(next), [&](const auto& put) {
-        each_pair([&](const auto& use, const auto& beyond) {
+        for_each_pair([&](const auto& use, const auto& beyond) {
             const std::int32_t component = component_[index(use.item)];
             if (component < 0 || component_[index(beyond.item)] >= 0) return;
             std::array<std::int32_t, 2> edge = use.edge;

@@ -20,8 +20,8 @@ struct DoubleDoubleInterval {
 
     DoubleDoubleInterval() = default;
     DoubleDoubleInterval(double value) : high(value) {}  // NOLINT: an exact double
-    DoubleDoubleInterval(double high_part, double low_part, double bound)
-        : high(high_part), low(low_part), error(bound) {}
+    DoubleDoubleInterval(double high_term, double low_term, double bound)
+        : high(high_term), low(low_term), error(bound) {}
 
     /// The difference of two doubles, exactly.
     static DoubleDoubleInterval difference(double a, double b) {

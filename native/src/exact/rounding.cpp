@@ -159,7 +159,7 @@ Share share_of_way(const PlanArrangement& g, const Line& l, const Line& m) {
 }
 
 /// That share of the way from one double to another.
-ExtendedInterval part_of(const Share& share, double from, double to) {
+ExtendedInterval interpolated(const Share& share, double from, double to) {
     const double way = std::abs(to - from);
     return {share.value * (Extended(to) - from),
             way == 0 ? 0
@@ -171,7 +171,7 @@ ExtendedInterval part_of(const Share& share, double from, double to) {
 NearPoint near_crossing(const PlanArrangement& g, const Line& l, const Line& m) {
     const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
     const Share share = share_of_way(g, l, m);
-    return {l.ends()[0], part_of(share, o.x, p.x), part_of(share, o.y, p.y)};
+    return {l.ends()[0], interpolated(share, o.x, p.x), interpolated(share, o.y, p.y)};
 }
 
 }  // namespace

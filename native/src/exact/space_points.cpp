@@ -93,15 +93,15 @@ RationalPoint SpacePoints::exact(SpacePointId p) const {
     return result;
 }
 
-std::array<SpacePoints::Line, 2> SpacePoints::lines(SpacePointId p) const {
+std::array<SpacePoints::SpaceLine, 2> SpacePoints::lines(SpacePointId p) const {
     if (const Fractions* point = fractions(p)) return point->lines;
-    const Line none{kNone, kNone};
+    const SpaceLine none{kNone, kNone};
     const ConstructedPoint* point = construction(p);
-    return {point == nullptr ? none : Line{point->of.of[0], point->of.of[1]}, none};
+    return {point == nullptr ? none : SpaceLine{point->of.of[0], point->of.of[1]}, none};
 }
 
 bool SpacePoints::was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const {
-    const Line line{std::min(a, b), std::max(a, b)};
+    const SpaceLine line{std::min(a, b), std::max(a, b)};
     const auto supporting_lines = lines(p);
     return supporting_lines[0] == line || supporting_lines[1] == line;
 }
@@ -191,19 +191,20 @@ std::array<DoubleDoubleInterval, 3> SpacePoints::coordinates(const Intersection&
 SpacePointId SpacePoints::in_fractions(const Intersection& of) {
     const HomogeneousPoints<mpz_class> in(*this, of.of);
     auto point = in.absolute(in.point(of));
-    const Line line{of.of[0], of.of[1]};
-    return add(
-        reduced({std::move(point.at), std::move(point.weight), {}, {line, Line{kNone, kNone}}}));
+    const SpaceLine line{of.of[0], of.of[1]};
+    return add(reduced(
+        {std::move(point.at), std::move(point.weight), {}, {line, SpaceLine{kNone, kNone}}}));
 }
 
 SpacePoints::Reduced SpacePoints::crossing(std::size_t axis, SpacePointId p, SpacePointId q,
                                            SpacePointId a, SpacePointId b) const {
     const HomogeneousPoints<mpz_class> in(*this, std::array{p, q, a, b});
     auto point = in.absolute(in.crossing(axis, p, q, a, b));
-    return reduced({std::move(point.at),
-                    std::move(point.weight),
-                    {},
-                    {Line{std::min(p, q), std::max(p, q)}, Line{std::min(a, b), std::max(a, b)}}});
+    return reduced(
+        {std::move(point.at),
+         std::move(point.weight),
+         {},
+         {SpaceLine{std::min(p, q), std::max(p, q)}, SpaceLine{std::min(a, b), std::max(a, b)}}});
 }
 
 SpacePointId SpacePoints::projected(std::size_t axis, SpacePointId p, SpacePointId a,

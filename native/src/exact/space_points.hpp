@@ -75,7 +75,7 @@ public:
         std::array<DoubleDoubleInterval, 3> at;
     };
 
-    using Line = std::array<SpacePointId, 2>;
+    using SpaceLine = std::array<SpacePointId, 2>;
     /// A point in fractions of one denominator, greater than 0, and its coordinates to twice the
     /// precision of doubles.
     struct Fractions {
@@ -83,7 +83,7 @@ public:
         mpz_class weight;
         std::array<DoubleDoubleInterval, 3> interval;
         /// Ends of lines that it was constructed on, ascending.
-        std::array<Line, 2> lines{Line{kNone, kNone}, Line{kNone, kNone}};
+        std::array<SpaceLine, 2> lines{SpaceLine{kNone, kNone}, SpaceLine{kNone, kNone}};
     };
 
     /// The number of a point given by finite doubles.
@@ -141,7 +141,7 @@ public:
         return of.kind == Source::Form::kFractions ? &fractions_[index(of.number)] : nullptr;
     }
     /// The lines that a point was constructed on; kNone for none.
-    std::array<Line, 2> lines(SpacePointId p) const;
+    std::array<SpaceLine, 2> lines(SpacePointId p) const;
     /// Whether a point is known to lie on the line through a and b, as it was constructed there.
     bool was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const;
 

@@ -38,7 +38,7 @@ double inexactness(const SpacePoints& points, const std::array<SpacePointId, kCo
 bool lie_on_one_line_by_construction(const SpacePoints& points,
                                      const std::array<SpacePointId, 3>& of) {
     for (const SpacePointId candidate : of) {
-        for (const SpacePoints::Line& line : points.lines(candidate)) {
+        for (const SpacePoints::SpaceLine& line : points.lines(candidate)) {
             if (line[0] == kNone) break;
             const bool all = std::ranges::all_of(of, [&](SpacePointId p) {
                 return p == line[0] || p == line[1] ||
@@ -110,10 +110,10 @@ std::optional<int> orient2d_by_intervals(const SpacePoints& points, std::size_t 
 template <class Integer>
 std::optional<int> orient3d_in(const HomogeneousPoints<Integer>& in,
                                const std::array<SpacePointId, 4>& of) {
-    using Homogeneous = HomogeneousPoints<Integer>;
+    using IntegerPoints = HomogeneousPoints<Integer>;
     std::array at{in.point(of[0]), in.point(of[1]), in.point(of[2]), in.point(of[3])};
     // each exchange of two points reverses the sign
-    const std::size_t origin = Homogeneous::simplest(at);
+    const std::size_t origin = IntegerPoints::simplest(at);
     int sign = 1;
     if (origin != 0) {
         std::swap(at[0], at[origin]);
@@ -121,7 +121,7 @@ std::optional<int> orient3d_in(const HomogeneousPoints<Integer>& in,
     }
     std::array<std::array<Integer, 3>, 3> from_first;
     for (std::size_t i = 0; i < 3; ++i) {
-        from_first[i] = Homogeneous::minus(at[i + 1], at[0]);
+        from_first[i] = IntegerPoints::minus(at[i + 1], at[0]);
         sign *= sign_of(at[i + 1].weight) * sign_of(at[0].weight);
     }
     const auto& [u, v, w] = from_first;
@@ -133,12 +133,12 @@ std::optional<int> orient3d_in(const HomogeneousPoints<Integer>& in,
 template <class Integer>
 std::optional<int> orient2d_in(const HomogeneousPoints<Integer>& in, std::size_t axis,
                                const std::array<SpacePointId, 3>& of) {
-    using Homogeneous = HomogeneousPoints<Integer>;
+    using IntegerPoints = HomogeneousPoints<Integer>;
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
     std::array at{in.point(of[0]), in.point(of[1]), in.point(of[2])};
-    const auto origin = static_cast<std::ptrdiff_t>(Homogeneous::simplest(at));
+    const auto origin = static_cast<std::ptrdiff_t>(IntegerPoints::simplest(at));
     std::rotate(at.begin(), at.begin() + origin, at.end());
-    const auto u = Homogeneous::minus(at[1], at[0]), v = Homogeneous::minus(at[2], at[0]);
+    const auto u = IntegerPoints::minus(at[1], at[0]), v = IntegerPoints::minus(at[2], at[0]);
     const Integer det = u[k] * v[l] - u[l] * v[k];
     if (!is_known(det)) return std::nullopt;
     return sign_of(det) * sign_of(at[1].weight) * sign_of(at[2].weight);

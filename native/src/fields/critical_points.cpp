@@ -68,7 +68,7 @@ struct NodeLink {
         return up || down;
     }
 
-    /// Whether some of the neighbors are one connected part; none are not.
+    /// Whether some of the neighbors are one connected component; none are not.
     bool connected(std::uint32_t some) const {
         std::uint32_t reached = some & (~some + 1), last = 0;
         while (reached != last) {
@@ -142,7 +142,7 @@ constexpr std::size_t kMostFailed = 150;
 /// How a field rises in a tetrahedron along a direction, or what it is at a place: a sum of its
 /// values.
 struct Rise {
-    Tetrahedron corners;
+    LatticeTetrahedron corners;
     std::array<double, 4> weights;
     double least;       ///< it is to be as much
     double square = 0;  ///< of the weights of corners that are free to change
@@ -226,7 +226,7 @@ private:
 
     /// As critical_points() has it, of any corner.
     bool is_critical(std::int64_t corner) const {
-        if (lattice_.sides(corner) != 0) return false;
+        if (lattice_.box_faces(corner) != 0) return false;
         std::vector<std::int64_t> others;
         const auto number = [&](std::int64_t other) {
             const auto place = std::ranges::find(others, other) - others.begin();
@@ -234,7 +234,7 @@ private:
             return static_cast<std::int32_t>(place);
         };
         std::vector<std::array<std::int32_t, 2>> joined;
-        lattice_.for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
+        lattice_.for_each_around(corner, [&](const LatticeTetrahedron& tetrahedron) {
             std::array<std::int32_t, 2> last{-1, -1};  // of those that are greater, of those less
             for (const std::int64_t other : tetrahedron) {
                 if (other == corner) continue;
@@ -247,12 +247,12 @@ private:
         DisjointSets sets(others.size());
         for (const auto& [a, b] : joined)
             sets.join(a, b);
-        std::array<int, 2> parts{};
+        std::array<int, 2> components{};
         for (std::size_t n = 0; n < others.size(); ++n) {
             const auto neighbor = static_cast<std::int32_t>(n);
-            if (sets.find(neighbor) == neighbor) ++parts[is_less(others[n], corner) ? 1 : 0];
+            if (sets.find(neighbor) == neighbor) ++components[is_less(others[n], corner) ? 1 : 0];
         }
-        return parts != std::array{1, 1};
+        return components != std::array{1, 1};
     }
 
     /// Whether there are fewer critical points then; else all is as before.
@@ -278,7 +278,7 @@ private:
             near, [&](std::int64_t vertex) { return critical_.contains(vertex); }));
         const auto value_of = [this](std::int64_t vertex) { return values_[index(vertex)]; };
         const bool is_lost = std::ranges::any_of(near, [&](std::int64_t vertex) {
-            return fixed_[index(vertex)] != 0 && lattice_.sides(vertex) == 0 &&
+            return fixed_[index(vertex)] != 0 && lattice_.box_faces(vertex) == 0 &&
                    !lattice_.is_between(vertex, value_of);
         });
         if (critical.size() >= had || is_lost || !is_allowed(mean->steepness)) {
@@ -307,7 +307,7 @@ private:
         const auto mean = mean_rise(corner);
         if (!mean) return false;
         const double least = kRise * dot(mean->gradient, mean->gradient);
-        lattice_.for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
+        lattice_.for_each_around(corner, [&](const LatticeTetrahedron& tetrahedron) {
             const auto asked = rise(tetrahedron, mean->gradient, least);
             if (asked && asked->square > 0) rises_.push_back(*asked);
         });
@@ -315,7 +315,8 @@ private:
     }
 
     /// Nothing in a tetrahedron that is flat but for rounding.
-    std::optional<Rise> rise(const Tetrahedron& corners, const Vec3& along, double least) const {
+    std::optional<Rise> rise(const LatticeTetrahedron& corners, const Vec3& along,
+                             double least) const {
         std::array<Vec3, 4> at{};
         for (std::size_t i = 0; i < 4; ++i)
             at[i] = lattice_.position(corners[i]);
@@ -414,7 +415,7 @@ private:
     std::vector<std::int64_t> near_changes() const {
         std::vector<std::int64_t> near;
         for (const auto& [corner, value] : before_) {
-            lattice_.for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
+            lattice_.for_each_around(corner, [&](const LatticeTetrahedron& tetrahedron) {
                 near.insert(near.end(), tetrahedron.begin(), tetrahedron.end());
             });
         }

@@ -76,7 +76,7 @@ public:
             if (drawn_) inequality.least -= drawn_->of(inequality.functional);
         active_ = ActiveInequalities(std::move(inequalities));
         if (drawn_) {
-            leave_out_as_found();
+            apply_omissions();
             meet();
             return;
         }
@@ -92,8 +92,10 @@ public:
         Field out;
         begin_phase(execution_.progress, 0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
-        for (std::size_t side = 0; side < known_.data().slits.sides; ++side) {
-            std::vector<double> at_nodes = function().at_nodes(known_.lattice(), side, execution_);
+        for (std::size_t combination = 0; combination < known_.data().slits.combinations;
+             ++combination) {
+            std::vector<double> at_nodes =
+                function().at_nodes(known_.lattice(), combination, execution_);
             for (double& value : at_nodes)
                 value *= unit;
             const std::vector<double> smooth = balanced(at_nodes, known_.lattice(), execution_);
@@ -160,7 +162,7 @@ private:
     }
 
     /// The inequalities that the field left out whose kind is drawn.
-    void leave_out_as_found() {
+    void apply_omissions() {
         const std::span<const std::uint8_t> left_out = options_.draw->kind.left_out;
         if (left_out.size() != active_.all().size())
             throw InputError("option", "a field is drawn with the bounds that it was found of");

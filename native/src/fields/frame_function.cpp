@@ -175,7 +175,7 @@ void FrameFunction::values_at(std::span<const Vec3> places, std::span<const doub
     if (drawn_ != nullptr) drawn_->add_values(places, lifts, values);
 }
 
-std::vector<double> FrameFunction::at_nodes(const Lattice& lattice, std::size_t side,
+std::vector<double> FrameFunction::at_nodes(const Lattice& lattice, std::size_t combination,
                                             const Execution& execution) const {
     return lattice_values(
         lattice,
@@ -183,17 +183,17 @@ std::vector<double> FrameFunction::at_nodes(const Lattice& lattice, std::size_t 
             std::vector<Vec3> places(positions.size());
             std::transform(positions.begin(), positions.end(), places.begin(),
                            [&](const Vec3& at) { return known_.frame().to_local(at); });
-            values_at(places, lifts_at(known_, positions, side), values);
+            values_at(places, lifts_at(known_, positions, combination), values);
         },
         execution, known_.data().slits.count == 0 && drawn_ == nullptr);
 }
 
 std::vector<double> lifts_at(const KnownData& known, std::span<const Vec3> positions,
-                             std::size_t side) {
+                             std::size_t combination) {
     const Slits& slits = known.data().slits;
     std::vector<double> out;
     if (slits.count == 0) return out;
-    const std::size_t first = side * known.lattice().nodes();
+    const std::size_t first = combination * known.lattice().nodes();
     for (const Vec3& at : positions) {
         const auto corners = corners_at(known.lattice(), at);
         for (std::size_t k = 0; k < slits.count; ++k) {

@@ -58,9 +58,9 @@ private:
 
 /// The further coordinates of positions in the lattice, linear between its nodes, those of one
 /// position together.
-/// @param side  combination of sides of slits
+/// @param combination  combination of sides of slits
 std::vector<double> lifts_at(const KnownData& known, std::span<const Vec3> positions,
-                             std::size_t side);
+                             std::size_t combination);
 
 /// f as the solution has it, in its frame: a spline, and what is drawn beside it.
 class FrameFunction {
@@ -79,7 +79,7 @@ public:
                    std::span<double> values) const;
     /// f at the nodes of a lattice in the box of that of the data, on a combination of sides of
     /// slits.
-    std::vector<double> at_nodes(const Lattice& lattice, std::size_t side,
+    std::vector<double> at_nodes(const Lattice& lattice, std::size_t combination,
                                  const Execution& execution) const;
 
 private:

@@ -8,20 +8,20 @@ namespace realmodel::fields {
 
 namespace {
 
-double between(const ValueAtom& a, const ValueAtom& b, const Kernel& kernel) {
+double between(const ValueAtom& a, const ValueAtom& b, const SplineKernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double r2 = dot(d, d) + squared(a.lift, b.lift);
     const double error = !(r2 > 0) && a.measured && b.measured ? kernel.error : 0;
     return a.weight * b.weight * (kernel.value(std::sqrt(r2)) + error);
 }
 
-double between(const ValueAtom& a, const SlopeAtom& b, const Kernel& kernel) {
+double between(const ValueAtom& a, const SlopeAtom& b, const SplineKernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double r = std::sqrt(dot(d, d) + squared(a.lift, b.lift));
     return -a.weight * kernel.rise(r) * (dot(d, b.along) + along(a.lift, b.lift, b.along_lift));
 }
 
-double between(const SlopeAtom& a, const SlopeAtom& b, const Kernel& kernel) {
+double between(const SlopeAtom& a, const SlopeAtom& b, const SplineKernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double r = std::sqrt(dot(d, d) + squared(a.lift, b.lift));
     const double straight =
@@ -84,7 +84,7 @@ Functional Functional::by_differences(double step) const {
     return out;
 }
 
-double Functional::with(const Functional& other, const Kernel& kernel) const {
+double Functional::with(const Functional& other, const SplineKernel& kernel) const {
     double sum = 0;
     for (const ValueAtom& a : values) {
         for (const ValueAtom& b : other.values)

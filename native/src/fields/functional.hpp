@@ -77,7 +77,7 @@ inline Vec3 mapped(const Map3& map, Vec3 v, std::span<const double> lift,
 /// sum of all derivatives up to the fifth is least, each times a power of the range: this is the
 /// covariance of Matern with smoothness 7/2, of distances in ranges (Rasmussen and Williams 2006,
 /// equation 4.14).
-struct Kernel {
+struct SplineKernel {
     static double decayed(double r) { return interpolation::decay(r); }
     template <class Lanes>
     static Lanes decayed(const Lanes& r) {
@@ -145,7 +145,7 @@ struct Functional {
     Lift of_lift() const;
 
     /// Of the kernel, in both of its arguments.
-    double with(const Functional& other, const Kernel& kernel) const;
+    double with(const Functional& other, const SplineKernel& kernel) const;
 };
 
 }  // namespace realmodel::fields

@@ -23,7 +23,7 @@ constexpr double kKnownTilt = 1e-10;
 
 }  // namespace
 
-Frame::Frame(const Lattice& lattice) : middle{}, unit(0) {
+LocalFrame::LocalFrame(const Lattice& lattice) : middle{}, unit(0) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double half = 0.5 * lattice.spacing[axis] * (lattice.counts[axis] - 1);
         middle[axis] = lattice.origin[axis] + half;
@@ -88,7 +88,7 @@ void KnownData::check_slits() const {
     const auto all_finite = [](std::span<const double> of) {
         return std::ranges::all_of(of, [](double coordinate) { return std::isfinite(coordinate); });
     };
-    const std::size_t nodes = slits.sides * lattice_.nodes();
+    const std::size_t nodes = slits.combinations * lattice_.nodes();
     const bool of_data = slits.contacts.size() == slits.count * data_.contacts.size() &&
                          slits.dips.size() == slits.count * data_.dips.size() &&
                          slits.dip_slopes.size() == 3 * slits.count * data_.dips.size() &&
@@ -96,15 +96,15 @@ void KnownData::check_slits() const {
     const bool of_nodes =
         slits.count == 0 ||
         (slits.nodes.size() == slits.count * nodes && slits.same.size() == nodes &&
-         slits.bound_sides.size() == data_.bounds.size() && slits.sides > 0);
-    if (!of_data || !of_nodes || (slits.count == 0 && slits.sides != 1))
+         slits.bound_combinations.size() == data_.bounds.size() && slits.combinations > 0);
+    if (!of_data || !of_nodes || (slits.count == 0 && slits.combinations != 1))
         throw InputError("option", "each datum and node has a coordinate for each slit");
     for (std::size_t n = 0; n < slits.same.size(); ++n) {
         if (slits.same[n] < 0 || slits.same[n] > static_cast<std::int64_t>(n))
             throw InputError("option", "a node is the same as one before it, or itself");
     }
-    for (const std::int32_t side : slits.bound_sides) {
-        if (side < 0 || static_cast<std::size_t>(side) >= slits.sides)
+    for (const std::int32_t combination : slits.bound_combinations) {
+        if (combination < 0 || static_cast<std::size_t>(combination) >= slits.combinations)
             throw InputError("option", "a bound is on one of the combinations of sides");
     }
     if (slits.normals.size() != slits.count) throw InputError("option", "each slit has a normal");

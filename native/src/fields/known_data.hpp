@@ -14,11 +14,11 @@ namespace realmodel::fields {
 
 /// Positions as the solution has them: the lattice's box is about the origin, half of its diagonal
 /// long.
-struct Frame {
+struct LocalFrame {
     Vec3 middle;
     double unit;
 
-    explicit Frame(const Lattice& lattice);
+    explicit LocalFrame(const Lattice& lattice);
     Vec3 to_local(const Vec3& at) const { return times(1 / unit, minus(at, middle)); }
 };
 
@@ -40,7 +40,7 @@ public:
     KnownData(const Lattice& lattice, const FieldData& data);
 
     const Lattice& lattice() const { return lattice_; }
-    const Frame& frame() const { return frame_; }
+    const LocalFrame& frame() const { return frame_; }
     const FieldData& data() const { return data_; }
     const std::vector<Vec3>& contacts() const { return contacts_; }
     std::int32_t surface_of(std::size_t contact) const { return data_.contact_surfaces[contact]; }
@@ -94,7 +94,7 @@ private:
 
     Lattice lattice_;
     FieldData data_;
-    Frame frame_;
+    LocalFrame frame_;
     std::vector<Vec3> contacts_;
     std::vector<std::size_t> references_;
     std::vector<Functional> planes_, tilts_;
@@ -107,8 +107,8 @@ Cube cube_of(const KnownData& known, std::size_t contact, double size);
 /// At most about `most` of some contacts: of each surface one in each of equal cubes.
 std::vector<std::size_t> thinned(const KnownData& known, std::size_t most);
 
-/// A part of the data that likelihoods are compared by: about `most` contacts that are spread, and
-/// those nearest to them, without the references.
+/// A subset of the data that likelihoods are compared by: about `most` contacts that are spread,
+/// and those nearest to them, without the references.
 std::vector<std::size_t> spread_pairs(const KnownData& known, std::size_t most);
 
 /// About how far each surface is from the next: a tenth of the contacts, of `most`, have one of the

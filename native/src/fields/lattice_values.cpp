@@ -160,7 +160,9 @@ void keep_bounds(const Lattice& lattice, const FieldData& data, std::span<const 
         HalfSpace half{};
         const auto corners = corners_at(lattice, data.bounds[n]);
         const std::size_t first =
-            slits.count > 0 ? static_cast<std::size_t>(slits.bound_sides[n]) * lattice.nodes() : 0;
+            slits.count > 0
+                ? static_cast<std::size_t>(slits.bound_combinations[n]) * lattice.nodes()
+                : 0;
         for (std::size_t c = 0; c < 4; ++c) {
             half.nodes[c] = first + corners[c].first;
             if (!slits.same.empty())

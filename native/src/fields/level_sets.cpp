@@ -22,20 +22,21 @@ namespace {
 /// A vertex of a level set: where it passes between two corners, the lesser first, or twice the
 /// corner that it passes through. Twice -1 - side: the point beyond a side of the lattice from
 /// which that is closed.
-using Crossing = std::array<std::int64_t, 2>;
-using CrossingTriangle = std::array<Crossing, 3>;
-using Side = RefinedLattice::Side;
+using EdgeCrossing = std::array<std::int64_t, 2>;
+using CrossingTriangle = std::array<EdgeCrossing, 3>;
+using BoxFace = RefinedLattice::BoxFace;
 
 /// An edge around what of a side of the lattice is inside, seen from beyond counter-clockwise.
-struct SideEdge {
-    Side side, along;  ///< along another side: it lies in both; along itself: on the level set
-    Crossing from, to;
+struct BoxFaceEdge {
+    BoxFace box_face,
+        along;  ///< along another side: it lies in both; along itself: on the level set
+    EdgeCrossing from, to;
 };
 
 /// What some cells have of the closed boundary of one level.
 struct LevelPieces {
     std::vector<CrossingTriangle> triangles;
-    std::vector<SideEdge> edges;
+    std::vector<BoxFaceEdge> edges;
 
     void add(const LevelPieces& more) {
         triangles.insert(triangles.end(), more.triangles.begin(), more.triangles.end());
@@ -76,9 +77,9 @@ public:
         std::size_t planes = 0;  // those of the lattice's sides that the cell is at
         for (std::size_t axis = 0; axis < 3; ++axis)
             planes += (cell[axis] == 0) + (cell[axis] + 1 == lattice_.cells(axis));
-        const auto add_all = [&](const Tetrahedron& tetrahedron) {
+        const auto add_all = [&](const LatticeTetrahedron& tetrahedron) {
             add(tetrahedron);
-            if (planes > 0) add_sides(tetrahedron);
+            if (planes > 0) add_box_faces(tetrahedron);
         };
         if (const auto* tetrahedra = lattice_.divided(cell)) {
             std::ranges::for_each(*tetrahedra, add_all);
@@ -103,7 +104,7 @@ private:
         return static_cast<std::size_t>(std::ranges::lower_bound(levels_, value) - levels_.begin());
     }
 
-    void add(const Tetrahedron& tetrahedron) {
+    void add(const LatticeTetrahedron& tetrahedron) {
         std::array<double, 4> values{};
         for (std::size_t i = 0; i < 4; ++i)
             values[i] = lattice_.value(tetrahedron[i]);
@@ -113,7 +114,7 @@ private:
             add(tetrahedron, values, level);
     }
 
-    void add(const Tetrahedron& tetrahedron, const std::array<double, 4>& values,
+    void add(const LatticeTetrahedron& tetrahedron, const std::array<double, 4>& values,
              std::size_t level) {
         const double at = levels_[level];
         std::size_t mask = 0, inside = 0;
@@ -124,12 +125,13 @@ private:
         }
         assert(inside > 0 && inside < 4);
         const auto& order = orders_[mask];
-        const auto between = [&](std::size_t in, std::size_t out) -> Crossing {
+        const auto between = [&](std::size_t in, std::size_t out) -> EdgeCrossing {
             const std::int64_t inner = tetrahedron[order[in]];
             if (values[order[in]] == at) return {inner, inner};
             return unordered(inner, tetrahedron[order[out]]);
         };
-        const auto triangle = [&](const Crossing& a, const Crossing& b, const Crossing& c) {
+        const auto triangle = [&](const EdgeCrossing& a, const EdgeCrossing& b,
+                                  const EdgeCrossing& c) {
             if (a != b && b != c && c != a) pieces_[level].triangles.push_back({a, b, c});
         };
         if (inside == 1) {
@@ -144,45 +146,46 @@ private:
     }
 
     /// The faces of a tetrahedron in the sides of the lattice.
-    void add_sides(const Tetrahedron& tetrahedron) {
+    void add_box_faces(const LatticeTetrahedron& tetrahedron) {
         constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
             {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};  // outward
-        std::array<unsigned, 4> sides{};
+        std::array<unsigned, 4> box_faces{};
         for (std::size_t i = 0; i < 4; ++i)
-            sides[i] = lattice_.sides(tetrahedron[i]);
+            box_faces[i] = lattice_.box_faces(tetrahedron[i]);
         for (const auto& [a, b, c] : kFaces) {
-            const unsigned common = sides[a] & sides[b] & sides[c];
+            const unsigned common = box_faces[a] & box_faces[b] & box_faces[c];
             if (common == 0) continue;
             for (std::size_t level = 0; level < levels_.size(); ++level)
                 add_face({tetrahedron[a], tetrahedron[b], tetrahedron[c]},
-                         static_cast<Side>(std::countr_zero(common)), level);
+                         static_cast<BoxFace>(std::countr_zero(common)), level);
         }
     }
 
     /// Of a triangle in a side of the lattice the edges that are on the level set, or in another
     /// side, around what is inside.
-    void add_face(const std::array<std::int64_t, 3>& corners, Side side, std::size_t level) {
-        std::optional<Crossing> leaving, entering;
-        const auto put = [&](Side along, const Crossing& from, const Crossing& to) {
-            if (from != to) pieces_[level].edges.push_back({side, along, from, to});
+    void add_face(const std::array<std::int64_t, 3>& corners, BoxFace box_face, std::size_t level) {
+        std::optional<EdgeCrossing> leaving, entering;
+        const auto put = [&](BoxFace along, const EdgeCrossing& from, const EdgeCrossing& to) {
+            if (from != to) pieces_[level].edges.push_back({box_face, along, from, to});
         };
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int64_t a = corners[i], b = corners[(i + 1) % 3];
             const bool has_a = lattice_.value(a) <= levels_[level];
             const bool has_b = lattice_.value(b) <= levels_[level];
             if (!has_a && !has_b) continue;
-            Crossing from{a, a}, to{b, b};
+            EdgeCrossing from{a, a}, to{b, b};
             if (has_a != has_b) {
                 const std::int64_t in = has_a ? a : b;
                 const bool is_at = lattice_.value(in) == levels_[level];
-                const Crossing crossing = is_at ? Crossing{in, in} : unordered(a, b);
+                const EdgeCrossing crossing = is_at ? EdgeCrossing{in, in} : unordered(a, b);
                 (has_a ? to : from) = crossing;
                 (has_a ? leaving : entering) = crossing;
             }
-            const unsigned others = lattice_.sides(a) & lattice_.sides(b) & ~(1U << side);
-            if (others != 0) put(static_cast<Side>(std::countr_zero(others)), from, to);
+            const unsigned others =
+                lattice_.box_faces(a) & lattice_.box_faces(b) & ~(1U << box_face);
+            if (others != 0) put(static_cast<BoxFace>(std::countr_zero(others)), from, to);
         }
-        if (leaving) put(side, *leaving, *entering);
+        if (leaving) put(box_face, *leaving, *entering);
     }
 
     const RefinedLattice& lattice_;
@@ -197,35 +200,35 @@ private:
 /// @return how many triangles are the level set itself
 std::size_t close(LevelPieces& pieces) {
     const std::size_t on_level = pieces.triangles.size();
-    const auto add = [&](Side side, const Crossing& from, const Crossing& to) {
-        const std::int64_t tip = -1 - side;
+    const auto add = [&](BoxFace box_face, const EdgeCrossing& from, const EdgeCrossing& to) {
+        const std::int64_t tip = -1 - box_face;
         pieces.triangles.push_back({from, to, {tip, tip}});
     };
-    std::map<std::pair<Side, Side>, std::map<Crossing, int>> ends;  // less beginnings
-    for (const SideEdge& edge : pieces.edges) {
-        if (edge.along == edge.side) {
-            add(edge.side, edge.from, edge.to);
+    std::map<std::pair<BoxFace, BoxFace>, std::map<EdgeCrossing, int>> ends;  // less beginnings
+    for (const BoxFaceEdge& edge : pieces.edges) {
+        if (edge.along == edge.box_face) {
+            add(edge.box_face, edge.from, edge.to);
         } else {
-            auto& line = ends[{edge.side, edge.along}];
+            auto& line = ends[{edge.box_face, edge.along}];
             --line[edge.from];
             ++line[edge.to];
         }
     }
-    for (const auto& [sides, line] : ends) {
-        std::vector<Crossing> from, to;
+    for (const auto& [box_faces, line] : ends) {
+        std::vector<EdgeCrossing> from, to;
         for (const auto& [crossing, count] : line)
             (count < 0 ? from : to)
                 .insert((count < 0 ? from : to).end(), index(std::abs(count)), crossing);
         assert(from.size() == to.size());
         for (std::size_t i = 0; i < from.size(); ++i)
-            add(sides.first, from[i], to[i]);
+            add(box_faces.first, from[i], to[i]);
     }
     return on_level;
 }
 
 /// Where a level set passes between two corners.
-Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
-    if (crossing[0] < 0) return lattice.beyond(static_cast<Side>(-1 - crossing[0]));
+Vec3 position_of(const RefinedLattice& lattice, const EdgeCrossing& crossing, double level) {
+    if (crossing[0] < 0) return lattice.beyond(static_cast<BoxFace>(-1 - crossing[0]));
     const Vec3 a = lattice.position(crossing[0]);
     if (crossing[0] == crossing[1]) return a;
     const Vec3 b = lattice.position(crossing[1]);
@@ -250,7 +253,8 @@ std::size_t cancel_equal(std::vector<CrossingTriangle>& triangles, std::size_t o
     std::vector<Turned> sorted;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         auto corners = triangles[t];
-        if (!std::ranges::all_of(corners, [](const Crossing& c) { return c[0] == c[1]; })) continue;
+        if (!std::ranges::all_of(corners, [](const EdgeCrossing& c) { return c[0] == c[1]; }))
+            continue;
         std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
         const int turn = corners[1] < corners[2] ? 1 : -1;
         if (turn < 0) std::swap(corners[1], corners[2]);
@@ -278,12 +282,13 @@ LevelSet numbered(const RefinedLattice& lattice, double level, LevelPieces piece
     LevelSet level_set;
     const std::size_t on_level = close(pieces);
     level_set.on_level = cancel_equal(pieces.triangles, on_level);
-    std::vector<std::pair<Crossing, std::int32_t>> crossings;  // and the number that each had first
+    std::vector<std::pair<EdgeCrossing, std::int32_t>>
+        crossings;  // and the number that each had first
     KeyTable known;
     for (const CrossingTriangle& triangle : pieces.triangles) {
         auto& numbers = level_set.triangles.emplace_back();
         for (std::size_t i = 0; i < 3; ++i) {
-            const Crossing& crossing = triangle[i];
+            const EdgeCrossing& crossing = triangle[i];
             const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(crossing);
             const std::int32_t next = checked_number(crossings.size(), "vertices of a level set");
             const auto [number, is_new] = known.find_or_add(

@@ -98,24 +98,24 @@ std::vector<std::int64_t> turning_points(const Lattice& lattice, std::span<const
     return concatenated(layers);
 }
 
-/// How many connected parts nodes are. Where the field hardly changes along an axis they
+/// How many connected components nodes are. Where the field hardly changes along an axis they
 /// come in lines, of which a lattice shows a few: so they are next to each other whose distance in
 /// the space that the field is the same in all directions of is no more than a cell's diagonal.
-std::size_t connected_parts(std::span<const std::int64_t> nodes, const Lattice& lattice,
-                            const AxisRatios& anisotropy) {
+std::size_t connected_components(std::span<const std::int64_t> nodes, const Lattice& lattice,
+                                 const AxisRatios& anisotropy) {
     Map3 map = map_of(anisotropy);
     const double most = std::ranges::max(anisotropy.ratios);
     for (Vec3& row : map)
         row = times(1 / most, row);
-    std::vector<Vec3> left;  // in no part yet
+    std::vector<Vec3> left;  // in no component yet
     const auto nx = lattice.counts[0], ny = lattice.counts[1];
     for (const std::int64_t n : nodes) {
         const auto node = static_cast<int>(n);
         left.push_back(mapped(map, lattice.position(node % nx, node / nx % ny, node / nx / ny)));
     }
     const double next = (1 + 1e-9) * length(lattice.spacing);
-    std::size_t parts = 0;
-    for (; !left.empty(); ++parts) {
+    std::size_t components = 0;
+    for (; !left.empty(); ++components) {
         std::vector<Vec3> reached{left.back()};
         left.pop_back();
         while (!reached.empty()) {
@@ -128,7 +128,7 @@ std::size_t connected_parts(std::span<const std::int64_t> nodes, const Lattice& 
             left.erase(near, left.end());
         }
     }
-    return parts;
+    return components;
 }
 
 /// Whether a field hardly changes but along one axis: where it turns back, critical points fill a
@@ -346,7 +346,7 @@ private:
         for (const CriticalPoint& point : points)
             nodes.push_back(point.node);
         if (is_layered(likely) && plain_cost_ < cost + kClearly) return nodes.size();
-        return connected_parts(nodes, coarse_, likely.anisotropy);
+        return connected_components(nodes, coarse_, likely.anisotropy);
     }
 
     /// Whether dips say nothing of limbs that are overturned.

@@ -77,17 +77,17 @@ private:
         double distances = 0, angles = 0;
     };
 
-    Missed missed(const Likely& kind, int part) const;
+    Missed missed(const Likely& kind, int fold) const;
     /// A function of a kind through rows, and the inequalities that it has to meet.
     Spline solved(const Likely& kind, std::vector<Functional> rows,
                   ActiveInequalities& active) const;
-    std::vector<Functional> rows_without(int part, int order) const;
-    std::vector<Inequality> inequalities_without(int part, int order) const;
+    std::vector<Functional> rows_without(int fold, int order) const;
+    std::vector<Inequality> inequalities_without(int fold, int order) const;
 
     const KnownData& known_;
     std::vector<double> gaps_;
     std::vector<std::size_t> contacts_, dips_;
-    std::vector<int> contact_parts_, dip_parts_;
+    std::vector<int> contact_folds_, dip_folds_;
     EvenSteepness even_;
     double steepness_ = 1;  // in the mean, from surface to surface
 };

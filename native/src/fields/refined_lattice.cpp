@@ -74,22 +74,22 @@ Vec3 RefinedLattice::position(std::int64_t corner) const {
     return {coordinate(0, x), coordinate(1, y), coordinate(2, z)};
 }
 
-unsigned RefinedLattice::sides(std::int64_t corner) const {
+unsigned RefinedLattice::box_faces(std::int64_t corner) const {
     const Vec3 p = position(corner);
-    unsigned side_bits = 0;
+    unsigned bits = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (p[axis] == coordinate(axis, 0)) side_bits |= 1U << axis;
-        if (p[axis] == coordinate(axis, counts_[axis] - 1)) side_bits |= 8U << axis;
+        if (p[axis] == coordinate(axis, 0)) bits |= 1U << axis;
+        if (p[axis] == coordinate(axis, counts_[axis] - 1)) bits |= 8U << axis;
     }
-    return side_bits;
+    return bits;
 }
 
-Vec3 RefinedLattice::beyond(Side side) const {
+Vec3 RefinedLattice::beyond(BoxFace box_face) const {
     Vec3 p{};
     for (std::size_t axis = 0; axis < 3; ++axis)
         p[axis] = origin_[axis] + spacing_[axis] * (counts_[axis] - 1) / 2;
-    const std::size_t axis = side % 3;
-    p[axis] = coordinate(axis, side < 3 ? -1 : counts_[axis]);
+    const std::size_t axis = box_face % 3;
+    p[axis] = coordinate(axis, box_face < 3 ? -1 : counts_[axis]);
     return p;
 }
 
@@ -102,9 +102,9 @@ std::array<std::int64_t, 8> RefinedLattice::corners(const CellIndex& cell) const
     return nodes;
 }
 
-Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corners,
-                                        std::size_t number) {
-    Tetrahedron vertices{};
+LatticeTetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corners,
+                                               std::size_t number) {
+    LatticeTetrahedron vertices{};
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& step = kTetrahedraOfCell[number][i];
         vertices[i] = corners[static_cast<std::size_t>(step[0] + 2 * step[1] + 4 * step[2])];
@@ -115,7 +115,7 @@ Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corne
 std::vector<std::int64_t> RefinedLattice::divided_corners() const {
     std::vector<std::int64_t> corners;
     for (const auto& [cell, tetrahedra] : divided_) {
-        for (const Tetrahedron& tetrahedron : tetrahedra)
+        for (const LatticeTetrahedron& tetrahedron : tetrahedra)
             corners.insert(corners.end(), tetrahedron.begin(), tetrahedron.end());
     }
     sort_unique(corners);
@@ -144,7 +144,7 @@ std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p) const {
     return cells;
 }
 
-std::vector<Tetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
+std::vector<LatticeTetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
     const auto [place, is_new] = divided_.try_emplace(node(cell));
     if (is_new) {
         const auto all = corners(cell);
@@ -155,8 +155,8 @@ std::vector<Tetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
 }
 
 /// The corners of the vertex, edge, face or tetrahedron in which p lies; nothing if it is outside.
-std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedron& tetrahedron,
-                                                                 exact::SpacePointId p) {
+std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(
+    const LatticeTetrahedron& tetrahedron, exact::SpacePointId p) {
     std::array<exact::SpacePointId, 4> corners;
     for (std::size_t i = 0; i < 4; ++i)
         corners[i] = exact_.add(position(tetrahedron[i]));
@@ -182,7 +182,7 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
     const exact::SpacePointId at = exact_.add(p);
     std::optional<std::vector<std::int64_t>> simplex;
     for (const CellIndex& cell : cells) {
-        for (const Tetrahedron& tetrahedron : make_divided(cell)) {
+        for (const LatticeTetrahedron& tetrahedron : make_divided(cell)) {
             simplex = carrier(tetrahedron, at);
             if (simplex) break;
         }
@@ -212,8 +212,8 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
     corner_of_point_.push_back(new_corner);
     [[maybe_unused]] std::size_t replaced = 0;
     for (const CellIndex& cell : cells) {
-        std::vector<Tetrahedron> divided;
-        for (const Tetrahedron& tetrahedron : make_divided(cell)) {
+        std::vector<LatticeTetrahedron> divided;
+        for (const LatticeTetrahedron& tetrahedron : make_divided(cell)) {
             const auto place = [&](std::int64_t corner) {
                 return std::ranges::find(tetrahedron, corner) - tetrahedron.begin();
             };
@@ -236,12 +236,12 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
 }
 
 /// Of those that are flat but for rounding their neighbors have the same values.
-Located RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
+Located RefinedLattice::in_tetrahedra(const std::vector<LatticeTetrahedron>& tetrahedra,
                                       const Vec3& p) const {
     const double least_whole = 1e-9 * spacing_[0] * spacing_[1] * spacing_[2];
     double best = -HUGE_VAL;
     Located nearest{};
-    for (const Tetrahedron& tetrahedron : tetrahedra) {
+    for (const LatticeTetrahedron& tetrahedron : tetrahedra) {
         std::array<Vec3, 4> at{};
         Located candidate{tetrahedron, {}};
         for (std::size_t i = 0; i < 4; ++i) {

@@ -14,10 +14,10 @@
 namespace realmodel::fields {
 
 /// The corners of a tetrahedron, of positive volume.
-using Tetrahedron = std::array<std::int64_t, 4>;
+using LatticeTetrahedron = std::array<std::int64_t, 4>;
 /// The corners of the tetrahedron that a position is in, and their weights there, which sum to 1.
 struct Located {
-    Tetrahedron corners;
+    LatticeTetrahedron corners;
     std::array<double, 4> weights;
 };
 /// The lowest corner of a cell, by its steps along x, y, z from the lattice's first node.
@@ -40,7 +40,7 @@ class RefinedLattice {
 public:
     /// Of the box of the lattice: where the coordinate of an axis is least, or 3 + the axis where
     /// it is greatest.
-    using Side = std::uint8_t;
+    using BoxFace = std::uint8_t;
 
     /// @throws InputError  as level_sets does
     RefinedLattice(const LatticeField& field, std::span<const double> levels);
@@ -55,11 +55,11 @@ public:
     }
     Vec3 position(std::int64_t corner) const;
     /// A bit for each side that a corner lies in.
-    unsigned sides(std::int64_t corner) const;
+    unsigned box_faces(std::int64_t corner) const;
     /// A point beyond the middle of a side.
-    Vec3 beyond(Side side) const;
+    Vec3 beyond(BoxFace box_face) const;
     /// The tetrahedra of a cell that points divide, nullptr for any other cell.
-    const std::vector<Tetrahedron>* divided(const CellIndex& cell) const {
+    const std::vector<LatticeTetrahedron>* divided(const CellIndex& cell) const {
         const auto entry = divided_.find(node(cell));
         return entry == divided_.end() ? nullptr : &entry->second;
     }
@@ -70,7 +70,7 @@ public:
     /// Calls `look` with each tetrahedron that has a corner.
     template <class Look>
     void for_each_around(std::int64_t corner, const Look& look) const {
-        const auto look_at = [&](const Tetrahedron& tetrahedron) {
+        const auto look_at = [&](const LatticeTetrahedron& tetrahedron) {
             if (std::ranges::find(tetrahedron, corner) != tetrahedron.end()) look(tetrahedron);
         };
         for (const CellIndex& cell : cells_at(position(corner))) {
@@ -88,7 +88,7 @@ public:
     template <class Value>
     bool is_between(std::int64_t corner, const Value& value_of) const {
         bool lesser = false, greater = false;
-        for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
+        for_each_around(corner, [&](const LatticeTetrahedron& tetrahedron) {
             for (const std::int64_t other : tetrahedron) {
                 lesser |= value_of(other) < value_of(corner);
                 greater |= value_of(other) > value_of(corner);
@@ -96,7 +96,8 @@ public:
         });
         return lesser && greater;
     }
-    static Tetrahedron tetrahedron(const std::array<std::int64_t, 8>& corners, std::size_t number);
+    static LatticeTetrahedron tetrahedron(const std::array<std::int64_t, 8>& corners,
+                                          std::size_t number);
     /// The corners of a cell: number x + 2 y + 4 z of those at steps x, y, z.
     std::array<std::int64_t, 8> corners(const CellIndex& cell) const;
     /// The tetrahedron that a position of the lattice is in, but for rounding; nothing outside.
@@ -113,10 +114,10 @@ private:
     void add_point(std::size_t point, const Vec3& p);
     /// The cells whose boxes contain a position of the lattice.
     std::vector<CellIndex> cells_at(const Vec3& p) const;
-    std::vector<Tetrahedron>& make_divided(const CellIndex& cell);
-    std::optional<std::vector<std::int64_t>> carrier(const Tetrahedron& tetrahedron,
+    std::vector<LatticeTetrahedron>& make_divided(const CellIndex& cell);
+    std::optional<std::vector<std::int64_t>> carrier(const LatticeTetrahedron& tetrahedron,
                                                      exact::SpacePointId p);
-    Located in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Vec3& p) const;
+    Located in_tetrahedra(const std::vector<LatticeTetrahedron>& tetrahedra, const Vec3& p) const;
 
     std::array<double, 3> origin_, spacing_;
     std::array<std::int32_t, 3> counts_;
@@ -127,7 +128,8 @@ private:
     std::vector<double> point_values_;
     std::vector<std::int64_t> corner_of_point_;
     std::map<std::int64_t, std::size_t> point_at_node_;
-    std::map<std::int64_t, std::vector<Tetrahedron>> divided_;  ///< by the cell's lowest corner
+    std::map<std::int64_t, std::vector<LatticeTetrahedron>>
+        divided_;  ///< by the cell's lowest corner
     exact::SpacePoints exact_;
 };
 

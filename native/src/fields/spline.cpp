@@ -51,7 +51,7 @@ void Spline::factor(const Execution& execution) {
         terms.row(i) << of[0], of[1], of[2];
         lifts[static_cast<std::size_t>(i)] = known_[i].of_lift();
     }
-    const Kernel kernel = smoothness_.kernel();
+    const SplineKernel kernel = smoothness_.kernel();
     const auto entry = [&](Eigen::Index i, Eigen::Index j) {
         double error = 0;
         if (i == j) error = known_[i].measured_slope ? smoothness_.errors.slope : known_[i].error;
@@ -84,9 +84,9 @@ void Spline::solve(const Execution& execution) {
     for (Eigen::Index i = 0; i < n; ++i)
         right(i, 0) = scales_(i) * known_[i].right;
     factor_->solve(right, execution.progress);
-    Eigen::MatrixXd sides(n, 4);
-    sides << right, coordinates_;
-    products_ = sides.transpose() * sides;
+    Eigen::MatrixXd right_hand_sides(n, 4);
+    right_hand_sides << right, coordinates_;
+    products_ = right_hand_sides.transpose() * right_hand_sides;
     const Eigen::Matrix3d inner = products_.bottomRightCorner<3, 3>();
     const Eigen::Vector3d tilt = inner.ldlt().solve(products_.block<3, 1>(1, 0));
     tilt_ = {tilt(0), tilt(1), tilt(2)};
@@ -155,19 +155,19 @@ std::vector<double> Spline::weights_for(const Functional& functional) const {
     const Vec3 of = f.of_coordinates();
     const Lift lift = f.of_lift();
     const auto n = static_cast<Eigen::Index>(known_.size());
-    Eigen::MatrixXd side(n, 1);
+    Eigen::MatrixXd right_hand_side(n, 1);
     for (Eigen::Index i = 0; i < n; ++i) {
-        side(i, 0) = scales_(i) * (known_[i].with(f, smoothness_.kernel()) +
-                                   kProducts * (dot(known_[i].of_coordinates(), of) +
-                                                product(known_[i].of_lift(), lift)));
+        right_hand_side(i, 0) = scales_(i) * (known_[i].with(f, smoothness_.kernel()) +
+                                              kProducts * (dot(known_[i].of_coordinates(), of) +
+                                                           product(known_[i].of_lift(), lift)));
     }
-    factor_->solve(side, nullptr);
+    factor_->solve(right_hand_side, nullptr);
     const Eigen::Matrix3d inner = products_.bottomRightCorner<3, 3>();
     const Eigen::Vector3d drift =
-        coordinates_.transpose() * side.col(0) - Eigen::Vector3d(of[0], of[1], of[2]);
-    side.col(0) -= coordinates_ * inner.ldlt().solve(drift);
-    factor_->solve_transposed(side, nullptr);
-    return {side.data(), side.data() + n};
+        coordinates_.transpose() * right_hand_side.col(0) - Eigen::Vector3d(of[0], of[1], of[2]);
+    right_hand_side.col(0) -= coordinates_ * inner.ldlt().solve(drift);
+    factor_->solve_transposed(right_hand_side, nullptr);
+    return {right_hand_side.data(), right_hand_side.data() + n};
 }
 
 bool Spline::left_out(std::size_t functional) const {
@@ -212,7 +212,7 @@ void Spline::blocks_at(std::span<const Vec3> positions, std::span<const double> 
                        std::span<double> values) const {
     using Lanes = Eigen::Array<double, static_cast<int>(kWidth), 1>;
     const std::size_t further = positions.empty() ? 0 : lifts.size() / positions.size();
-    const Kernel kernel = smoothness_.kernel();
+    const SplineKernel kernel = smoothness_.kernel();
     std::vector<Lanes> up(further, Lanes::Zero());
     for (std::size_t first = 0; first < positions.size(); first += kWidth) {
         const std::size_t count = std::min(kWidth, positions.size() - first);
@@ -259,7 +259,7 @@ template void Spline::blocks_at<64>(std::span<const Vec3>, std::span<const doubl
 std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) const {
     const Vec3 p = place(at, lift);
     const Lift q = scaled(smoothness_.lift, lift);
-    const Kernel kernel = smoothness_.kernel();
+    const SplineKernel kernel = smoothness_.kernel();
     Vec3 sum = tilt_;
     Lift rise = q.empty() ? Lift{} : lift_tilt_;
     const auto add = [&](double weight, const Vec3& d, const Lift& from) {

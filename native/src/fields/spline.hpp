@@ -27,7 +27,7 @@ struct Smoothness {
     double lift = 1;  ///< of further coordinates
     std::vector<Vec3> throws{};  ///< by how much places move for each unit of each of these
 
-    Kernel kernel() const { return {order, errors.value}; }
+    SplineKernel kernel() const { return {order, errors.value}; }
 };
 
 /// The function in space that meets functionals and whose derivatives are least (see Kernel),

@@ -166,9 +166,9 @@ EvenSteepness::EvenSteepness(const KnownData& known)
             for (int i = 0; i < coarse.counts[0]; ++i) {
                 const Vec3 at = coarse.position(i, j, k);
                 // the combinations of sides of faults by turns
-                const std::size_t side = places_.size() % known.data().slits.sides;
+                const std::size_t combination = places_.size() % known.data().slits.combinations;
                 places_.push_back(
-                    {known.frame().to_local(at), lifts_at(known, std::span(&at, 1), side)});
+                    {known.frame().to_local(at), lifts_at(known, std::span(&at, 1), combination)});
             }
         }
     }

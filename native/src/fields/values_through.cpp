@@ -24,10 +24,10 @@ constexpr int kSteps = 200;         ///< of each solution
 constexpr double kReached = 1e-12;  ///< of what contacts miss their levels by at first: nothing
 
 /// The weights of contacts, a row for each, by those values alone that are corners.
-using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using WeightMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// @param used  the places of the values that are corners, rising
-Weights weights_of(const LevelsAtContacts& at, std::span<const std::int64_t> used) {
+WeightMatrix weights_of(const LevelsAtContacts& at, std::span<const std::int64_t> used) {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t contact = 0; contact < at.corners.size(); ++contact) {
         for (std::size_t i = 0; i < 4; ++i) {
@@ -36,7 +36,7 @@ Weights weights_of(const LevelsAtContacts& at, std::span<const std::int64_t> use
                                  at.weights[contact][i]);
         }
     }
-    Weights weights(std::ssize(at.corners), std::ssize(used));
+    WeightMatrix weights(std::ssize(at.corners), std::ssize(used));
     weights.setFromTriplets(entries.begin(), entries.end());
     return weights;
 }
@@ -51,7 +51,7 @@ ValuesThrough values_through(std::span<const double> initial, const LevelsAtCont
     sort_unique(used);
     if (!used.empty() && (used.front() < 0 || used.back() >= std::ssize(initial)))
         throw InputError("option", "a corner is no value");
-    const Weights weights = weights_of(at, used);
+    const WeightMatrix weights = weights_of(at, used);
     Eigen::VectorXd values(std::ssize(used));
     for (std::size_t n = 0; n < used.size(); ++n)
         values[static_cast<Eigen::Index>(n)] = initial[index(used[n])];

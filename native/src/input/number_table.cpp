@@ -328,17 +328,18 @@ NumberTable read_numbers(std::string_view text, const TableFormat& format, int t
     begins.push_back(text.size());
     std::vector<NumberTable> tables(begins.size() - 1);
     std::vector<std::optional<Wrong>> wrong(tables.size());
-    parallel_chunks(tables.size(), {threads, nullptr}, [&](std::size_t part) {
-        wrong[part] = TextLines(text, format).read(begins[part], begins[part + 1], tables[part]);
+    parallel_chunks(tables.size(), {threads, nullptr}, [&](std::size_t chunk) {
+        wrong[chunk] =
+            TextLines(text, format).read(begins[chunk], begins[chunk + 1], tables[chunk]);
     });
     NumberTable all;
     std::size_t count = 0;
     for (const NumberTable& table : tables)
         count += table.values.size();
     all.values.reserve(count);
-    for (std::size_t part = 0; part < tables.size(); ++part) {
-        if (wrong[part]) refuse(std::move(*wrong[part]), all.lines);
-        const NumberTable& table = tables[part];
+    for (std::size_t chunk = 0; chunk < tables.size(); ++chunk) {
+        if (wrong[chunk]) refuse(std::move(*wrong[chunk]), all.lines);
+        const NumberTable& table = tables[chunk];
         all.values.insert(all.values.end(), table.values.begin(), table.values.end());
         all.lines += table.lines;
         all.filtered += table.filtered;

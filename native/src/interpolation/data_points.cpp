@@ -43,7 +43,7 @@ void require_usable(std::span<const double> numbers, const char* what, std::size
         {static_cast<std::int64_t>(i)});
 }
 
-std::vector<double> DataPoints::for_given(std::span<const double> point_values) const {
+std::vector<double> DataPoints::for_input_points(std::span<const double> point_values) const {
     std::vector<double> out(number_of.size());
     for (std::size_t i = 0; i < out.size(); ++i)
         out[i] = point_values[number_of[i]];
@@ -86,14 +86,14 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points,
     return data;
 }
 
-std::vector<std::int32_t> even_part(std::size_t count, std::size_t most) {
-    std::vector<std::int32_t> part(std::min(count, most));
-    for (std::size_t k = 0; k < part.size(); ++k)
-        part[k] = static_cast<std::int32_t>(k * count / part.size());
-    return part;
+std::vector<std::int32_t> even_subset(std::size_t count, std::size_t most) {
+    std::vector<std::int32_t> subset(std::min(count, most));
+    for (std::size_t k = 0; k < subset.size(); ++k)
+        subset[k] = static_cast<std::int32_t>(k * count / subset.size());
+    return subset;
 }
 
-void require_finite_nodes(std::span<const Position> nodes) {
+void require_finite_nodes(std::span<const PlanPosition> nodes) {
     for (std::size_t i = 0; i < nodes.size(); ++i)
         require_usable(nodes[i], "node", i);
 }

@@ -26,8 +26,9 @@ void check_options(const InverseDistanceOptions& options) {
 }
 
 /// @param leave_out  the means are those of the data's own positions, each from the others
-std::vector<double> means(const DataPoints& data, std::span<const Position> nodes, bool leave_out,
-                          const InverseDistanceOptions& options, const Execution& execution) {
+std::vector<double> means(const DataPoints& data, std::span<const PlanPosition> nodes,
+                          bool leave_out, const InverseDistanceOptions& options,
+                          const Execution& execution) {
     const spatial::NearestPoints tree(data.local);
     const std::size_t points = data.local.size();
     Neighborhood neighborhood = options.neighborhood;
@@ -45,7 +46,7 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
             return DistanceScratch{NeighborSearch(data, tree, neighborhood), {}};
         },
         [&](DistanceScratch& scratch, std::size_t i) {
-            const Position node = leave_out ? data.local[i] : data.to_local(nodes[i]);
+            const PlanPosition node = leave_out ? data.local[i] : data.to_local(nodes[i]);
             const std::int32_t left_out =
                 leave_out ? static_cast<std::int32_t>(i) : NeighborSearch::kNobody;
             scratch.search.find(node, scratch.near, left_out);
@@ -97,7 +98,7 @@ std::vector<double> inverse_distance_left_out(std::span<const std::array<double,
                                               const Execution& execution) {
     check_options(options);
     const DataPoints data = prepare_points(points);
-    return data.for_given(means(data, {}, true, options, execution));
+    return data.for_input_points(means(data, {}, true, options, execution));
 }
 
 std::vector<double> nearest_distances(std::span<const std::array<double, 3>> points,

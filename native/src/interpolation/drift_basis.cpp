@@ -13,7 +13,7 @@ namespace {
 // The least part of a term, its values of the order of 1, that is orthogonal to the terms before
 // it: with less the data do not distinguish it from them. Points off a line by a millionth of its
 // length are on it.
-constexpr double kLeastPart = 1e-6;
+constexpr double kLeastComponent = 1e-6;
 // Points closer together show no trend: far from them its terms, and the variances that are their
 // squares, would overflow.
 constexpr double kLeastSpread = 1e-60;
@@ -25,9 +25,9 @@ void make_orthogonal(const Eigen::MatrixXd& basis, Eigen::Index count, Eigen::Ve
                      Along&& along) {
     for (int pass = 0; pass < 2; ++pass) {
         for (Eigen::Index k = 0; k < count; ++k) {
-            const double part = basis.col(k).dot(v);
-            v -= part * basis.col(k);
-            along(k, part);
+            const double component = basis.col(k).dot(v);
+            v -= component * basis.col(k);
+            along(k, component);
         }
     }
 }
@@ -38,16 +38,16 @@ Eigen::Index drift_terms(Drift drift) {
     return drift == Drift::kConstant ? 1 : drift == Drift::kLinear ? 3 : 6;
 }
 
-DriftFrame::DriftFrame(std::span<const Position> positions, Drift drift) : drift_(drift) {
+DriftFrame::DriftFrame(std::span<const PlanPosition> positions, Drift drift) : drift_(drift) {
     if (drift == Drift::kConstant || positions.empty()) return;
-    for (const Position& p : positions) {
+    for (const PlanPosition& p : positions) {
         center_[0] += p[0];
         center_[1] += p[1];
     }
     center_[0] /= static_cast<double>(positions.size());
     center_[1] /= static_cast<double>(positions.size());
     double xx = 0, xy = 0, yy = 0, largest = 0;
-    for (const Position& p : positions) {
+    for (const PlanPosition& p : positions) {
         const double x = p[0] - center_[0], y = p[1] - center_[1];
         xx += x * x;
         xy += x * y;
@@ -61,7 +61,7 @@ DriftFrame::DriftFrame(std::span<const Position> positions, Drift drift) : drift
     along_y_ = elementary::sin(angle);
 }
 
-DriftFrame::Terms DriftFrame::terms(const Position& position) const {
+DriftFrame::Terms DriftFrame::terms(const PlanPosition& position) const {
     const double x = (position[0] - center_[0]) / scale_, y = (position[1] - center_[1]) / scale_;
     const double along = along_x_ * x + along_y_ * y, across = along_x_ * y - along_y_ * x;
     Terms terms(drift_terms(drift_));
@@ -78,7 +78,7 @@ DriftFrame::Terms DriftFrame::terms(const Position& position) const {
     return terms;
 }
 
-Eigen::MatrixXd DriftFrame::terms(std::span<const Position> positions) const {
+Eigen::MatrixXd DriftFrame::terms(std::span<const PlanPosition> positions) const {
     Eigen::MatrixXd rows(std::ssize(positions), drift_terms(drift_));
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
         rows.row(i) = terms(positions[i]);
@@ -91,7 +91,7 @@ void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
     basis_.resize(rows, terms);
     plain_basis_.resize(rows, terms);
     size_ = 0;
-    const double least = kLeastPart * std::sqrt(static_cast<double>(rows));
+    const double least = kLeastComponent * std::sqrt(static_cast<double>(rows));
     Eigen::VectorXd v;
     for (Eigen::Index term = 0; term < terms; ++term) {
         v = plain.col(term);
@@ -103,7 +103,7 @@ void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
         v = whitened.col(term);
         upper_.col(size_).setZero();
         make_orthogonal(basis_, size_, v,
-                        [&](Eigen::Index k, double part) { upper_(k, size_) += part; });
+                        [&](Eigen::Index k, double component) { upper_(k, size_) += component; });
         const double length = v.norm();
         if (!(length > 1e-12 * whitened.col(term).norm())) continue;
         basis_.col(size_) = v / length;

@@ -26,14 +26,14 @@ class DriftFrame {
 public:
     using Terms = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMostDriftTerms>;
 
-    DriftFrame(std::span<const Position> positions, Drift drift);
-    Terms terms(const Position& position) const;
+    DriftFrame(std::span<const PlanPosition> positions, Drift drift);
+    Terms terms(const PlanPosition& position) const;
     /// A row for each position.
-    Eigen::MatrixXd terms(std::span<const Position> positions) const;
+    Eigen::MatrixXd terms(std::span<const PlanPosition> positions) const;
 
 private:
     Drift drift_;
-    Position center_{};
+    PlanPosition center_{};
     double along_x_ = 1, along_y_ = 0, scale_ = 1;
 };
 

@@ -56,7 +56,7 @@ LinearData::LinearData(const DataPoints& points, const Dips& dips,
     require_countable(points.local.size() + 2 * dips.positions.size(), "points and slopes");
     const double half = dips.baseline / 2;
     for (std::size_t i = 0; i < dips.positions.size(); ++i) {
-        const Position at = points.to_local(dips.positions[i]);
+        const PlanPosition at = points.to_local(dips.positions[i]);
         dips_.push_back(at);
         const std::int32_t sheet = has_sheets() ? of_dips[i] : 0;
         for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -18,7 +18,7 @@ namespace realmodel::interpolation {
 
 /// The difference of the heights at two positions, times a scale.
 struct Difference {
-    Position to, from;
+    PlanPosition to, from;
     double scale;
     double value;
     std::int32_t sheet = 0;
@@ -29,7 +29,7 @@ struct Difference {
 
 /// A kernel of two positions, or of two positions on sheets.
 template <class Kernel>
-double of_two(const Kernel& kernel, const Position& a, std::int32_t on_a, const Position& b,
+double of_two(const Kernel& kernel, const PlanPosition& a, std::int32_t on_a, const PlanPosition& b,
               std::int32_t on_b) {
     if constexpr (requires { kernel(a, on_a, b, on_b); }) {
         return kernel(a, on_a, b, on_b);
@@ -82,7 +82,7 @@ public:
     }
     bool is_point(std::int32_t i) const { return i < static_cast<std::int32_t>(point_count()); }
     const Difference& difference(std::int32_t i) const { return differences_[i - point_count()]; }
-    const Position& position(std::int32_t i) const {
+    const PlanPosition& position(std::int32_t i) const {
         return is_point(i) ? points_.local[i] : dips_[(i - point_count()) / 2];
     }
     bool has_sheets() const { return !units_.empty(); }
@@ -101,7 +101,7 @@ public:
 
     /// Of a datum and the height at a position, by a kernel of two positions.
     template <class Kernel>
-    double with_height(const Position& at, std::int32_t i, const Kernel& kernel,
+    double with_height(const PlanPosition& at, std::int32_t i, const Kernel& kernel,
                        std::int32_t on = 0) const {
         if (is_point(i)) return of_two(kernel, at, on, points_.local[i], sheet(i));
         const Difference& d = difference(i);
@@ -123,14 +123,15 @@ public:
     }
 
     /// At a height.
-    DriftFrame::Terms terms(const Position& at, std::int32_t on, const DriftFrame& frame) const {
+    DriftFrame::Terms terms(const PlanPosition& at, std::int32_t on,
+                            const DriftFrame& frame) const {
         return has_sheets() ? frame.terms(at) / unit(on) : frame.terms(at);
     }
 
 private:
     const DataPoints& points_;
     std::vector<double> units_;
-    std::vector<Position> dips_;  // in local coordinates
+    std::vector<PlanPosition> dips_;  // in local coordinates
     std::vector<Difference> differences_;
     std::size_t dips_at_node_ = 0;
     std::optional<spatial::NearestPoints> dip_tree_;

@@ -17,7 +17,7 @@ PlacesOnSurface places_on_surface(std::span<const std::array<double, 3>> vertice
                                   const Execution& execution) {
     require_finite_nodes(nodes);
     const auto positions = transformed(vertices, [](const auto& p) {
-        return Position{p[0], p[1]};
+        return PlanPosition{p[0], p[1]};
     });
     // On the border of a fault, which is asked of each surface, most places lie beside it.
     const spatial::MeshLocator locator(positions, triangles, spatial::box_around(nodes));
@@ -40,7 +40,7 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
                                        const Execution& execution) {
     const PlacesOnSurface places = places_on_surface(vertices, triangles, nodes, execution);
     std::vector<double> z(nodes.size(), std::numeric_limits<double>::quiet_NaN());
-    parallel_each(z.size(), execution, [&](std::size_t i) {
+    parallel_for_each(z.size(), execution, [&](std::size_t i) {
         if (places.triangle[i] < 0) return;
         const auto& corners = triangles[static_cast<std::size_t>(places.triangle[i])];
         // From the first corner: heights far from 0 lose no digits, a flat triangle is flat.

@@ -31,7 +31,7 @@ double spacing_in(const spatial::PlanBox& box, std::size_t points) {
     return spacing > 0 ? spacing : 1;
 }
 
-double mean_spacing_of(std::span<const Position> positions) {
+double mean_spacing_of(std::span<const PlanPosition> positions) {
     return spacing_in(spatial::box_around(positions), positions.size());
 }
 
@@ -77,7 +77,7 @@ public:
         weights_ = solver_.solve(right_);
     }
 
-    double at(const Position& position) const {
+    double at(const PlanPosition& position) const {
         const auto n = static_cast<Eigen::Index>(numbers_.size());
         const DriftBasis::Coefficients terms = basis_.solve(frame_->terms(position));
         double sum = 0;
@@ -92,7 +92,7 @@ private:
     /// Of two positions.
     struct ThinPlateKernel {
         double unit;
-        double operator()(const Position& a, const Position& b) const {
+        double operator()(const PlanPosition& a, const PlanPosition& b) const {
             return kernel(squared_distance(a, b) / (unit * unit));
         }
     };
@@ -102,7 +102,7 @@ private:
     double smoothing_;
     double base_ = 0;
     std::vector<std::int32_t> numbers_;
-    std::vector<Position> positions_;
+    std::vector<PlanPosition> positions_;
     std::optional<DriftFrame> frame_;
     DriftBasis basis_;
     Eigen::MatrixXd terms_, matrix_;
@@ -169,7 +169,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
             return ThinPlateScratch{whole, DataSearch(data, tree, neighborhood), {}, {}};
         },
         [&](ThinPlateScratch& scratch, std::size_t i) {
-            const Position node = distinct.to_local(nodes[i]);
+            const PlanPosition node = distinct.to_local(nodes[i]);
             if (all) {
                 tree.find(node, 1, scratch.near);
             } else {

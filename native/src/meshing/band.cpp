@@ -12,13 +12,13 @@ namespace {
 
 /// Edges of lattices that wait for the triangle behind them, found by their ends.
 struct OpenEdge {
-    Segment ends;
+    VertexSegment ends;
     HalfEdge edge;
 };
 
 /// Which faces lie in the band, by time stamp: crossing its border changes it, crossing an inner
 /// line does not.
-std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment>& inner,
+std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<VertexSegment>& inner,
                                        const Check& check) {
     constexpr signed char kUnknown = -1;
     std::size_t stamps = 0;
@@ -110,7 +110,7 @@ BandPoints band_points(const FlatMesh& mesh, const BorderPieces& border,
     BandPoints band;
     band.in_band.assign(mesh.points.size(), -1);
     for (const auto* pieces : {&border.border, &border.inner}) {
-        for (const Segment& piece : *pieces) {
+        for (const VertexSegment& piece : *pieces) {
             band.add(mesh, piece[0]);
             band.add(mesh, piece[1]);
         }
@@ -149,7 +149,7 @@ void add_triangles(FlatMesh& mesh, const Cdt& cdt, const std::vector<signed char
                 if (face->is_constrained(opposite)) mesh.fix(edge);
                 continue;
             }
-            const Segment wanted{mesh.to(edge), mesh.from(edge)};
+            const VertexSegment wanted{mesh.to(edge), mesh.from(edge)};
             const auto at = std::ranges::lower_bound(rim, wanted, {}, &OpenEdge::ends);
             if (at != rim.end() && at->ends == wanted) {
                 mesh.join(edge, at->edge);
@@ -162,10 +162,10 @@ void add_triangles(FlatMesh& mesh, const Cdt& cdt, const std::vector<signed char
     mesh.legalize(open);
 }
 
-void lock_pieces(FlatMesh& mesh, std::int32_t first, std::span<const Segment> locked) {
+void lock_pieces(FlatMesh& mesh, std::int32_t first, std::span<const VertexSegment> locked) {
     if (locked.empty()) return;
     const auto lock = [&](HalfEdge edge) {
-        const Segment piece{mesh.from(edge), mesh.to(edge)};
+        const VertexSegment piece{mesh.from(edge), mesh.to(edge)};
         if (mesh.is_border(edge) && std::binary_search(locked.begin(), locked.end(), piece))
             mesh.fix(edge, true, true);
     };
@@ -183,12 +183,12 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     take_lattices(out, std::move(lattices), rim);
     const BandPoints band = band_points(mesh, border, loners, rim, lattices);
 
-    std::vector<Segment> segments, inner;
-    for (const Segment& piece : border.border)
+    std::vector<VertexSegment> segments, inner;
+    for (const VertexSegment& piece : border.border)
         segments.push_back({band.in_band[piece[0]], band.in_band[piece[1]]});
     for (const OpenEdge& edge : rim)
         segments.push_back({band.in_band[edge.ends[0]], band.in_band[edge.ends[1]]});
-    for (const Segment& piece : border.inner) {
+    for (const VertexSegment& piece : border.inner) {
         inner.push_back(unordered(band.in_band[piece[0]], band.in_band[piece[1]]));
         segments.push_back(inner.back());
     }

@@ -37,6 +37,6 @@ private:
 };
 
 /// A pair of point numbers.
-using Segment = std::array<std::int32_t, 2>;
+using VertexSegment = std::array<std::int32_t, 2>;
 
 }  // namespace realmodel::meshing

@@ -53,7 +53,7 @@ PlanPoint point_of(const Cdt::Vertex_handle& vertex) {
 
 /// Names the segment that the refused one crosses: the first before it that does.
 [[noreturn]] void refuse_crossing(std::span<const Cdt::Vertex_handle> vertices,
-                                  std::span<const Segment> segments, std::size_t refused) {
+                                  std::span<const VertexSegment> segments, std::size_t refused) {
     const PlanPoint a = point_of(vertices[segments[refused][0]]);
     const PlanPoint b = point_of(vertices[segments[refused][1]]);
     for (std::size_t other = 0; other < refused; ++other) {
@@ -111,7 +111,7 @@ std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoin
 }
 
 void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
-                     std::span<const Segment> segments, const Check& check,
+                     std::span<const VertexSegment> segments, const Check& check,
                      std::vector<std::size_t>* refused) {
     const auto known = [&](std::int32_t point) {
         return point >= 0 && static_cast<std::size_t>(point) < vertices.size();
@@ -136,7 +136,7 @@ void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
 }
 
 std::vector<CoveredEdge> covered_edges(const Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
-                                       std::span<const Segment> segments) {
+                                       std::span<const VertexSegment> segments) {
     std::vector<CoveredEdge> edges;
     edges.reserve(segments.size());
     for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -145,8 +145,8 @@ std::vector<CoveredEdge> covered_edges(const Cdt& cdt, std::span<const Cdt::Vert
         while (at != end) {
             Cdt::Vertex_handle next;
             Cdt::Face_handle face;
-            int side = 0;
-            if (!cdt.includes_edge(at, end, next, face, side)) {
+            int opposite_corner = 0;
+            if (!cdt.includes_edge(at, end, next, face, opposite_corner)) {
                 const PlanPoint p = point_of(at);
                 throw InternalError("an inserted segment is a chain of edges",
                                     std::array{p[0], p[1], 0.0});
@@ -210,7 +210,7 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
 }
 
 ConstrainedTriangulation constrained_delaunay(std::span<const PlanPoint> points,
-                                              std::span<const Segment> segments,
+                                              std::span<const VertexSegment> segments,
                                               const Progress* progress) {
     const Check check = stopped_by(progress);
     Cdt cdt;

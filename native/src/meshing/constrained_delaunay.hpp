@@ -63,12 +63,12 @@ std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoin
 /// and listed in `refused`, or refused where that is null.
 /// @throws InputError "crossing", "bad_index".
 void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
-                     std::span<const Segment> segments, const Check& check,
+                     std::span<const VertexSegment> segments, const Check& check,
                      std::vector<std::size_t>* refused = nullptr);
 
 /// ConstrainedTriangulation::covered, once all segments are inserted.
 std::vector<CoveredEdge> covered_edges(const Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
-                                       std::span<const Segment> segments);
+                                       std::span<const VertexSegment> segments);
 
 /// The finite faces by number; each starts with its least vertex, in the order of their vertices.
 ConstrainedTriangulation numbered_triangles(const Cdt& cdt);

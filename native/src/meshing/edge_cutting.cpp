@@ -159,7 +159,7 @@ namespace {
 constexpr double kLongestPiece = 1.4;  // lengths wanted: above it two pieces fit better than one
 constexpr double kSharpAngle = std::numbers::pi / 3;
 
-double length_of(const RegionGraph& graph, const Segment& edge) {
+double length_of(const RegionGraph& graph, const VertexSegment& edge) {
     return distance(graph.points[edge[0]], graph.points[edge[1]]);
 }
 
@@ -175,15 +175,15 @@ std::vector<double> tip_lengths(const RegionGraph& graph, SizeField& size) {
     };
     std::vector<Spoke> spokes;
     spokes.reserve(2 * (graph.border.size() + graph.inner.size()));
-    const auto add = [&](const Segment& edge, bool is_inner) {
+    const auto add = [&](const VertexSegment& edge, bool is_inner) {
         const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
         const double length = length_of(graph, edge);
         spokes.push_back({edge[0], elementary::atan2(b[1] - a[1], b[0] - a[0]), true, length});
         spokes.push_back({edge[1], elementary::atan2(a[1] - b[1], a[0] - b[0]), is_inner, length});
     };
-    for (const Segment& edge : graph.border)
+    for (const VertexSegment& edge : graph.border)
         add(edge, false);
-    for (const Segment& edge : graph.inner)
+    for (const VertexSegment& edge : graph.inner)
         add(edge, true);
     std::sort(spokes.begin(), spokes.end());
     std::vector<double> lengths(graph.points.size(), 0.0);
@@ -244,8 +244,8 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
             const double sum = all * static_cast<double>(i) / static_cast<double>(count);
             while (sums[at + 1][1] < sum)
                 ++at;
-            const double part = (sum - sums[at][1]) / (sums[at + 1][1] - sums[at][1]);
-            shares.push_back(sums[at][0] + part * (sums[at + 1][0] - sums[at][0]));
+            const double fraction = (sum - sums[at][1]) / (sums[at + 1][1] - sums[at][1]);
+            shares.push_back(sums[at][0] + fraction * (sums[at + 1][0] - sums[at][0]));
         }
     }
     if (end < 1) shares.push_back(end);
@@ -263,12 +263,12 @@ public:
     BorderPieces run(SharesOf&& shares_of) {
         pieces_.points = graph_.points;
         for (const auto* edges : {&graph_.border, &graph_.inner}) {
-            for (const Segment& edge : *edges) {
+            for (const VertexSegment& edge : *edges) {
                 if (pieces_.edges.size() % 1024 == 0) check_(0);
                 // Always from the lesser end, so that a border read in the other direction is cut
                 // alike.
                 const bool is_reversed = graph_.points[edge[1]] < graph_.points[edge[0]];
-                const Segment way = is_reversed ? Segment{edge[1], edge[0]} : edge;
+                const VertexSegment way = is_reversed ? VertexSegment{edge[1], edge[0]} : edge;
                 std::vector<double> shares = shares_of(way);
                 if (is_reversed) std::reverse(shares.begin(), shares.end());
                 add(edge, way, shares);
@@ -279,7 +279,7 @@ public:
     }
 
 private:
-    void add(const Segment& edge, const Segment& way, std::span<const double> shares) {
+    void add(const VertexSegment& edge, const VertexSegment& way, std::span<const double> shares) {
         const PlanPoint &a = graph_.points[way[0]], &b = graph_.points[way[1]];
         const auto first = static_cast<std::int32_t>(pieces_.points.size());
         double nearest = 1;
@@ -320,7 +320,8 @@ private:
         std::vector<PlanPoint> points = graph_.points;
         for (std::size_t k = 0; k < pieces_.edges.size(); ++k) {
             auto& [edge, first, last] = pieces_.edges[k];
-            Segment before = edge, piece = edge;  // by the numbers of before, and those from now on
+            VertexSegment before = edge,
+                          piece = edge;  // by the numbers of before, and those from now on
             const auto end_piece = [&](std::int32_t old_end, std::int32_t end) {
                 before[1] = old_end;
                 piece[1] = end;
@@ -345,7 +346,7 @@ private:
     }
 
     /// Whether there is room outside of the region for cuts in a piece of the border.
-    bool may_be_cut(const EdgeCutting& cutting, const Segment& piece, double slack) const {
+    bool may_be_cut(const EdgeCutting& cutting, const VertexSegment& piece, double slack) const {
         HalfEdge edge = cutting.between(piece[0], piece[1]);
         if (cutting.is_inside(edge)) edge = cutting.mesh().twin(edge);
         return edge.is_none() || has_room(cutting.mesh(), edge, finest_, slack);
@@ -363,30 +364,30 @@ private:
 BorderPieces cut_border(const RegionGraph& graph, SizeField& size, double finest,
                         const Check& check) {
     const std::vector<double> tips = tip_lengths(graph, size);
-    return Cutter(graph, finest, check).run([&](const Segment& edge) {
+    return Cutter(graph, finest, check).run([&](const VertexSegment& edge) {
         const double length = length_of(graph, edge);
         return cuts(graph.points[edge[0]], graph.points[edge[1]], tips[edge[0]] / length,
                     1 - tips[edge[1]] / length, size);
     });
 }
 
-BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origin, double side,
+BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origin, double spacing,
                                 double closest, double finest, const Check& check) {
-    return Cutter(graph, finest, check).run([&](const Segment& edge) {
+    return Cutter(graph, finest, check).run([&](const VertexSegment& edge) {
         const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
         std::vector<double> crossings;
         for (int k = 0; k < 2; ++k) {
             if (a[k] == b[k]) continue;
             const auto [low, high] = std::minmax(a[k], b[k]);
-            const auto last = static_cast<std::int64_t>(std::floor((high - origin[k]) / side));
-            for (auto i = static_cast<std::int64_t>(std::ceil((low - origin[k]) / side)); i <= last;
-                 ++i) {
-                crossings.push_back((origin[k] + static_cast<double>(i) * side - a[k]) /
+            const auto last = static_cast<std::int64_t>(std::floor((high - origin[k]) / spacing));
+            for (auto i = static_cast<std::int64_t>(std::ceil((low - origin[k]) / spacing));
+                 i <= last; ++i) {
+                crossings.push_back((origin[k] + static_cast<double>(i) * spacing - a[k]) /
                                     (b[k] - a[k]));
             }
         }
         std::sort(crossings.begin(), crossings.end());
-        const double apart = closest * side / length_of(graph, edge);
+        const double apart = closest * spacing / length_of(graph, edge);
         std::vector<double> cuts;
         for (const double t : crossings) {
             if (t >= (cuts.empty() ? 0 : cuts.back()) + apart && t <= 1 - apart) cuts.push_back(t);
@@ -398,7 +399,7 @@ BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origi
 double estimate_pieces(const RegionGraph& graph, double edge_length) {
     double pieces = 0;
     for (const auto* edges : {&graph.border, &graph.inner}) {
-        for (const Segment& edge : *edges)
+        for (const VertexSegment& edge : *edges)
             pieces += 2 + length_of(graph, edge) / edge_length;
     }
     return pieces;

@@ -15,7 +15,7 @@ namespace realmodel::meshing {
 
 /// An edge and the points that are to cut it, in order from its first end.
 struct CutEdge {
-    Segment edge;
+    VertexSegment edge;
     std::int32_t first, last;  ///< numbers of the points, one after another
 };
 
@@ -69,11 +69,11 @@ private:
 /// beyond another edge.
 struct BorderPieces {
     std::vector<PlanPoint> points;
-    std::vector<Segment> border;  ///< the region on their left
-    std::vector<Segment> inner;
-    std::vector<CutEdge> edges;   ///< of the graph, border and inner, with what cuts them
-    std::vector<Segment> locked;  ///< of the border: too close to others outside of the region to
-                                  ///< be cut again; sorted
+    std::vector<VertexSegment> border;  ///< the region on their left
+    std::vector<VertexSegment> inner;
+    std::vector<CutEdge> edges;         ///< of the graph, border and inner, with what cuts them
+    std::vector<VertexSegment> locked;  ///< of the border: too close to others outside of the
+                                        ///< region to be cut again; sorted
 };
 
 /// Cuts every edge into pieces that are equal as measured by the length wanted where they are, at
@@ -85,7 +85,7 @@ BorderPieces cut_border(const RegionGraph& graph, SizeField& size, double finest
 
 /// Cuts every edge where it crosses the lines of a grid of squares, but for cuts nearer than
 /// `closest` (sides of a square) to an end or to the cut before.
-BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origin, double side,
+BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origin, double spacing,
                                 double closest, double finest, const Check& check);
 
 /// About how many pieces cut_border makes for one length everywhere; cheap, for estimates.

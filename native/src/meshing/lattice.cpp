@@ -78,10 +78,10 @@ struct Row {
 /// Puts triangles between the rows of a lattice as they come.
 class Weaver {
 public:
-    /// `kept_off`: squares that get no triangles, sorted, by the row and column of their lower
+    /// `excluded`: squares that get no triangles, sorted, by the row and column of their lower
     /// left.
-    Weaver(FlatMesh& mesh, bool is_square, std::vector<std::array<std::int64_t, 2>>&& kept_off)
-        : mesh_(mesh), is_square_(is_square), kept_off_(std::move(kept_off)) {}
+    Weaver(FlatMesh& mesh, bool is_square, std::vector<std::array<std::int64_t, 2>>&& excluded)
+        : mesh_(mesh), is_square_(is_square), excluded_(std::move(excluded)) {}
 
     void add(Row&& upper) {
         std::vector<std::int32_t> under(upper.columns.size(), -1);
@@ -139,7 +139,7 @@ private:
                 ++j;
             const bool is_whole = lower_.columns[i + 1] == k + 1 && j + 1 < upper.columns.size() &&
                                   upper.columns[j] == k && upper.columns[j + 1] == k + 1;
-            if (!is_whole || std::binary_search(kept_off_.begin(), kept_off_.end(),
+            if (!is_whole || std::binary_search(excluded_.begin(), excluded_.end(),
                                                 std::array{lower_.number, k})) {
                 last = -1;
                 continue;
@@ -158,7 +158,7 @@ private:
 
     FlatMesh& mesh_;
     bool is_square_;
-    std::vector<std::array<std::int64_t, 2>> kept_off_;
+    std::vector<std::array<std::int64_t, 2>> excluded_;
     Row lower_;
     std::vector<std::int32_t> under_;  ///< the triangle under the edge to the next column
 };
@@ -195,12 +195,12 @@ public:
         }
         std::sort(crossings_.begin(), crossings_.end());
         std::sort(too_near_.begin(), too_near_.end());
-        std::sort(kept_off_.begin(), kept_off_.end());
+        std::sort(excluded_.begin(), excluded_.end());
         blocked_ = too_near_.begin();
     }
 
     TriangleLattice fill() {
-        Weaver weaver(lattice_.mesh, frame_.is_square, std::move(kept_off_));
+        Weaver weaver(lattice_.mesh, frame_.is_square, std::move(excluded_));
         const auto finish_row = [&] {
             if (!row_.columns.empty()) weaver.add(std::move(row_));
             row_ = {};
@@ -237,7 +237,7 @@ private:
                  r <= cell(top + reserve, frame_.row_height); ++r) {
                 for (auto k = cell(left - reserve, frame_.spacing);
                      k <= cell(right + reserve, frame_.spacing); ++k)
-                    kept_off_.push_back({r, k});
+                    excluded_.push_back({r, k});
             }
         }
         const std::int64_t last = row_above(top + room_);
@@ -298,7 +298,7 @@ private:
     std::size_t seen_ = 0;
     std::vector<RowInterval> crossings_;  // from: x where the border crosses the row; to: not used
     std::vector<RowInterval> too_near_;
-    std::vector<std::array<std::int64_t, 2>> kept_off_;
+    std::vector<std::array<std::int64_t, 2>> excluded_;
     TriangleLattice lattice_;
     Row row_;
     std::vector<RowInterval>::const_iterator blocked_;
@@ -335,12 +335,12 @@ double apart(double s, double t) {
 
 /// A length cut into whole parts of about the one given, if that stretches them by little; else
 /// the one given.
-double fitted(double length, double part) {
+double fitted(double length, double step) {
     constexpr double kMostStretch = 0.015;
-    const double count = std::round(length / part);
-    if (count < 1) return part;
+    const double count = std::round(length / step);
+    if (count < 1) return step;
     const double fits = length / count;
-    return std::abs(fits - part) <= kMostStretch * part ? fits : part;
+    return std::abs(fits - step) <= kMostStretch * step ? fits : step;
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace realmodel::meshing {
 
 namespace {
 
-using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
+using KernelPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
 
-Point exact_point(const PlanPoint& p) {
+KernelPoint exact_point(const PlanPoint& p) {
     return {p[0], p[1]};
 }
 

@@ -54,7 +54,7 @@ spatial::Box::Position in_space(const PlanPoint& p) {
 /// another cross (rounded, the same for both), and where another ends on it. Pairs of the first
 /// `settled` segments are known to cross nowhere. Decisions are exact.
 std::vector<std::vector<PlanPoint>> crossings(std::span<const PlanPoint> points,
-                                              std::span<const Segment> segments,
+                                              std::span<const VertexSegment> segments,
                                               std::size_t settled, const Check& check) {
     std::vector<spatial::Box> boxes(segments.size());
     for (std::size_t s = 0; s < segments.size(); ++s) {
@@ -167,18 +167,18 @@ private:
         insert_segments(cdt, vertices, ring_edges_, check_);
         std::vector<CoveredEdge> covered = covered_edges(cdt, vertices, ring_edges_);
         std::ranges::stable_sort(covered, {}, &CoveredEdge::segment);
-        const std::vector<Segment> whole = std::move(ring_edges_);
+        const std::vector<VertexSegment> whole = std::move(ring_edges_);
         ring_edges_.clear();
         for (const auto& [from, to, segment] : covered) {
             const bool is_reversed = whole[segment][0] == to || whole[segment][1] == from;
-            ring_edges_.push_back(is_reversed ? Segment{to, from} : Segment{from, to});
+            ring_edges_.push_back(is_reversed ? VertexSegment{to, from} : VertexSegment{from, to});
         }
         const ConstrainedTriangulation mesh = numbered_triangles(cdt);
         return {mesh, std::vector<bool>(mesh.triangles.size()), graph_.points};
     }
 
     void cut_once(EdgeCutting& rings) {
-        std::vector<Segment> segments = ring_edges_;
+        std::vector<VertexSegment> segments = ring_edges_;
         segments.insert(segments.end(), inner_edges_.begin(), inner_edges_.end());
         const std::size_t ring_count = ring_edges_.size();
         std::vector<std::vector<PlanPoint>> cuts =
@@ -207,7 +207,7 @@ private:
     std::vector<Moved> cut_rings(EdgeCutting& rings, std::span<const std::vector<PlanPoint>> cuts) {
         std::vector<CutEdge> edges;
         for (std::size_t s = 0; s < cuts.size(); ++s) {
-            const Segment edge = ring_edges_[s];
+            const VertexSegment edge = ring_edges_[s];
             const auto first = static_cast<std::int32_t>(graph_.points.size());
             for (const PlanPoint& p : cuts[s])
                 if (p != graph_.points[edge[0]] && p != graph_.points[edge[1]]) add_point(p);
@@ -234,8 +234,8 @@ private:
     }
 
     /// The edges of the triangulation that segments run along, by the lesser end first; sorted.
-    std::vector<Segment> edges_along(std::span<const Segment> segments) const {
-        std::vector<Segment> edges;
+    std::vector<VertexSegment> edges_along(std::span<const VertexSegment> segments) const {
+        std::vector<VertexSegment> edges;
         for (const CoveredEdge& edge : covered_edges(cdt_, vertices_, segments))
             edges.push_back({edge.from, edge.to});
         edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -244,13 +244,13 @@ private:
 
     void take_triangulation() {
         ConstrainedTriangulation mesh = numbered_triangles(cdt_);
-        const auto is_along = [&](const std::vector<Segment>& edges, std::size_t t, int i) {
+        const auto is_along = [&](const std::vector<VertexSegment>& edges, std::size_t t, int i) {
             const auto& corners = mesh.triangles[t];
             return mesh.constrained[t][i] &&
                    std::ranges::binary_search(edges, unordered(corners[i], corners[(i + 1) % 3]));
         };
-        const std::vector<Segment> ring_edges = edges_along(ring_edges_),
-                                   inner_edges = edges_along(inner_edges_);
+        const std::vector<VertexSegment> ring_edges = edges_along(ring_edges_),
+                                         inner_edges = edges_along(inner_edges_);
         std::vector<bool> inside =
             inside_rings(mesh, [&](std::int32_t t, int i) { return is_along(ring_edges, t, i); });
         std::vector<bool> is_ended(graph_.points.size(), false);
@@ -291,9 +291,9 @@ private:
     const Constraints& constraints_;
     const Check& check_;
     RegionGraph graph_;
-    std::vector<Segment> ring_edges_, inner_edges_;  ///< cut wherever they are known to meet
-    std::int32_t first_point_ = 0;                   ///< of the constraints' points
-    std::vector<bool> is_within_;                    ///< of each point: the region
+    std::vector<VertexSegment> ring_edges_, inner_edges_;  ///< cut wherever they are known to meet
+    std::int32_t first_point_ = 0;                         ///< of the constraints' points
+    std::vector<bool> is_within_;                          ///< of each point: the region
     Cdt cdt_;
     std::vector<Cdt::Vertex_handle> vertices_;
 };

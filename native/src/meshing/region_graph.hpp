@@ -16,8 +16,9 @@ struct RegionGraph {
     /// The rings' corners in order of appearance, then what the constraints bring. Some of the
     /// latter may lie outside the region: no edge uses them.
     std::vector<PlanPoint> points;
-    std::vector<Segment> border;  ///< between the region and what is not, the region on the left
-    std::vector<Segment> inner;   ///< of constraints, inside the region
+    std::vector<VertexSegment>
+        border;  ///< between the region and what is not, the region on the left
+    std::vector<VertexSegment> inner;  ///< of constraints, inside the region
     std::vector<std::int32_t> loners;  ///< points inside that no edge ends at
     double area = 0;                   ///< of the region
     /// Of all points and edges, up to the convex hull; which triangles belong to the region, and

@@ -164,8 +164,8 @@ double length_at(const FlatMesh& mesh, HalfEdge edge, const std::vector<bool>& i
 void thin_out(std::vector<SizeSource>& sources, double finest) {
     std::vector<SizeSource> thinned;
     std::ranges::stable_sort(sources, std::greater<>(), &SizeSource::least);
-    using Square = std::pair<std::array<double, 2>, std::size_t>;
-    std::vector<Square> squares;
+    using GridSquare = std::pair<std::array<double, 2>, std::size_t>;
+    std::vector<GridSquare> squares;
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (sources[i].least >= finest) {
             thinned.push_back(sources[i]);
@@ -175,7 +175,7 @@ void thin_out(std::vector<SizeSource>& sources, double finest) {
         squares.push_back({{std::floor(m[0] / finest), std::floor(m[1] / finest)}, i});
     }
     std::sort(squares.begin(), squares.end());
-    for (const auto group : groups_of(squares, &Square::first)) {
+    for (const auto group : groups_of(squares, &GridSquare::first)) {
         SizeSource source = sources[group[0].second];
         source.start = source.least = finest;
         thinned.push_back(source);
@@ -375,11 +375,12 @@ private:
         BorderPieces border;
         std::vector<TriangleLattice> lattices;
         if (request_.mesher == Mesher::kGrid) {
-            const double side = size.largest();
-            border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
+            const double spacing = size.largest();
+            border =
+                cut_border_by_grid(graph_, extent_.low, spacing, kGridClearance, finest, cutting);
             lattices.push_back(lattice_inside(border, graph_.loners,
-                                              {extent_.low, {1, 0}, side, side, true}, size, side,
-                                              kGridClearance, placing));
+                                              {extent_.low, {1, 0}, spacing, spacing, true}, size,
+                                              spacing, kGridClearance, placing));
         } else {
             border = cut_border(graph_, size, finest, cutting);
             for (const double length : lattice_lengths(request_, size)) {
@@ -397,19 +398,19 @@ private:
     }
 
     PlanarMesh mesh(SizeField size, double begin, double end) const {
-        const auto part = [&](double from, double to, const char* text) {
+        const auto phase = [&](double from, double to, const char* text) {
             return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
         };
         const bool is_grid = request_.mesher == Mesher::kGrid;
         const bool is_frontal = request_.mesher == Mesher::kFrontal;
         const double finest = kShortestEdge * size.largest();
         BandedMesh banded =
-            first_mesh(size, finest, part(0, 0.05, "cutting the border"),
-                       part(0.05, 0.3, "placing the points"), part(0.3, 0.5, "triangulating"));
+            first_mesh(size, finest, phase(0, 0.05, "cutting the border"),
+                       phase(0.05, 0.3, "placing the points"), phase(0.3, 0.5, "triangulating"));
         FlatMesh& flat = banded.mesh;
         if (!size.is_uniform()) {
             advance_front(flat, size, banded.first_of_band, most_vertices(),
-                          part(0.5, 0.75, "filling"));
+                          phase(0.5, 0.75, "filling"));
         }
         // Nearer ones are left as they are: where lines come as close, all of these would be
         // divided as finely.
@@ -419,15 +420,15 @@ private:
                                       is_grid ? kLongestGridEdge : kLongestEdge, shortest,
                                       most_vertices()};
         refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
-               part(0.75, 0.8, "improving the border"));
+               phase(0.75, 0.8, "improving the border"));
         if (is_frontal) {
-            const Check check = part(0.8, 0.9, "smoothing");
+            const Check check = phase(0.8, 0.9, "smoothing");
             smooth(flat, size, banded.first_of_band, banded.rim_triangles,
                    static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
             flat.compact();
             refine(flat, target, size, 0, {}, check);
         }
-        const Check finish = part(0.9, 1, "collecting the mesh");
+        const Check finish = phase(0.9, 1, "collecting the mesh");
         PlanarMesh mesh = collected(std::move(flat), finish);
         assert(is_upright(mesh));
         return mesh;

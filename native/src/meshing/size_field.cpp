@@ -105,20 +105,20 @@ void SizeField::open(std::int32_t node, const QuadtreeCell& cell) {
         make_leaf(node, {lowest, lowest, lowest, lowest});
         return;
     }
-    const auto first_kept = static_cast<std::int32_t>(candidates_.size());
+    const auto first_candidate = static_cast<std::int32_t>(candidates_.size());
     for (std::int32_t i = 0; i < count; ++i) {
         const std::int32_t s = candidates_[begin + i];
         if (std::max(sources_[s].least, middle[i] - reach) < highest) candidates_.push_back(s);
     }
-    const auto candidate_count = static_cast<std::int32_t>(candidates_.size()) - first_kept;
+    const auto candidate_count = static_cast<std::int32_t>(candidates_.size()) - first_candidate;
     if (cell.width <= kLeafPerLength * lowest || cell.depth == kDeepest) {
-        const auto lengths = corner_lengths(cell, std::span(candidates_).subspan(first_kept));
-        candidates_.resize(first_kept);
+        const auto lengths = corner_lengths(cell, std::span(candidates_).subspan(first_candidate));
+        candidates_.resize(first_candidate);
         make_leaf(node, lengths);
         return;
     }
     nodes_[node] = {static_cast<std::int32_t>(nodes_.size()), kInner};
-    nodes_.insert(nodes_.end(), 4, QuadtreeNode{first_kept, candidate_count});
+    nodes_.insert(nodes_.end(), 4, QuadtreeNode{first_candidate, candidate_count});
 }
 
 double SizeField::look_up(const PlanPoint& p) {
@@ -288,17 +288,18 @@ double triangles_in(const RegionGraph& graph, SizeField& size, const Check& chec
         const std::array<PlanPoint, 3> corners = open.back();
         open.pop_back();
         const auto& [a, b, c] = corners;
-        const std::array sides{squared_distance(a, b), squared_distance(b, c),
-                               squared_distance(c, a)};
+        const std::array squared_lengths{squared_distance(a, b), squared_distance(b, c),
+                                         squared_distance(c, a)};
         const double wanted = size.at({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3});
-        const auto longest =
-            static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
+        const auto longest = static_cast<std::size_t>(std::ranges::max_element(squared_lengths) -
+                                                      squared_lengths.begin());
         const double area = 0.5 * twice_area(a, b, c);
         // Slivers, of which combs have many, are not cut as long as they hold next to nothing: all
         // of one lies within two thirds of its longest side from its center.
-        const double finest =
-            std::max(size.smallest(), wanted - kGradation * 2 / 3 * std::sqrt(sides[longest]));
-        if (sides[longest] <= 9 * wanted * wanted || area <= kNextToNothing * finest * finest) {
+        const double finest = std::max(
+            size.smallest(), wanted - kGradation * 2 / 3 * std::sqrt(squared_lengths[longest]));
+        if (squared_lengths[longest] <= 9 * wanted * wanted ||
+            area <= kNextToNothing * finest * finest) {
             triangles += area / (kEquilateral * wanted * wanted);
             continue;
         }

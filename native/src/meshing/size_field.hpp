@@ -56,7 +56,7 @@ private:
         std::int32_t depth;
     };
     /// A leaf, and where it is among the cells of its size.
-    struct FoundLeaf {
+    struct CachedLeaf {
         double scale, column, row;
         std::int32_t leaf;
     };
@@ -74,7 +74,7 @@ private:
     std::vector<QuadtreeNode> nodes_;
     std::vector<std::int32_t> candidates_;      // numbers of sources
     std::vector<std::array<float, 4>> leaves_;  // shares of the largest length
-    FoundLeaf last_{0, 1, 1, 0};                // none yet
+    CachedLeaf last_{0, 1, 1, 0};               // none yet
 };
 
 /// How much lengths may differ from place to place, for each unit between them.

@@ -33,8 +33,8 @@ void require_in_range(std::span<const std::int32_t> offsets, std::span<const std
 
 /// Calls use(corner, lower, upper) for each corner and the next of its polygon.
 template <class Use>
-void for_each_side(std::span<const std::int32_t> offsets, std::span<const std::int32_t> corners,
-                   const Use& use) {
+void for_each_corner_edge(std::span<const std::int32_t> offsets,
+                          std::span<const std::int32_t> corners, const Use& use) {
     for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
         const auto begin = static_cast<std::size_t>(offsets[f]);
         const auto end = static_cast<std::size_t>(offsets[f + 1]);
@@ -51,7 +51,7 @@ PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
                            std::span<const std::int32_t> corners, std::size_t vertices) {
     require_in_range(offsets, corners, vertices);
     auto uses = bucketize<PolygonEdgeUse>(vertices, [&](const auto& put) {  // by the lower vertex
-        for_each_side(
+        for_each_corner_edge(
             offsets, corners, [&](std::size_t corner, std::int32_t lower, std::int32_t upper) {
                 put(index(lower), PolygonEdgeUse{upper, static_cast<std::int32_t>(corner)});
             });

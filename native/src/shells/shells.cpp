@@ -20,7 +20,7 @@ namespace {
 using Position = std::array<double, 3>;
 
 /// A face of the complex as one side sees it.
-struct FaceSide {
+struct OrientedFace {
     std::int32_t face;
     std::int32_t cell;
     bool reversed;  ///< the cell is the face's second
@@ -45,9 +45,9 @@ void require_in_range(const ComplexView& complex, Progress* progress) {
 
 /// The sides of all faces by the block of their cell, in the order of the faces.
 /// @param between_blocks  leave out faces that have one block on both sides
-std::vector<std::vector<FaceSide>> sides_by_block(const ComplexView& complex, bool between_blocks,
-                                                  Progress* progress) {
-    std::vector<std::vector<FaceSide>> sides(complex.blocks);
+std::vector<std::vector<OrientedFace>> faces_by_block(const ComplexView& complex,
+                                                      bool between_blocks, Progress* progress) {
+    std::vector<std::vector<OrientedFace>> oriented_faces(complex.blocks);
     for (std::size_t f = 0; f < complex.face_count(); ++f) {
         poll(progress, f);
         if (between_blocks &&
@@ -56,11 +56,11 @@ std::vector<std::vector<FaceSide>> sides_by_block(const ComplexView& complex, bo
         for (const bool reversed : {false, true}) {
             const std::int32_t cell = complex.cell(f, reversed ? 1 : 0);
             if (cell < 0) continue;
-            sides[index(complex.block(cell))].push_back(
+            oriented_faces[index(complex.block(cell))].push_back(
                 {static_cast<std::int32_t>(f), cell, reversed});
         }
     }
-    return sides;
+    return oriented_faces;
 }
 
 /// The numbers of the vertices that some polygons use, in rising order.
@@ -93,29 +93,29 @@ private:
 };
 
 /// Adds a face's corners, as numbers of the complex, and its row.
-void add_polygon(const ComplexView& complex, const FaceSide& side, Shell& shell) {
-    const auto corners = complex.face(index(side.face));
-    if (side.reversed) {
+void add_polygon(const ComplexView& complex, const OrientedFace& oriented_face, Shell& shell) {
+    const auto corners = complex.face(index(oriented_face.face));
+    if (oriented_face.reversed) {
         shell.corners.insert(shell.corners.end(), corners.rbegin(), corners.rend());
     } else {
         shell.corners.insert(shell.corners.end(), corners.begin(), corners.end());
     }
     shell.offsets.push_back(static_cast<std::int32_t>(shell.corners.size()));
-    shell.faces.push_back(side.face);
-    shell.reversed.push_back(side.reversed ? 1 : 0);
+    shell.faces.push_back(oriented_face.face);
+    shell.reversed.push_back(oriented_face.reversed ? 1 : 0);
 }
 
-Shell begun(const ComplexView& complex, std::span<const FaceSide> sides) {
+Shell begun(const ComplexView& complex, std::span<const OrientedFace> oriented_faces) {
     std::size_t corners = 0;
-    for (const FaceSide& side : sides)
-        corners += complex.face(index(side.face)).size();
+    for (const OrientedFace& oriented_face : oriented_faces)
+        corners += complex.face(index(oriented_face.face)).size();
     if (std::cmp_greater(corners, std::numeric_limits<std::int32_t>::max()))
         throw InputError("too_large", "a block has more than 2^31 corners of faces", -1, {});
     Shell shell;
     shell.corners.reserve(corners);
-    shell.offsets.reserve(sides.size() + 1);
-    shell.faces.reserve(sides.size());
-    shell.reversed.reserve(sides.size());
+    shell.offsets.reserve(oriented_faces.size() + 1);
+    shell.faces.reserve(oriented_faces.size());
+    shell.reversed.reserve(oriented_faces.size());
     shell.offsets.push_back(0);
     return shell;
 }
@@ -125,14 +125,14 @@ std::array<float, 3> offset_from(const Position& origin, const Position& at) {
             static_cast<float>(at[2] - origin[2])};
 }
 
-Shell block_shell(const ComplexView& complex, std::span<const FaceSide> sides,
+Shell block_shell(const ComplexView& complex, std::span<const OrientedFace> oriented_faces,
                   const Position& origin) {
-    Shell shell = begun(complex, sides);
-    if (sides.empty()) return shell;
+    Shell shell = begun(complex, oriented_faces);
+    if (oriented_faces.empty()) return shell;
     Numbering number(complex.vertex_count());
-    for (const FaceSide& side : sides) {
-        add_polygon(complex, side, shell);
-        for (const std::int32_t v : complex.face(index(side.face)))
+    for (const OrientedFace& oriented_face : oriented_faces) {
+        add_polygon(complex, oriented_face, shell);
+        for (const std::int32_t v : complex.face(index(oriented_face.face)))
             number.use(v);
     }
     shell.coordinates.resize(number.count());
@@ -172,17 +172,17 @@ void separate(const ComplexView& complex, std::size_t begin, double shrink, cons
                  static_cast<std::int32_t>(std::ranges::lower_bound(used, corner) - used.begin());
 }
 
-Shell shell_of_cells(const ComplexView& complex, std::vector<FaceSide>& sides, double shrink,
-                     const Position& origin, Progress* progress) {
-    std::ranges::stable_sort(sides, {}, &FaceSide::cell);
-    Shell shell = begun(complex, sides);
+Shell shell_of_cells(const ComplexView& complex, std::vector<OrientedFace>& oriented_faces,
+                     double shrink, const Position& origin, Progress* progress) {
+    std::ranges::stable_sort(oriented_faces, {}, &OrientedFace::cell);
+    Shell shell = begun(complex, oriented_faces);
     shell.coordinates.reserve(shell.corners.capacity() / 3);
     std::vector<std::int32_t> used;
-    for (const auto of_cell : groups_of(sides, &FaceSide::cell)) {
+    for (const auto of_cell : groups_of(oriented_faces, &OrientedFace::cell)) {
         const std::size_t begin = shell.corners.size();
-        for (const FaceSide& side : of_cell) {
+        for (const OrientedFace& oriented_face : of_cell) {
             poll(progress, shell.faces.size());
-            add_polygon(complex, side, shell);
+            add_polygon(complex, oriented_face, shell);
         }
         separate(complex, begin, shrink, origin, used, shell);
     }
@@ -195,10 +195,10 @@ Shell shell_of_cells(const ComplexView& complex, std::vector<FaceSide>& sides, d
 std::vector<Shell> block_shells(const ComplexView& complex, const Position& origin,
                                 const Execution& execution) {
     require_in_range(complex, execution.progress);
-    const auto sides = sides_by_block(complex, true, execution.progress);
+    const auto oriented_faces = faces_by_block(complex, true, execution.progress);
     std::vector<Shell> shells(complex.blocks);
     parallel_chunks(complex.blocks, execution, [&](std::size_t block) {
-        shells[block] = block_shell(complex, sides[block], origin);
+        shells[block] = block_shell(complex, oriented_faces[block], origin);
     });
     return shells;
 }
@@ -206,11 +206,12 @@ std::vector<Shell> block_shells(const ComplexView& complex, const Position& orig
 std::vector<Shell> cell_shells(const ComplexView& complex, double shrink, const Position& origin,
                                const Execution& execution) {
     require_in_range(complex, execution.progress);
-    auto sides = sides_by_block(complex, false, execution.progress);
+    auto oriented_faces = faces_by_block(complex, false, execution.progress);
     std::vector<Shell> shells(complex.blocks);
     parallel_chunks(complex.blocks, execution, [&](std::size_t block) {
-        shells[block] = shell_of_cells(complex, sides[block], shrink, origin, execution.progress);
-        sides[block] = {};
+        shells[block] =
+            shell_of_cells(complex, oriented_faces[block], shrink, origin, execution.progress);
+        oriented_faces[block] = {};
     });
     return shells;
 }

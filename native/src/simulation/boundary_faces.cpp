@@ -26,15 +26,14 @@ namespace realmodel::simulation {
 
 namespace {
 
-using Point = Vec3;
-using Edge = std::array<std::int32_t, 2>;
+using MeshEdge = std::array<std::int32_t, 2>;
 
 constexpr double kSharp = 0.64;       ///< cosine of the angle between normals: 50 degrees
 constexpr double kStraight = -0.7;    ///< cosine at a vertex of a line that goes on
 constexpr double kNearest = 0.7;      ///< of the edge length, between points on sharp edges
-constexpr double kPartOfALine = 0.9;  ///< of the edge length, between points of one line
+constexpr double kShareOfLine = 0.9;  ///< of the edge length, between points of one line
 
-double length_at(meshing::SizeField& lengths, const Point& p) {
+double length_at(meshing::SizeField& lengths, const Vec3& p) {
     return lengths.at({p[0], p[1]});
 }
 
@@ -43,7 +42,7 @@ class SpacedPoints {
 public:
     /// Whether it was far enough from all before.
     /// @param spacing  may change from point to point by less than half of their distance
-    bool add(const Point& p, double spacing) {
+    bool add(const Vec3& p, double spacing) {
         const int level = std::ilogb(spacing);
         // The spacing of a point that is nearer than this one's differs by less than factor 2.
         for (auto at = grids_.lower_bound(level - 1); at != grids_.end() && at->first <= level + 1;
@@ -63,7 +62,7 @@ private:
     std::map<int, spatial::HashGrid<3>> grids_;
 };
 
-struct KeptFace {
+struct InnerFace {
     std::size_t face;
     std::int32_t behind, in_front, surface;
     /// What faces of one patch have in common.
@@ -72,14 +71,14 @@ struct KeptFace {
     }
 };
 
-std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFace>& faces) {
+std::vector<MeshEdge> sharp_edges(const ComplexView& model, const std::vector<InnerFace>& faces) {
     struct FaceEdgeUse {
-        Edge edge;
+        MeshEdge edge;
         std::int32_t face;
     };
     std::vector<FaceEdgeUse> uses;
-    std::vector<Point> normals;
-    for (const KeptFace& face : faces) {
+    std::vector<Vec3> normals;
+    for (const InnerFace& face : faces) {
         const auto loop = model.face(face.face);
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const std::int32_t a = loop[i], b = loop[(i + 1) % loop.size()];
@@ -92,7 +91,7 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
     }
     std::ranges::sort(uses, {},
                       [](const FaceEdgeUse& use) { return std::pair(use.edge, use.face); });
-    std::vector<Edge> sharp;
+    std::vector<MeshEdge> sharp;
     for (const auto around : groups_of(uses, &FaceEdgeUse::edge)) {
         const std::size_t first = index(around.front().face), last = index(around.back().face);
         if (around.size() != 2 || faces[first].patch() != faces[last].patch() ||
@@ -115,7 +114,7 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
     };
     const auto triangles = cutting::triangulate_faces(model.vertices, model.face_offsets,
                                                       model.face_vertices, execution);
-    std::vector<KeptFace> faces;
+    std::vector<InnerFace> faces;
     BoundaryFaces boundary;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(execution.progress, f);
@@ -127,8 +126,8 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
         faces.push_back({f, behind, in_front, surface});
         for (auto t = triangles.offsets[f]; t < triangles.offsets[f + 1]; ++t) {
             const auto& corners = triangles.triangles[static_cast<std::size_t>(t)];
-            const Point normal = triangle_normal(model.vertex(corners[0]), model.vertex(corners[1]),
-                                                 model.vertex(corners[2]));
+            const Vec3 normal = triangle_normal(model.vertex(corners[0]), model.vertex(corners[1]),
+                                                model.vertex(corners[2]));
             if (dot(normal, normal) > 0)
                 boundary.triangles.push_back({corners, behind, in_front, surface});
         }
@@ -142,7 +141,7 @@ namespace {
 /// A piece of a line; its size is its length where edges are as long as anywhere, and more where
 /// they are shorter.
 struct LinePiece {
-    Point from, way;
+    Vec3 from, way;
     double size;
 };
 
@@ -150,14 +149,14 @@ std::vector<LinePiece> pieces_of(const ComplexView& model, const std::vector<std
                                  meshing::SizeField& lengths) {
     std::vector<LinePiece> pieces;
     for (std::size_t i = 1; i < line.size(); ++i) {
-        const Point from = model.vertex(line[i - 1]);
-        const Point way = minus(model.vertex(line[i]), from);
+        const Vec3 from = model.vertex(line[i - 1]);
+        const Vec3 way = minus(model.vertex(line[i]), from);
         const double step = length(way);
         for (double at = 0; at < step;) {
-            const Point here = moved(from, at / step, way);
+            const Vec3 here = moved(from, at / step, way);
             const double edge = length_at(lengths, here);
             const double next = lengths.is_uniform() ? step : std::min(step, at + edge / 2);
-            pieces.push_back({here, moved(Point{}, (next - at) / step, way),
+            pieces.push_back({here, moved(Vec3{}, (next - at) / step, way),
                               (next - at) * (lengths.largest() / edge)});
             at = next;
         }
@@ -165,20 +164,20 @@ std::vector<LinePiece> pieces_of(const ComplexView& model, const std::vector<std
     return pieces;
 }
 
-/// Points that divide a line into parts of about equal size, in order.
-std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int32_t>& line,
-                            meshing::SizeField& lengths) {
+/// Points that divide a line into pieces of about equal size, in order.
+std::vector<Vec3> divided_line(const ComplexView& model, const std::vector<std::int32_t>& line,
+                               meshing::SizeField& lengths) {
     const std::vector<LinePiece> pieces = pieces_of(model, line, lengths);
     double size = 0;
     for (const LinePiece& piece : pieces)
         size += piece.size;
-    const double parts = std::max(1.0, std::round(size / (kPartOfALine * lengths.largest())));
-    std::vector<Point> points;
+    const double divisions = std::max(1.0, std::round(size / (kShareOfLine * lengths.largest())));
+    std::vector<Vec3> points;
     double at = 0, number = line.front() == line.back() ? 0 : 1;
     for (const LinePiece& piece : pieces) {
-        for (; number < parts && at + piece.size >= number * size / parts; ++number)
+        for (; number < divisions && at + piece.size >= number * size / divisions; ++number)
             points.push_back(moved(
-                piece.from, std::max(0.0, number * size / parts - at) / piece.size, piece.way));
+                piece.from, std::max(0.0, number * size / divisions - at) / piece.size, piece.way));
         at += piece.size;
     }
     return points;
@@ -186,22 +185,22 @@ std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int
 
 }  // namespace
 
-std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edge> sharp_edges,
-                                   meshing::SizeField& lengths) {
+std::vector<Vec3> points_on_edges(const ComplexView& model, std::span<const MeshEdge> sharp_edges,
+                                  meshing::SizeField& lengths) {
     SpacedPoints spaced;
-    std::vector<Point> points;
-    const auto add = [&](const Point& p) {
+    std::vector<Vec3> points;
+    const auto add = [&](const Vec3& p) {
         if (spaced.add(p, kNearest * length_at(lengths, p))) points.push_back(p);
     };
     std::vector<std::int32_t> vertices;
-    for (const Edge& edge : sharp_edges)
+    for (const MeshEdge& edge : sharp_edges)
         vertices.insert(vertices.end(), edge.begin(), edge.end());
     sort_unique(vertices);
     const auto number = [&](std::int32_t v) {
         return static_cast<std::int32_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
     };
-    const EdgeGraph graph(vertices.size(), transformed(sharp_edges, [&](const Edge& edge) {
-                              return Edge{number(edge[0]), number(edge[1])};
+    const EdgeGraph graph(vertices.size(), transformed(sharp_edges, [&](const MeshEdge& edge) {
+                              return MeshEdge{number(edge[0]), number(edge[1])};
                           }));
     // corners where no line goes straight on, then those where lines meet
     std::array<std::vector<std::int32_t>, 2> corners;
@@ -215,7 +214,7 @@ std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edg
         bool goes_on = false;
         for (std::size_t i = 0; i < edges.size(); ++i) {
             for (std::size_t j = 0; j < i; ++j) {
-                const Point u = way(i), w = way(j);
+                const Vec3 u = way(i), w = way(j);
                 goes_on = goes_on || dot(u, w) < kStraight * length(u) * length(w);
             }
         }
@@ -234,23 +233,23 @@ std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edg
     }
     std::ranges::stable_sort(lines, std::greater<>(), [](const auto& line) { return line.first; });
     for (const auto& [size, line] : lines)
-        for (const Point& p : parts_of(model, line, lengths))
+        for (const Vec3& p : divided_line(model, line, lengths))
             add(p);
     return points;
 }
 
 std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
                                        std::span<const BoundaryTriangle> triangles,
-                                       std::span<const Point> others, meshing::SizeField& lengths,
+                                       std::span<const Vec3> others, meshing::SizeField& lengths,
                                        double share) {
     SpacedPoints spaced;
-    const auto add = [&](const Point& p) { return spaced.add(p, share * length_at(lengths, p)); };
-    for (const Point& p : others)
+    const auto add = [&](const Vec3& p) { return spaced.add(p, share * length_at(lengths, p)); };
+    for (const Vec3& p : others)
         add(p);
     std::vector<SurfaceSeed> seeds;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (const std::int32_t v : triangles[t].corners) {
-            const Point p = model.vertex(v);
+            const Vec3 p = model.vertex(v);
             if (add(p)) seeds.push_back({p, static_cast<std::int32_t>(t)});
         }
     }

@@ -107,8 +107,8 @@ Buckets<Hit> hits_of(const ComplexView& model, std::span<const PlanPoint> points
         }
     });
     return bucketize<Hit>(points.size(), [&](const auto& put) {
-        for (const auto& part : hits) {
-            for (const Hit& hit : part)
+        for (const auto& hits_of_chunk : hits) {
+            for (const Hit& hit : hits_of_chunk)
                 put(index(hit.point), hit);
         }
     });

@@ -260,9 +260,9 @@ private:
         for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
             block_ = layer_blocks[l];
             layer_ = static_cast<std::int32_t>(l);
-            const Front top{level_[0][l + 1], level_[1][l + 1], level_[2][l + 1]};
+            const LevelFront top{level_[0][l + 1], level_[1][l + 1], level_[2][l + 1]};
             if (top == front_) continue;
-            Front parted = front_;
+            LevelFront parted = front_;
             for (std::size_t i = 0; i < 3; ++i) {
                 if (is_parted(i, l)) parted[i] = top[i];
             }
@@ -277,13 +277,13 @@ private:
 
     /// Moves along the levels of the other side of the step that lie between the front and its next
     /// position.
-    void pass_lines(const Front& top) {
+    void pass_lines(const LevelFront& top) {
         const auto [u, v] = step_;
         for (const auto& [to_u, to_v] : lines_) {
             if (to_u < front_[u] || to_v < front_[v] || to_u > top[u] || to_v > top[v]) continue;
             if ((to_u == front_[u] && to_v == front_[v]) || (to_u == top[u] && to_v == top[v]))
                 continue;
-            Front next = front_;
+            LevelFront next = front_;
             next[u] = to_u;
             next[v] = to_v;
             move(next);
@@ -292,10 +292,10 @@ private:
 
     /// Moves the front; corners that have heights in between go alone first, in the order of their
     /// nodes, so that both triangles at an edge do the same.
-    void move(const Front& to) {
+    void move(const LevelFront& to) {
         for (const std::size_t c : order_) {
             while (front_[c] + 1 < to[c]) {
-                Front next = front_;
+                LevelFront next = front_;
                 ++next[c];
                 advance(next);
             }
@@ -304,21 +304,21 @@ private:
     }
 
     /// Makes the element between the front and the next one.
-    void advance(const Front& to) {
+    void advance(const LevelFront& to) {
         if (to == front_) return;
         for (std::size_t i = 0; i < 3; ++i)
             assert(to[i] == front_[i] || to[i] == front_[i] + 1);
         if (last_block_ != block_) add_flat_face(block_);
         last_block_ = block_;
         add_element(to);
-        if (has_step_ || has_open_edge_) add_sides(to);
+        if (has_step_ || has_open_edge_) add_lateral_faces(to);
         front_ = to;
         made_.fronts.fronts.push_back(to);
         made_.fronts.blocks.push_back(block_);
     }
 
-    void add_element(const Front& to) {
-        const Front low = points(front_), high = points(to);
+    void add_element(const LevelFront& to) {
+        const LevelFront low = points(front_), high = points(to);
         std::size_t moved = 0, still = 0, last_moved = 0;
         double rise = 0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -339,8 +339,8 @@ private:
     }
 
     /// The upright faces at the border and on steps.
-    void add_sides(const Front& to) {
-        const Front low = points(front_), high = points(to);
+    void add_lateral_faces(const LevelFront& to) {
+        const LevelFront low = points(front_), high = points(to);
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const bool outside = plan_.neighbor(t_, i) < 0;
@@ -367,8 +367,8 @@ private:
         }
     }
 
-    Front points(const Front& front) const {
-        Front corners;
+    LevelFront points(const LevelFront& front) const {
+        LevelFront corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = first_[i] + front[i];
         return corners;
@@ -384,7 +384,7 @@ private:
 
     /// The face at the front between the last block and the next; -1: outside.
     void add_flat_face(std::int32_t next) {
-        Front corners = points(front_);
+        LevelFront corners = points(front_);
         if (last_block_ < 0) std::swap(corners[1], corners[2]);
         add_face(made_.mesh, {corners[0], corners[1], corners[2], -1},
                  surface_between(last_block_, next));
@@ -441,7 +441,7 @@ private:
     std::array<std::size_t, 3> order_{};            ///< its corners by their nodes
     double area_ = 0;
     std::array<std::span<const std::int32_t>, 3> level_;  ///< the levels of its pillars
-    Front front_{};
+    LevelFront front_{};
     bool has_step_ = false, has_open_edge_ = false;   ///< on an inner step, at the border
     std::array<std::size_t, 2> step_{};               ///< the corners of its edge on a step
     std::vector<std::array<std::int32_t, 2>> lines_;  ///< the levels of the other side there
@@ -455,19 +455,20 @@ FilledColumns fill_columns(const ColumnInput& input, const PillarLevels& levels,
 }
 
 void add_step_faces(FilledColumns& columns, const VerticalFaults& faults) {
-    using Face = FilledColumns::StepFace;
-    std::vector<Face>& faces = columns.step_faces;
-    std::ranges::sort(faces, {}, [](const Face& face) { return std::pair(face.key, face.number); });
-    std::vector<const Face*> remaining_faces;
-    for (const auto equal : groups_of(faces, &Face::key)) {
+    using StepFace = FilledColumns::StepFace;
+    std::vector<StepFace>& faces = columns.step_faces;
+    std::ranges::sort(faces, {},
+                      [](const StepFace& face) { return std::pair(face.key, face.number); });
+    std::vector<const StepFace*> remaining_faces;
+    for (const auto equal : groups_of(faces, &StepFace::key)) {
         assert(equal.size() <= 2);
-        Face& face = equal[0];
+        StepFace& face = equal[0];
         if (!faults.empty())
             face.surface = faults.fault_at(face.edge[0], face.edge[1], face.height);
         if (equal.size() == 1 || face.surface != kWall) remaining_faces.push_back(&face);
     }
-    std::ranges::sort(remaining_faces, {}, &Face::number);
-    for (const Face* face : remaining_faces)
+    std::ranges::sort(remaining_faces, {}, &StepFace::number);
+    for (const StepFace* face : remaining_faces)
         add_face(columns.mesh, face->corners, face->surface);
 }
 

@@ -54,8 +54,8 @@ bool is_bad(const ElementFace& face, const ElementBody& body, const ElementBody&
     return inner_skewness(face, body.center, other.center) > kMostSkewness;
 }
 
-ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
-                      const std::array<double, 2>& high) {
+ElementFace lateral_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
+                         const std::array<double, 2>& high) {
     const double at_a = high[0] - low[0], at_b = high[1] - low[1], sum = at_a + at_b;
     ElementFace face{{{{a[0], a[1], low[0]},
                        {b[0], b[1], low[1]},
@@ -102,8 +102,6 @@ constexpr double kThickEnd = 3;          ///< minimum thicknesses: no block give
 constexpr double kRelaxedFace = 0.8;     ///< cosine: flatter faces are not what makes lines lean
 constexpr double kRelaxedShare = 0.1;
 
-using Face = ElementFace;
-
 }  // namespace
 
 ElementQuality::ElementQuality(const PlanTopology& plan, const PillarLevels& levels,
@@ -114,22 +112,22 @@ ElementQuality::ElementQuality(const PlanTopology& plan, const PillarLevels& lev
       columns_(columns),
       minimum_thickness_(minimum_thickness),
       progress_(progress),
-      open_sides_(columns.fronts.size(), 0) {
+      open_edges_(columns.fronts.size(), 0) {
     for (std::size_t t = 0; t < plan.triangles(); ++t) {
         poll(progress, t);
         for (std::size_t i = 0; i < 3; ++i) {
-            if (shares_sides(t, i)) continue;
-            for_sides(t, i, [&](std::size_t element, bool is_shared, std::size_t) {
+            if (shares_lateral_faces(t, i)) continue;
+            for_lateral_faces(t, i, [&](std::size_t element, bool is_shared, std::size_t) {
                 if (!is_shared)
-                    open_sides_[element] =
-                        static_cast<std::uint8_t>(open_sides_[element] | 1U << i);
+                    open_edges_[element] =
+                        static_cast<std::uint8_t>(open_edges_[element] | 1U << i);
             });
         }
     }
 }
 
 /// Whether the columns beside an edge have all their sides there in common.
-bool ElementQuality::shares_sides(std::size_t t, std::size_t edge) const {
+bool ElementQuality::shares_lateral_faces(std::size_t t, std::size_t edge) const {
     const std::int32_t n = plan_.neighbor(t, edge);
     return n >= 0 && !plan_.is_inner_step(t, edge) && columns_.elements(index(n)) > 0;
 }
@@ -137,8 +135,8 @@ bool ElementQuality::shares_sides(std::size_t t, std::size_t edge) const {
 /// Both columns beside an edge have the heights of its ends in ascending order, so one pass over
 /// both finds the sides that they share.
 template <class Visit>
-void ElementQuality::for_sides(std::size_t t, std::size_t edge, const Visit& visit) const {
-    using Side = std::array<std::int32_t, 4>;
+void ElementQuality::for_lateral_faces(std::size_t t, std::size_t edge, const Visit& visit) const {
+    using LateralFace = std::array<std::int32_t, 4>;
     const std::size_t i = edge, j = (edge + 1) % 3;
     const meshing::HalfEdge twin = plan_.twin(t, i);
     std::size_t at = 0, end = 0, u = 0, v = 0;
@@ -148,18 +146,19 @@ void ElementQuality::for_sides(std::size_t t, std::size_t edge, const Visit& vis
         u = index(twin.next().index());
         v = index(twin.index());
     }
-    const auto side = [&](std::size_t e, std::size_t from, std::size_t to) {
-        const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
-        return Side{low[from], low[to], high[from], high[to]};
+    const auto heights_between = [&](std::size_t e, std::size_t from, std::size_t to) {
+        const LevelFront &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+        return LateralFace{low[from], low[to], high[from], high[to]};
     };
-    const auto is_empty = [](const Side& s) { return s[0] == s[2] && s[1] == s[3]; };
+    const auto is_empty = [](const LateralFace& s) { return s[0] == s[2] && s[1] == s[3]; };
     const std::size_t first = columns_.offset[t];
     for (std::size_t e = first; e < first + columns_.elements(t); ++e) {
-        const Side heights = side(e, i, j);
+        const LateralFace heights = heights_between(e, i, j);
         if (is_empty(heights)) continue;
-        while (at < end && (is_empty(side(at, u, v)) || side(at, u, v) < heights))
+        while (at < end &&
+               (is_empty(heights_between(at, u, v)) || heights_between(at, u, v) < heights))
             ++at;
-        visit(e, at < end && side(at, u, v) == heights, at);
+        visit(e, at < end && heights_between(at, u, v) == heights, at);
     }
 }
 
@@ -175,7 +174,7 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
         const ColumnCorners at = corners(t);
         for (std::size_t e = first; e < first + count; ++e) {
             const bool is_first = e == first, is_last = e + 1 == first + count;
-            const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+            const LevelFront &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
             if (moved_corners(e) == 3) {
                 // a prism may become one with the next layer of its block, no more
                 if (border == 0 && !is_first && !is_last) continue;
@@ -215,7 +214,7 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
 /// Gives up an element: its upper heights, or its lower ones.
 void ElementQuality::give_up(std::size_t t, std::size_t element, bool upper,
                              Removals& removals) const {
-    const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
+    const LevelFront &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
     for (std::size_t i = 0; i < 3; ++i) {
         if (low[i] == high[i]) continue;
         removals.push_back(
@@ -244,8 +243,8 @@ void ElementQuality::for_faces(const Visit& visit) const {
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
         const ColumnCorners at = corners(t);
         for (std::size_t e = first; e <= end; ++e) {
-            const Front& front = columns_.fronts[e];
-            Face face{{}, at.flat_area(front), {}};
+            const LevelFront& front = columns_.fronts[e];
+            ElementFace face{{}, at.flat_area(front), {}};
             for (std::size_t i = 0; i < 4; ++i)
                 face.corners[i] = at.at(i % 3, front[i % 3]);
             for (std::size_t k = 0; k < 3; ++k)
@@ -259,13 +258,13 @@ void ElementQuality::for_faces(const Visit& visit) const {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t n = plan_.neighbor(t, i);
             const std::size_t j = (i + 1) % 3;
-            if (shares_sides(t, i) && index(n) < t) continue;
-            for_sides(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
+            if (shares_lateral_faces(t, i) && index(n) < t) continue;
+            for_lateral_faces(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
                 if (is_shared && index(n) < t) return;
-                const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
-                const Face face =
-                    side_face(at.plan[i], at.plan[j], {at.z(i, low[i]), at.z(j, low[j])},
-                              {at.z(i, high[i]), at.z(j, high[j])});
+                const LevelFront &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+                const ElementFace face =
+                    lateral_face(at.plan[i], at.plan[j], {at.z(i, low[i]), at.z(j, low[j])},
+                                 {at.z(i, high[i]), at.z(j, high[j])});
                 visit(face, ElementRef{t, e},
                       is_shared ? ElementRef{index(n), beyond} : ElementRef{t, kNone});
             });
@@ -278,7 +277,7 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
     Removals removals;
     const auto give_up = [&](const ElementRef& place, bool upper) {
         const auto [t, e] = place;
-        const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+        const LevelFront &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
         if (columns_.elements(t) == 1) {
             // a thick one alone in its column stays: without it its neighbor would be the end
             const ColumnCorners at = corners(t);
@@ -294,19 +293,19 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
         const ColumnCorners at = corners(t);
         for (std::size_t e = first; e < end; ++e) {
-            if (determinant(at, e, e == first, e + 1 == end, open_sides_[e]) < kWeakDeterminant)
+            if (determinant(at, e, e == first, e + 1 == end, open_edges_[e]) < kWeakDeterminant)
                 give_up({t, e}, e == first && e + 1 < end);  // its neighbor within takes the volume
         }
     }
-    for_faces([&](const Face& face, const ElementRef& owner, const ElementRef& other) {
+    for_faces([&](const ElementFace& face, const ElementRef& owner, const ElementRef& other) {
         if (other.element == kNone) return;
         const ElementBody &a = bodies[owner.element], &b = bodies[other.element];
         if (!is_bad(face, a, b)) return;
         // the face goes, and the smaller element with it
-        const bool is_own = a.volume < b.volume;
-        const auto [t, e] = is_own ? owner : other;
+        const bool is_owner_smaller = a.volume < b.volume;
+        const auto [t, e] = is_owner_smaller ? owner : other;
         give_up({t, e}, owner.triangle == other.triangle
-                            ? is_own
+                            ? is_owner_smaller
                             : e == columns_.offset[t] && columns_.elements(t) > 1);
     });
     return removals;
@@ -318,8 +317,8 @@ ElementQuality::SkewedFaces ElementQuality::skewed(bool divided) const {
         find_skewed(*this, {}, skewed);
     } else {
         std::vector<std::size_t> whole;
-        const ColumnFronts parts = tetrahedra(whole);
-        find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, skewed);
+        const ColumnFronts fronts = tetrahedra(whole);
+        find_skewed({plan_, levels_, fronts, minimum_thickness_, progress_}, whole, skewed);
     }
     sort_unique(skewed.tall);
     return skewed;
@@ -336,12 +335,12 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
         std::array<std::size_t, 3> order{0, 1, 2};
         std::ranges::sort(order, std::greater<>(), [&](std::size_t i) { return nodes[i]; });
         for (std::size_t e = columns_.offset[t]; e < columns_.offset[t + 1]; ++e) {
-            Front front = columns_.fronts[e];
+            LevelFront front = columns_.fronts[e];
             made.fronts.push_back(front);
             made.blocks.push_back(columns_.blocks[e]);
             whole.push_back(e);
             if (e + 1 == columns_.offset[t + 1]) continue;
-            const Front& high = columns_.fronts[e + 1];
+            const LevelFront& high = columns_.fronts[e + 1];
             for (const std::size_t corner : order) {
                 if (front[corner] == high[corner]) continue;
                 front[corner] = high[corner];
@@ -356,35 +355,40 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
     return made;
 }
 
-/// @param parts  the faces of these elements are looked at; of which `whole` each is a part, if it
+/// @param tetrahedra_quality  the faces of these elements are looked at; of which `whole` each is a
+///                            part, if it
 /// is not one itself
-void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
-                                 SkewedFaces& skewed) const {
-    const std::vector<ElementBody> of_parts = parts.bodies();
-    const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
-    parts.for_faces([&](const Face& face, const ElementRef& owner, const ElementRef& other) {
-        const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
-        const Vec3& center = of_parts[owner.element].center;
-        const double skewness = is_outer
-                                    ? outer_skewness(face, center)
-                                    : inner_skewness(face, center, of_parts[other.element].center);
+void ElementQuality::find_skewed(const ElementQuality& tetrahedra_quality,
+                                 std::span<const std::size_t> whole, SkewedFaces& skewed) const {
+    const std::vector<ElementBody> bodies_of_tetrahedra = tetrahedra_quality.bodies();
+    const auto whole_of = [&](std::size_t tetrahedron) {
+        return whole.empty() ? tetrahedron : whole[tetrahedron];
+    };
+    tetrahedra_quality.for_faces([&](const ElementFace& face, const ElementRef& owner,
+                                     const ElementRef& other) {
+        const bool is_outer = other.element == kNone, is_lateral = face.area[2] == 0;
+        const Vec3& center = bodies_of_tetrahedra[owner.element].center;
+        const double skewness =
+            is_outer ? outer_skewness(face, center)
+                     : inner_skewness(face, center, bodies_of_tetrahedra[other.element].center);
         if (!(skewness > kMostSkewness)) return;
         const std::size_t e = whole_of(owner.element);
         if (skewness > kSkewnessLimit) {
             ++skewed.faces;
-            if (is_outer && !is_side) skewed.tall.push_back(columns_.blocks[e]);
+            if (is_outer && !is_lateral) skewed.tall.push_back(columns_.blocks[e]);
         }
         if (skewness > skewed.most) {
             skewed.most = skewness;
             skewed.place = face.center;
         }
-        if (is_outer && !is_side) return;  // too tall rather than too thin
+        if (is_outer && !is_lateral) return;  // too tall rather than too thin
         const std::size_t next = is_outer ? e : whole_of(other.element);
-        const bool is_own = e == next || body(corners(owner.triangle), e).volume <
-                                             body(corners(other.triangle), next).volume;
-        const std::size_t t = is_own ? owner.triangle : other.triangle, smaller = is_own ? e : next;
+        const bool is_owner_smaller = e == next || body(corners(owner.triangle), e).volume <
+                                                       body(corners(other.triangle), next).volume;
+        const std::size_t t = is_owner_smaller ? owner.triangle : other.triangle,
+                          smaller = is_owner_smaller ? e : next;
         if (columns_.elements(t) == 1) return;
-        const bool upper = is_side || e == next ? joins_upward(t, smaller) : is_own;
+        const bool upper = is_lateral || e == next ? joins_upward(t, smaller) : is_owner_smaller;
         give_up(t, smaller, upper, skewed.removals);
     });
 }
@@ -414,7 +418,7 @@ std::vector<PillarLevels::Move> ElementQuality::steep(
         const ColumnCorners at = corners(t);
         for (std::size_t e = first; e + 1 < first + columns_.elements(t); ++e) {
             if (!leans_at(at, e, kRelaxedFace, true)) continue;
-            const Front& face = columns_.fronts[e + 1];
+            const LevelFront& face = columns_.fronts[e + 1];
             double mean = 0;
             for (std::size_t i = 0; i < 3; ++i)
                 mean += at.z(i, face[i]) / 3;
@@ -460,7 +464,8 @@ bool ElementQuality::leans_at(const ColumnCorners& at, std::size_t below, double
 }
 
 /// The center of an element's volume: its upright edges weigh as they are long.
-ElementBody ElementQuality::ColumnCorners::body(const Front& low, const Front& high) const {
+ElementBody ElementQuality::ColumnCorners::body(const LevelFront& low,
+                                                const LevelFront& high) const {
     std::array<Vec3, 3> from;
     std::array<double, 3> rise;
     double total = 0;
@@ -489,7 +494,7 @@ ElementBody ElementQuality::ColumnCorners::body(const Front& low, const Front& h
     return made;
 }
 
-Vec3 ElementQuality::ColumnCorners::flat_area(const Front& front) const {
+Vec3 ElementQuality::ColumnCorners::flat_area(const LevelFront& front) const {
     return times(0.5, triangle_normal(at(0, front[0]), at(1, front[1]), at(2, front[2])));
 }
 
@@ -504,15 +509,15 @@ ElementQuality::ColumnCorners ElementQuality::corners(std::size_t t) const {
 }
 
 double ElementQuality::determinant(const ColumnCorners& at, std::size_t element, bool is_first,
-                                   bool is_last, unsigned open_sides) const {
-    const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
+                                   bool is_last, unsigned open_edges) const {
+    const LevelFront &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
     std::array<Vec3, 5> areas;
     std::size_t count = 0;
     if (!is_first) areas[count++] = at.flat_area(low);
     if (!is_last) areas[count++] = at.flat_area(high);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
-        if ((open_sides >> i & 1U) != 0 || (low[i] == high[i] && low[j] == high[j])) continue;
+        if ((open_edges >> i & 1U) != 0 || (low[i] == high[i] && low[j] == high[j])) continue;
         const Vec3 a = at.at(i, low[i]), b = at.at(j, low[j]);
         const double rise = (at.z(i, high[i]) - a[2] + at.z(j, high[j]) - b[2]) / 2;
         areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};

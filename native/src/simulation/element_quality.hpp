@@ -35,8 +35,8 @@ struct ElementBody {
 };
 
 /// The side of a column between heights `low` and `high` at points a and b of the plan.
-ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
-                      const std::array<double, 2>& high);
+ElementFace lateral_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
+                         const std::array<double, 2>& high);
 
 /// How far from its center a face is crossed by the line between the centers of its elements: 1 is
 /// the edge of the face. 0 where it is clearly less than kMostSkewness.
@@ -111,8 +111,8 @@ private:
         double z(std::size_t corner, std::int32_t height) const {
             return heights[corner][static_cast<std::size_t>(height)];
         }
-        Vec3 flat_area(const Front& front) const;
-        ElementBody body(const Front& low, const Front& high) const;
+        Vec3 flat_area(const LevelFront& front) const;
+        ElementBody body(const LevelFront& low, const LevelFront& high) const;
     };
 
     ColumnCorners corners(std::size_t t) const;
@@ -127,25 +127,25 @@ private:
     template <class Visit>
     void for_faces(const Visit& visit) const;
     ColumnFronts tetrahedra(std::vector<std::size_t>& whole) const;
-    void find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
+    void find_skewed(const ElementQuality& tetrahedra_quality, std::span<const std::size_t> whole,
                      SkewedFaces& skewed) const;
     bool leans_at(const ColumnCorners& at, std::size_t below, double cosine, bool steeper) const;
     double determinant(const ColumnCorners& at, std::size_t element, bool is_first, bool is_last,
-                       unsigned open_sides) const;
+                       unsigned open_edges) const;
     bool is_tall(const ColumnCorners& at, std::size_t element) const;
-    bool shares_sides(std::size_t t, std::size_t edge) const;
+    bool shares_lateral_faces(std::size_t t, std::size_t edge) const;
     bool divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const;
     /// Calls visit(element, is_shared, beyond) for each upright side at one edge of a triangle:
     /// whether an element of the next column, `beyond`, has the same side.
     template <class Visit>
-    void for_sides(std::size_t t, std::size_t edge, const Visit& visit) const;
+    void for_lateral_faces(std::size_t t, std::size_t edge, const Visit& visit) const;
 
     const PlanTopology& plan_;
     const PillarLevels& levels_;
     const ColumnFronts& columns_;
     const double minimum_thickness_;
     Progress* progress_;
-    std::vector<std::uint8_t> open_sides_;  ///< of each element: a bit for each edge, if outside
+    std::vector<std::uint8_t> open_edges_;  ///< of each element: a bit for each edge, if outside
 };
 
 }  // namespace realmodel::simulation

@@ -33,23 +33,23 @@ constexpr std::size_t kFaces = 8192;  ///< put in order at a time
 }  // namespace
 
 CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uint32_t> begin,
-                                std::span<const std::uint32_t> sides) {
+                                std::span<const std::uint32_t> cell_faces) {
     CellDescriptions made;
     const std::size_t cells = begin.empty() ? 0 : begin.size() - 1;
     made.lengths.resize(cells);
     made.counts.resize(cells);
-    const auto sides_of = [&](std::size_t c) {
-        return sides.subspan(begin[c], begin[c + 1] - begin[c]);
+    const auto faces_of = [&](std::size_t c) {
+        return cell_faces.subspan(begin[c], begin[c + 1] - begin[c]);
     };
     std::vector<std::size_t> first_number((cells + kCells - 1) / kCells);
     parallel_ranges(cells, kCells, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         std::size_t total = 0;
         for (std::size_t c = from; c < to; ++c) {
-            if (begin[c] > begin[c + 1] || begin[c + 1] > sides.size())
+            if (begin[c] > begin[c + 1] || begin[c + 1] > cell_faces.size())
                 refuse(static_cast<std::int64_t>(c), "the cell has sides that do not exist");
             std::size_t length = 1;
-            for (const std::uint32_t side : sides_of(c))
-                length += 1 + loop_of(faces, side >> 1).size();
+            for (const std::uint32_t cell_face : faces_of(c))
+                length += 1 + loop_of(faces, cell_face >> 1).size();
             made.lengths[c] = static_cast<std::int64_t>(length);
             total += length;
         }
@@ -62,14 +62,14 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
         auto& corners = vertices[from / kCells];
         std::vector<std::int32_t> distinct;
         for (std::size_t c = from; c < to; ++c) {
-            const auto cell_sides = sides_of(c);
+            const auto faces_of_cell = faces_of(c);
             distinct.clear();
-            *number++ = static_cast<std::int64_t>(cell_sides.size());
-            for (const std::uint32_t side : cell_sides) {
-                const auto loop = loop_of(faces, side >> 1);
+            *number++ = static_cast<std::int64_t>(faces_of_cell.size());
+            for (const std::uint32_t cell_face : faces_of_cell) {
+                const auto loop = loop_of(faces, cell_face >> 1);
                 *number++ = static_cast<std::int64_t>(loop.size());
-                number = (side & 1) == 0 ? std::copy(loop.begin(), loop.end(), number)
-                                         : std::reverse_copy(loop.begin(), loop.end(), number);
+                number = (cell_face & 1) == 0 ? std::copy(loop.begin(), loop.end(), number)
+                                              : std::reverse_copy(loop.begin(), loop.end(), number);
                 distinct.insert(distinct.end(), loop.begin(), loop.end());
             }
             sort_unique(distinct);

@@ -178,9 +178,9 @@ private:
     /// Leaves out removals that would change a block that stays as it is.
     void leave_whole(std::vector<PillarLevels::Removal>& removals) const {
         std::erase_if(removals, [&](const PillarLevels::Removal& removal) {
-            bool is_kept = false;
-            for_blocks(removal, [&](std::int32_t b) { is_kept |= is_whole_[index(b)] != 0; });
-            return is_kept;
+            bool is_whole = false;
+            for_blocks(removal, [&](std::int32_t b) { is_whole |= is_whole_[index(b)] != 0; });
+            return is_whole;
         });
     }
 

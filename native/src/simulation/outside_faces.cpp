@@ -156,12 +156,12 @@ private:
         std::ranges::sort(uses, {},
                           [](const OutsideEdgeUse& u) { return std::pair(u.edge, u.triangle); });
         DisjointSets sets(triangles_.size());
-        const auto each_pair = [&](const auto& visit) {
+        const auto for_each_pair = [&](const auto& visit) {
             for (const auto around : groups_of(uses, &OutsideEdgeUse::edge))
                 for (std::size_t i = 1; i < around.size(); ++i)
                     visit(around[i - 1], around[i]);
         };
-        each_pair([&](const OutsideEdgeUse& a, const OutsideEdgeUse& b) {
+        for_each_pair([&](const OutsideEdgeUse& a, const OutsideEdgeUse& b) {
             const OutsideTriangle &s = triangles_[index(a.triangle)],
                                   &t = triangles_[index(b.triangle)];
             if (s.surface == t.surface && dot(s.normal, t.normal) >= kSamePatch)
@@ -169,7 +169,7 @@ private:
         });
         for (std::size_t t = 0; t < triangles_.size(); ++t)
             patch_.push_back(sets.find(static_cast<std::int32_t>(t)));
-        each_pair([&](const OutsideEdgeUse& a, const OutsideEdgeUse& b) {
+        for_each_pair([&](const OutsideEdgeUse& a, const OutsideEdgeUse& b) {
             const std::array patches{patch_[index(a.triangle)], patch_[index(b.triangle)]};
             if (patches[0] == patches[1]) return;
             const auto& corners = corners_[index(a.triangle)];

@@ -137,7 +137,7 @@ public:
     void run(const Layering& layering) {
         const auto joined = thick_levels(input_, thickness_);
         const auto layers = number_layers(layering, thickest_of(input_, joined));
-        const OwnHeights pillar_heights = divide_blocks(joined, layers);
+        const PillarHeights pillar_heights = divide_blocks(joined, layers);
         find_divided();
         for (DividedNode& node : divided_)
             share_heights(node, pillar_heights);
@@ -147,7 +147,7 @@ public:
 
 private:
     /// The heights of each pillar alone, one pillar after another.
-    struct OwnHeights {
+    struct PillarHeights {
         std::vector<double> heights;
         std::vector<std::size_t> begin{0};
         std::span<const double> of(std::size_t pillar) const {
@@ -207,10 +207,11 @@ private:
 
     /// Blocks become layers, but no more than their thickness allows; where there are fewer than
     /// elsewhere the uppermost end. Levels are numbers of the pillar's own heights at first.
-    OwnHeights divide_blocks(std::span<const double> joined, std::span<const std::int32_t> layers) {
+    PillarHeights divide_blocks(std::span<const double> joined,
+                                std::span<const std::int32_t> layers) {
         const auto& [lines, blocks, plan, columns] = input_;
         made_.offset_.assign(1, 0);
-        OwnHeights pillars;
+        PillarHeights pillars;
         for (std::size_t p = 0; p < columns.size(); ++p) {
             const std::int32_t rock = columns.rock(p);
             if (rock >= 0) {
@@ -221,17 +222,18 @@ private:
                 made_.level_.push_back(at);
                 for (std::size_t b = 0; b < index(blocks.blocks_of(rock)); ++b) {
                     const double thick = z[b + 1] - z[b];
-                    std::int32_t parts = 0;
+                    std::int32_t divisions = 0;
                     if (thick > 0) {
                         const double wanted =
                             std::min<double>(layers[first + b], std::floor(thick / thickness_));
-                        parts = std::max(1, static_cast<std::int32_t>(wanted));
+                        divisions = std::max(1, static_cast<std::int32_t>(wanted));
                     }
-                    for (std::int32_t k = 1; k <= parts; ++k)
-                        pillars.heights.push_back(k == parts ? z[b + 1] : z[b] + thick * k / parts);
+                    for (std::int32_t k = 1; k <= divisions; ++k)
+                        pillars.heights.push_back(k == divisions ? z[b + 1]
+                                                                 : z[b] + thick * k / divisions);
                     for (std::int32_t k = 1; k <= layers[first + b]; ++k)
-                        made_.level_.push_back(at + std::min(k, parts));
-                    at += parts;
+                        made_.level_.push_back(at + std::min(k, divisions));
+                    at += divisions;
                 }
             }
             made_.offset_.push_back(made_.level_.size());
@@ -241,7 +243,7 @@ private:
     }
 
     /// Heights of the pillars of one node that are nearer than the thickness become one.
-    void share_heights(DividedNode& node, const OwnHeights& pillar_heights) {
+    void share_heights(DividedNode& node, const PillarHeights& pillar_heights) {
         struct PillarHeight {
             double height;
             std::size_t pillar;  ///< of the node's
@@ -330,7 +332,7 @@ private:
     }
 
     /// The heights of all nodes.
-    void gather_heights(const OwnHeights& pillar_heights) {
+    void gather_heights(const PillarHeights& pillar_heights) {
         const auto& [lines, blocks, plan, columns] = input_;
         std::vector<std::int32_t> pillar_of(plan.nodes(), -1);
         for (std::size_t p = 0; p < plan.pillar_count(); ++p) {
@@ -396,8 +398,8 @@ std::array<std::int32_t, 2> PillarLevels::blocks_at(std::size_t pillar, std::int
 std::size_t PillarLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals,
                                  bool several) {
     std::sort(removals.begin(), removals.end());
-    constexpr std::int32_t kKept = -1;
-    std::vector<std::int32_t> into(height_.size(), kKept);
+    constexpr std::int32_t kUnmerged = -1;
+    std::vector<std::int32_t> into(height_.size(), kUnmerged);
     std::vector<std::uint8_t> is_used(height_.size(), 0);
     std::size_t count = 0;
     std::int32_t last = -1;
@@ -420,13 +422,13 @@ std::size_t PillarLevels::remove(const PlanTopology& plan, std::vector<Removal>&
     for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
         const std::size_t begin = node_offset_[n], end = node_offset_[n + 1];
         for (std::size_t h = begin; h < end; ++h) {
-            if (into[h] != kKept) continue;
+            if (into[h] != kUnmerged) continue;
             number[h] = static_cast<std::int32_t>(to - offset[n]);
             first_height_[to] = first_height_[h];
             height_[to++] = height_[h];
         }
         for (std::size_t h = begin; h < end; ++h) {
-            if (into[h] != kKept) number[h] = number[begin + index(into[h])];
+            if (into[h] != kUnmerged) number[h] = number[begin + index(into[h])];
         }
         offset.push_back(to);
     }

@@ -47,10 +47,10 @@ double local_length(const PlanPoint& p, double edge_length, std::span<const Line
     return least;
 }
 
-using Link = std::array<std::int32_t, 2>;
+using PlanLink = std::array<std::int32_t, 2>;
 /// What lies along a link between two anchors: a block that ends there, or -1: a step.
 struct LinkUse {
-    Link link;
+    PlanLink link;
     std::int32_t block;
     auto operator<=>(const LinkUse&) const = default;
 };
@@ -88,7 +88,7 @@ std::vector<LinkUse> linked_anchors(const Traces& traces, std::span<const PlanPo
     std::vector<LinkUse> links;
     std::int32_t at = 0;
     std::size_t count = 0;
-    for (const Traces::Segment& segment : traces.segments) {
+    for (const Traces::TraceSegment& segment : traces.segments) {
         poll(progress, count++);
         const PlanPoint &u = traces.points[index(segment.ends[0])],
                         &v = traces.points[index(segment.ends[1])];
@@ -148,7 +148,7 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t n = delaunay.neighbors[t][i];
-            const Link edge = unordered(triangles[t][i], triangles[t][(i + 1) % 3]);
+            const PlanLink edge = unordered(triangles[t][i], triangles[t][(i + 1) % 3]);
             if (!items_with_key(links, edge, &LinkUse::link).empty()) continue;
             if (n >= 0) {
                 faces.join(static_cast<std::int32_t>(t), n);
@@ -245,17 +245,17 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
     }
     const auto links = linked_anchors(traces, lines.points, delaunay, execution.progress);
     const auto rocks = rocks_of(model, blocks, lines.points, delaunay, links, execution);
-    std::map<Link, Link> sides;  // the rock masses left and right of each link
+    std::map<PlanLink, PlanLink> sides;  // the rock masses left and right of each link
     for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = delaunay.triangles[t][i], b = delaunay.triangles[t][(i + 1) % 3];
-            auto& beside = sides.try_emplace(unordered(a, b), Link{-1, -1}).first->second;
+            auto& beside = sides.try_emplace(unordered(a, b), PlanLink{-1, -1}).first->second;
             beside[a < b ? 0 : 1] = rocks[t];
         }
     }
     lines.ending_offsets.push_back(0);
     for (const auto along : groups_of(links, &LinkUse::link)) {
-        const Link& link = along[0].link;
+        const PlanLink& link = along[0].link;
         const auto& [left, right] = sides.at(link);
         if (left < 0 && right < 0) continue;
         lines.segments.push_back(
@@ -264,7 +264,7 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
             if (use.block >= 0) lines.ending_blocks.push_back(use.block);
         lines.ending_offsets.push_back(static_cast<std::int32_t>(lines.ending_blocks.size()));
     }
-    for (const Traces::Segment& s : traces.segments) {
+    for (const Traces::TraceSegment& s : traces.segments) {
         if (s.block < 0)
             lines.steps.push_back(
                 {traces.points[index(s.ends[0])], traces.points[index(s.ends[1])]});

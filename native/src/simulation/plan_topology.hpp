@@ -46,8 +46,8 @@ private:
     std::vector<bool> is_on_line_;  ///< of each node, or of the first
 };
 
-/// Steps, and the border where it touches itself, divide the surroundings of a node into parts.
-/// Each part has a pillar.
+/// Steps, and the border where it touches itself, divide the surroundings of a node into sectors.
+/// Each sector has a pillar.
 struct Pillars {
     std::vector<std::int32_t> of_corner;  ///< 3 a triangle
     std::vector<std::int32_t> node;       ///< of each pillar

@@ -118,14 +118,14 @@ constexpr double kNearerOnSteps = 0.7;
 constexpr double kCornerTurn = 0.35;  ///< radians: a wall that turns by more has a corner
 
 /// What lies along each edge of traces, whatever ends or steps there.
-struct EdgeUse {
+struct TraceEdgeUse {
     bool is_step = false, is_of_top = false;
 };
 
 /// How sharply the steps and walls at a point turn: pi at an end, 0 where they go straight on or
 /// there are none.
-double turn_of_steps(const Traces& traces, const EdgeGraph& graph, std::span<const EdgeUse> uses,
-                     std::int32_t point) {
+double turn_of_steps(const Traces& traces, const EdgeGraph& graph,
+                     std::span<const TraceEdgeUse> uses, std::int32_t point) {
     std::vector<std::array<double, 2>> directions;
     for (const std::int32_t e : graph.at[index(point)]) {
         if (!uses[index(e)].is_step) continue;
@@ -191,11 +191,11 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
                                     Progress* progress) {
     if (traces.points.empty()) return {};
     std::vector<std::array<std::int32_t, 2>> edges;
-    std::vector<EdgeUse> uses;
-    for (const auto equal : groups_of(traces.segments, &Traces::Segment::ends)) {
+    std::vector<TraceEdgeUse> uses;
+    for (const auto equal : groups_of(traces.segments, &Traces::TraceSegment::ends)) {
         edges.push_back(equal[0].ends);
-        EdgeUse& use = uses.emplace_back();
-        for (const Traces::Segment& s : equal) {
+        TraceEdgeUse& use = uses.emplace_back();
+        for (const Traces::TraceSegment& s : equal) {
             use.is_of_top = use.is_of_top || s.block == Traces::kOfTop;
             use.is_step = use.is_step || s.block < 0;
         }
@@ -210,8 +210,8 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
     const auto add = [&](const PlanPoint& p, std::int32_t chain = -1, double share = 1) {
         const double apart = spacing(p);
         const bool is_near = anchors.any(p, apart, [&](std::size_t i) {
-            const bool is_own = chain_of[i] == chain || chain_of[i] < 0;
-            return distance(anchors.points()[i], p) < (is_own ? share : 1) * apart;
+            const bool is_on_chain = chain_of[i] == chain || chain_of[i] < 0;
+            return distance(anchors.points()[i], p) < (is_on_chain ? share : 1) * apart;
         });
         if (is_near) return;
         anchors.add(p);
@@ -237,7 +237,7 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
             const std::int32_t from = chains[c][i], to = chains[c][i + 1];
             for (const std::int32_t e : graph.at[index(from)]) {
                 if (graph.other(e, from) != to) continue;
-                const EdgeUse& edge = uses[index(e)];
+                const TraceEdgeUse& edge = uses[index(e)];
                 kinds[c] = std::min(kinds[c], edge.is_of_top ? 0 : edge.is_step ? 1 : 2);
             }
             lengths[c] += distance(traces.points[index(from)], traces.points[index(to)]);
@@ -267,8 +267,8 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
                                     &q = traces.points[index(chain[i + 1])];
                     const double segment_length = distance(p, q);
                     for (; next < before + segment_length; next += step) {
-                        const double part = (next - before) / segment_length;
-                        add(moved(p, part, minus(q, p)), number, share);
+                        const double fraction = (next - before) / segment_length;
+                        add(moved(p, fraction, minus(q, p)), number, share);
                     }
                     before += segment_length;
                 }

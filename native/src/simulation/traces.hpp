@@ -22,13 +22,13 @@ using meshing::PlanPoint;
 struct Traces {
     /// The top of the model ends or steps here; what else does stands beside it.
     static constexpr std::int32_t kOfTop = -2;
-    struct Segment {
+    struct TraceSegment {
         std::array<std::int32_t, 2> ends;  ///< points
         std::int32_t block;  ///< that ends here without thickness, -1: a step or wall; or kOfTop
-        auto operator<=>(const Segment&) const = default;
+        auto operator<=>(const TraceSegment&) const = default;
     };
-    std::vector<PlanPoint> points;  ///< distinct, sorted
-    std::vector<Segment> segments;  ///< sorted, each once
+    std::vector<PlanPoint> points;       ///< distinct, sorted
+    std::vector<TraceSegment> segments;  ///< sorted, each once
 };
 
 Traces traces_of(const ComplexView& model, Progress* progress);

@@ -93,7 +93,7 @@ public:
     template <class Visit>
     void find(const Box& box, const Visit& visit) const {
         if (nodes_.empty()) return;
-        each_leaf(box, [&](const Node& leaf) {
+        for_each_leaf(box, [&](const Node& leaf) {
             for (std::size_t i = leaf.begin; i < leaf.end; ++i) {
                 if (boxes_[i].meets(box)) visit(order_[i]);
             }
@@ -119,7 +119,7 @@ public:
                 for (std::size_t i = leaf; i < std::min(end_leaf, leaf + kLeavesOfSearch); ++i)
                     all.include(nodes_[leaves_[i]].box);
                 near_all.clear();
-                each_leaf(
+                for_each_leaf(
                     all, [&](const Node& other) { near_all.push_back(&other); }, node.begin);
             }
             near.clear();
@@ -172,53 +172,55 @@ private:
         while ((boxes >> halvings) > kLeaf)
             ++halvings;
         // of these parts some may have one box more than the others
-        const std::size_t parts = std::size_t{1} << halvings;
-        return boxes >> halvings == kLeaf ? parts + boxes % parts : parts;
+        const std::size_t subtrees = std::size_t{1} << halvings;
+        return boxes >> halvings == kLeaf ? subtrees + boxes % subtrees : subtrees;
     }
     /// Builds large trees on several threads: the parts of one level at once, then what is below.
     void build_all(std::vector<BoxMiddle>& items, const std::vector<Box>& boxes,
                    const Execution& execution) {
-        constexpr std::size_t kParts = 1 << 5, kMinBoxes = 1 << 11;
-        std::vector<Subtree> parts{{0, 0, items.size(), 0}}, above;
-        while (parts.size() < kParts && items.size() / parts.size() > 2 * kMinBoxes) {
-            std::vector<Subtree> halves(2 * parts.size());
+        constexpr std::size_t kSubtrees = 1 << 5, kMinBoxes = 1 << 11;
+        std::vector<Subtree> subtrees{{0, 0, items.size(), 0}}, above;
+        while (subtrees.size() < kSubtrees && items.size() / subtrees.size() > 2 * kMinBoxes) {
+            std::vector<Subtree> halves(2 * subtrees.size());
             parallel_chunks(
-                parts.size(), execution,
+                subtrees.size(), execution,
                 [&](std::size_t i) {
-                    const auto two = halve(items, parts[i]);
+                    const auto two = halve(items, subtrees[i]);
                     std::ranges::copy(two, halves.begin() + static_cast<std::ptrdiff_t>(2 * i));
                 },
                 0.02);
-            above.insert(above.end(), parts.begin(), parts.end());
-            parts = std::move(halves);
+            above.insert(above.end(), subtrees.begin(), subtrees.end());
+            subtrees = std::move(halves);
         }
         if (above.empty()) {
-            build(items, boxes, parts[0]);
+            build(items, boxes, subtrees[0]);
             return;
         }
         parallel_chunks(
-            parts.size(), execution, [&](std::size_t i) { build(items, boxes, parts[i]); }, 0.02);
-        for (auto part = above.rbegin(); part != above.rend(); ++part)
-            join_boxes(part->node);
+            subtrees.size(), execution, [&](std::size_t i) { build(items, boxes, subtrees[i]); },
+            0.02);
+        for (auto subtree = above.rbegin(); subtree != above.rend(); ++subtree)
+            join_boxes(subtree->node);
     }
-    void build(std::vector<BoxMiddle>& items, const std::vector<Box>& boxes, const Subtree& part) {
-        if (part.end - part.begin > kLeaf) {
-            for (const Subtree& half : halve(items, part))
+    void build(std::vector<BoxMiddle>& items, const std::vector<Box>& boxes,
+               const Subtree& subtree) {
+        if (subtree.end - subtree.begin > kLeaf) {
+            for (const Subtree& half : halve(items, subtree))
                 build(items, boxes, half);
-            join_boxes(part.node);
+            join_boxes(subtree.node);
             return;
         }
         Box whole;
-        for (std::size_t i = part.begin; i < part.end; ++i) {
+        for (std::size_t i = subtree.begin; i < subtree.end; ++i) {
             order_[i] = items[i].number;
             boxes_[i] = boxes[index(items[i].number)];
             whole.include(boxes_[i]);
         }
-        nodes_[part.node] = {whole, part.begin, part.end};
-        leaves_[part.leaf] = part.node;
+        nodes_[subtree.node] = {whole, subtree.begin, subtree.end};
+        leaves_[subtree.leaf] = subtree.node;
     }
-    std::array<Subtree, 2> halve(std::vector<BoxMiddle>& items, const Subtree& part) {
-        const auto [number, begin, end, leaf] = part;
+    std::array<Subtree, 2> halve(std::vector<BoxMiddle>& items, const Subtree& subtree) {
+        const auto [number, begin, end, leaf] = subtree;
         Box middles;
         for (std::size_t i = begin; i < end; ++i)
             middles.include(items[i].twice_middle);
@@ -286,7 +288,7 @@ private:
     }
     /// Calls visit(leaf) for the leaves that meet a box and do not end at a position or before it.
     template <class Visit>
-    void each_leaf(const Box& box, const Visit& visit, std::size_t after = 0) const {
+    void for_each_leaf(const Box& box, const Visit& visit, std::size_t after = 0) const {
         // of a node that meets it the second child waits; none of a tree of 2^31 boxes is deeper
         std::array<std::size_t, 64> waiting;
         std::size_t count = 0;

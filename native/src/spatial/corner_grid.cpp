@@ -32,13 +32,13 @@ std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above
     // few of them, and levels take memory in proportion to what they hold.
     const double along =
         std::clamp(static_cast<double>(members.size()) / 10, 2.0, kMostAlong - 1.0);
-    const double side = std::max(width, height) / along;
+    const double cell_size = std::max(width, height) / along;
     level.columns = level.rows = 1;
-    if (side > 0 && std::isfinite(1 / side)) {
-        level.side = side;
-        level.cells_per_unit = 1 / side;
-        level.columns = static_cast<std::int32_t>(width / side) + 1;
-        level.rows = static_cast<std::int32_t>(height / side) + 1;
+    if (cell_size > 0 && std::isfinite(1 / cell_size)) {
+        level.cell_size = cell_size;
+        level.cells_per_unit = 1 / cell_size;
+        level.columns = static_cast<std::int32_t>(width / cell_size) + 1;
+        level.rows = static_cast<std::int32_t>(height / cell_size) + 1;
     }
     level.first = static_cast<std::int32_t>(cells_.size());
     const auto number = static_cast<std::int32_t>(levels_.size());

@@ -47,7 +47,7 @@ private:
     static constexpr std::int32_t kIsLevel = -1;
     struct Level {
         PlanPosition low, high;
-        double cells_per_unit, side;
+        double cells_per_unit, cell_size;
         std::int32_t columns, rows;
         std::int32_t first;                          ///< of its cells
         std::uint32_t used_rows;                     ///< bits of rows that hold something
@@ -55,7 +55,7 @@ private:
         std::int32_t above = kNone,
                      cell_above = kNone;  ///< the level that it is in, the cell there
     };
-    struct Triangle {
+    struct GridTriangle {
         PlanPosition a, b, c;
         PlanPosition low, high;  ///< of the box around it
     };
@@ -84,9 +84,9 @@ private:
     static std::uint32_t bits_between(std::int32_t first, std::int32_t last) {
         return last < first ? 0 : ((2U << (last - first)) - 1) << first;
     }
-    std::int32_t innermost(const Triangle& triangle) const;
+    std::int32_t innermost(const GridTriangle& triangle) const;
     template <class Wanted>
-    bool search(const Triangle& triangle, std::int32_t level, Wanted& wanted) const;
+    bool search(const GridTriangle& triangle, std::int32_t level, Wanted& wanted) const;
 
     std::vector<Level> levels_;
     std::vector<Cell> cells_;
@@ -112,7 +112,7 @@ private:
 }
 
 /// The smallest level that holds all members in a triangle, found from that of the last search.
-inline std::int32_t CornerGrid::innermost(const Triangle& triangle) const {
+inline std::int32_t CornerGrid::innermost(const GridTriangle& triangle) const {
     const auto lies_in = [&](const Level& level, std::int32_t cell) {
         return cell_at(triangle.low, level) == cell && cell_at(triangle.high, level) == cell;
     };
@@ -133,17 +133,17 @@ template <class Wanted>
 bool CornerGrid::any_in_triangle(const PlanPosition& a, const PlanPosition& b,
                                  const PlanPosition& c, Wanted&& wanted) {
     if (levels_.empty()) return false;
-    const Triangle triangle{a,
-                            b,
-                            c,
-                            {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
-                            {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}};
+    const GridTriangle triangle{a,
+                                b,
+                                c,
+                                {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
+                                {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}};
     last_ = innermost(triangle);
     return search(triangle, last_, wanted);
 }
 
 template <class Wanted>
-bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& wanted) const {
+bool CornerGrid::search(const GridTriangle& triangle, std::int32_t number, Wanted& wanted) const {
     const Level& level = levels_[number];
     const auto& [a, b, c, box_low, box_high] = triangle;
     const auto [left, bottom] = box_low;
@@ -164,9 +164,9 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
         if (used == 0) continue;
         if (is_large) {
             double low = right, high = left;
-            const double below = row == 0 ? bottom : level.low[1] + row * level.side;
+            const double below = row == 0 ? bottom : level.low[1] + row * level.cell_size;
             const double above =
-                row == level.rows - 1 ? top : level.low[1] + (row + 1) * level.side;
+                row == level.rows - 1 ? top : level.low[1] + (row + 1) * level.cell_size;
             widen_by_band(low, high, a, b, below, above);
             widen_by_band(low, high, b, c, below, above);
             widen_by_band(low, high, c, a, below, above);

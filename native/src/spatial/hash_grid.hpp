@@ -18,14 +18,15 @@ namespace realmodel::spatial {
 template <std::size_t N>
 class HashGrid {
 public:
-    using Position = std::array<double, N>;
+    using GridPosition = std::array<double, N>;
 
-    /// @param side  of a cell; searches that reach half as far or less look into 2^N cells at most
-    explicit HashGrid(double side) : side_(side) {}
+    /// @param cell_size  of a cell; searches that reach half as far or less look into 2^N cells at
+    ///                   most
+    explicit HashGrid(double cell_size) : cell_size_(cell_size) {}
 
     /// In the order in which they came.
-    const std::vector<Position>& points() const { return points_; }
-    void add(const Position& p) {
+    const std::vector<GridPosition>& points() const { return points_; }
+    void add(const GridPosition& p) {
         const auto cell = index(cells_.add(cell_of(p, 0)));
         last_.resize(cells_.size(), -1);
         before_.push_back(std::exchange(last_[cell], static_cast<std::int32_t>(points_.size())));
@@ -34,9 +35,9 @@ public:
     /// Whether holds(number) is true of a point: asked of all that are no farther than `reach`, and
     /// of others near them, until it is.
     template <class Holds>
-    bool any(const Position& around, double reach, const Holds& holds) const {
-        const Cell first = cell_of(around, -reach), last = cell_of(around, reach);
-        for (Cell at = first;;) {
+    bool any(const GridPosition& around, double reach, const Holds& holds) const {
+        const CellKey first = cell_of(around, -reach), last = cell_of(around, reach);
+        for (CellKey at = first;;) {
             const std::int32_t cell = cells_.find(at);
             for (std::int32_t i = cell < 0 ? -1 : last_[index(cell)]; i >= 0; i = before_[index(i)])
                 if (holds(index(i))) return true;
@@ -48,19 +49,19 @@ public:
     }
 
 private:
-    using Cell = std::array<std::int64_t, N>;
-    Cell cell_of(const Position& p, double off) const {
-        Cell cell;
+    using CellKey = std::array<std::int64_t, N>;
+    CellKey cell_of(const GridPosition& p, double off) const {
+        CellKey cell;
         for (std::size_t k = 0; k < N; ++k)
-            cell[k] = static_cast<std::int64_t>(std::floor((p[k] + off) / side_));
+            cell[k] = static_cast<std::int64_t>(std::floor((p[k] + off) / cell_size_));
         return cell;
     }
 
-    double side_;
-    KeyNumbers<Cell> cells_;
+    double cell_size_;
+    KeyNumbers<CellKey> cells_;
     std::vector<std::int32_t> last_;    ///< of each cell: the last point in it
     std::vector<std::int32_t> before_;  ///< of each point: the one before it in its cell, or -1
-    std::vector<Position> points_;
+    std::vector<GridPosition> points_;
 };
 
 }  // namespace realmodel::spatial

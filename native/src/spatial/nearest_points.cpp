@@ -270,13 +270,13 @@ void OctantSearch::find(const PlanPosition& position, std::int32_t left_out,
         // What was not looked at lies beyond a side that is not the frame's; a little less for
         // rounding.
         double reach = std::numeric_limits<double>::infinity();
-        const auto side = [&](double at, double low, double step, std::int32_t from,
-                              std::int32_t to, std::int32_t count) {
+        const auto find_span = [&](double at, double low, double step, std::int32_t from,
+                                   std::int32_t to, std::int32_t count) {
             if (from > 0) reach = std::min(reach, at - (low + from * step) - 1e-9 * step);
             if (to < count - 1) reach = std::min(reach, low + (to + 1) * step - at - 1e-9 * step);
         };
-        side(position[0], frame.low_x, tiles_.step_x(), span.left, span.right, columns);
-        side(position[1], frame.low_y, tiles_.step_y(), span.low, span.high, rows);
+        find_span(position[0], frame.low_x, tiles_.step_x(), span.left, span.right, columns);
+        find_span(position[1], frame.low_y, tiles_.step_y(), span.low, span.high, rows);
         if (std::isinf(reach)) break;
         reach = std::max(0.0, reach);
         if (complete(reach * reach)) break;

@@ -157,9 +157,7 @@ std::vector<std::uint32_t> along_hilbert_curve(std::span<const PlanPosition> pos
 /// Points in plan, in tiles about as many as there are points: finds the few within a box.
 class PointBins {
 public:
-    using Position = PlanPosition;
-
-    explicit PointBins(const std::vector<Position>& points)
+    explicit PointBins(const std::vector<PlanPosition>& points)
         : tiles_(box_around(points), points.size()) {
         bins_ = bucketize<BinnedPoint>(tiles_.size(), [&](const auto& put) {
             for (std::size_t i = 0; i < points.size(); ++i)
@@ -180,7 +178,7 @@ public:
 
 private:
     struct BinnedPoint {
-        Position position;
+        PlanPosition position;
         std::size_t number;
     };
 

@@ -138,10 +138,10 @@ std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles
         if (!std::isfinite(z[i]) || !(away[i] > 0)) return z[i];
         const Vec3 under{positions[i][0], positions[i][1], z[i]};
         const auto asked = [&](std::int32_t t) {
-            SpaceTriangle moved_there = triangles[index(t)];
-            for (Vec3& corner : moved_there)
+            SpaceTriangle moved_triangle = triangles[index(t)];
+            for (Vec3& corner : moved_triangle)
                 corner = minus(corner, under);
-            return over_triangle(moved_there, away[i]);
+            return over_triangle(moved_triangle, away[i]);
         };
         double above = away[i];
         if (support >= 0) above = std::max(above, asked(support));
@@ -247,7 +247,7 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<co
     const std::vector<TrianglePlane> planes(triangles.begin(), triangles.end());
     Nearest nearest{std::vector<std::int32_t>(positions.size(), -1),
                     std::vector<double>(positions.size(), HUGE_VAL)};
-    parallel_each(positions.size(), execution, [&](std::size_t i) {
+    parallel_for_each(positions.size(), execution, [&](std::size_t i) {
         std::int32_t& number = nearest.number[i];
         double& least = nearest.distance[i];
         const auto bound = [&] { return std::min(least, reach) * kRoundedDistance; };

@@ -10,7 +10,7 @@ namespace realmodel::strata {
 /// @throws InputError kinds double_valued, base_not_below, rocks_overlap, too_large
 BuiltCells build_columns(PlanContext& context, const Execution& execution);
 
-/// The complex of all rock masses with a cell for each connected part of a block.
+/// The complex of all rock masses with a cell for each connected component of a block.
 /// @throws InputError kinds double_valued, base_not_below, rocks_overlap, too_large
 BuiltCells build_blocks(PlanContext& context, const Execution& execution);
 

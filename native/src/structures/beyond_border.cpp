@@ -5,7 +5,7 @@
 
 #include "base/algorithms.hpp"
 #include "base/parallel.hpp"
-#include "structures/structure_surface.hpp"
+#include "structures/structure_cutter.hpp"
 
 namespace realmodel::structures {
 
@@ -90,8 +90,8 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
     }
     std::vector<std::uint8_t> touched(count, 0);
     if (count == 0) return touched;
-    const StructureSurface surface = first_surface(faults, all);
-    all.include(bounding_box(surface.single[0].vertices));
+    const StructureCutter cutter = cutter_of_first(faults, all);
+    all.include(bounding_box(cutter.single[0].vertices));
     const Position extent = minus(all.high, all.low);
     const double near = kTouches * length(extent);
     Box sheet;
@@ -100,9 +100,9 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
         sheet.include(prism.box);
     }
     std::vector<Slab> slabs;
-    for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
-        if (surface.is_continuation[t] == 0) continue;
-        const auto slab = slab_of(surface.surface.corners(t));
+    for (std::size_t t = 0; t < cutter.combined.triangles.size(); ++t) {
+        if (cutter.is_continuation[t] == 0) continue;
+        const auto slab = slab_of(cutter.combined.corners(t));
         if (slab && slab->box.meets(sheet)) slabs.push_back(*slab);
     }
     const spatial::BoxTree tree(transformed(slabs, &Slab::box), execution);
@@ -123,10 +123,10 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
 
 std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
     std::span<const Structure> faults, const std::array<std::array<double, 3>, 2>& corners) {
-    const StructureSurface surface = first_surface(faults, bounding_box(corners));
+    const StructureCutter cutter = cutter_of_first(faults, bounding_box(corners));
     std::vector<std::array<Position, 3>> triangles;
-    for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
-        if (surface.is_continuation[t] != 0) triangles.push_back(surface.surface.corners(t));
+    for (std::size_t t = 0; t < cutter.combined.triangles.size(); ++t) {
+        if (cutter.is_continuation[t] != 0) triangles.push_back(cutter.combined.corners(t));
     }
     return triangles;
 }

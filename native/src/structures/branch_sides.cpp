@@ -9,7 +9,7 @@
 #include "base/algorithms.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
-#include "structures/structure_surface.hpp"
+#include "structures/structure_cutter.hpp"
 
 namespace realmodel::structures {
 
@@ -56,16 +56,16 @@ std::pair<double, Position> measured(const exact::SpacePoints& points,
 
 }  // namespace
 
-BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, std::int32_t other) {
+BranchSides branch_sides(const StructureCutter& cutter, std::int32_t branch, std::int32_t other) {
     exact::SpacePoints points;
     TriangleArrangement arrangement(points);
-    std::vector<std::size_t> triangles;  // of the surface: the branch itself, then the other
+    std::vector<std::size_t> triangles;  // of the cutter: the branch itself, then the other
     const auto add = [&](std::int32_t structure, bool with_continuation) {
-        for (std::size_t t = 0; t < surface.structure.size(); ++t) {
-            if (surface.structure[t] != structure ||
-                (surface.is_continuation[t] != 0 && !with_continuation))
+        for (std::size_t t = 0; t < cutter.structure.size(); ++t) {
+            if (cutter.structure[t] != structure ||
+                (cutter.is_continuation[t] != 0 && !with_continuation))
                 continue;
-            const auto [a, b, c] = surface.surface.corners(t);
+            const auto [a, b, c] = cutter.combined.corners(t);
             const std::array corners{points.add(a), points.add(b), points.add(c)};
             arrangement.add(corners);
             triangles.push_back(t);
@@ -75,7 +75,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     const std::size_t branch_size = triangles.size();
     add(other, true);
     const auto boxes = transformed(
-        triangles, [&](std::size_t t) { return bounding_box(surface.surface.corners(t)); });
+        triangles, [&](std::size_t t) { return bounding_box(cutter.combined.corners(t)); });
     const spatial::BoxTree tree(
         {boxes.begin() + static_cast<std::ptrdiff_t>(branch_size), boxes.end()});
     BranchSides sides;
@@ -89,7 +89,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
             const auto& corners = arrangement.corners(static_cast<std::int32_t>(t));
             const auto& others = arrangement.corners(with);
             const auto met = arrangement.intersection(static_cast<std::int32_t>(t), with);
-            if (surface.is_continuation[triangles[index(with)]] == 0)
+            if (cutter.is_continuation[triangles[index(with)]] == 0)
                 sides.meets = sides.meets || met ||
                               std::ranges::find_first_of(corners, others) != corners.end();
             if (met) meetings.push_back(*met);
@@ -99,7 +99,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
         arrangement.insert(met);
     arrangement.divide({1, nullptr});
     assert(branch != other && branch_size <= triangles.size());
-    const cutting::NearestSide nearest(surface.single[index(other)]);
+    const cutting::NearestSide nearest(cutter.single[index(other)]);
     const auto& regions = arrangement.regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const arrangement::Region region = regions[r];
@@ -113,8 +113,8 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     return sides;
 }
 
-std::int8_t kept_side(const StructureSurface& surface, std::int32_t branch, std::int32_t other) {
-    const BranchSides sides = branch_sides(surface, branch, other);
+std::int8_t larger_side(const StructureCutter& cutter, std::int32_t branch, std::int32_t other) {
+    const BranchSides sides = branch_sides(cutter, branch, other);
     if (std::min(sides.above, sides.below) == 0 && !sides.meets)
         throw InputError("does_not_meet", "the fault does not meet a fault that it is to end at",
                          branch, {other});

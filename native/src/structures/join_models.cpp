@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models of the parts that structures leave, cut and joined.
+// Models of the compartments that structures leave, cut and joined.
 #include <algorithm>
 #include <cassert>
 #include <map>
@@ -12,10 +12,10 @@
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/assembly.hpp"
-#include "cutting/near_part.hpp"
+#include "cutting/cell_parts.hpp"
+#include "cutting/near_model.hpp"
 #include "cutting/nearest_side.hpp"
 #include "cutting/pieces.hpp"
-#include "cutting/surface_parts.hpp"
 #include "exact/space_points.hpp"
 #include "strata/cells/volumes.hpp"
 #include "structures/joined_rounding.hpp"
@@ -83,7 +83,7 @@ struct MergedModels : CellComplex {
     std::size_t blocks = 0;
     std::int32_t surfaces = 0;
 
-    MergedModels(std::span<const PartModel> models,
+    MergedModels(std::span<const CompartmentModel> models,
                  const std::vector<std::vector<CellLocation>>& locations,
                  const Execution& execution);
     void share_vertices(const Execution& execution);
@@ -96,7 +96,7 @@ struct MergedModels : CellComplex {
 };
 
 /// @param locations  of the cells of each model
-MergedModels::MergedModels(std::span<const PartModel> models,
+MergedModels::MergedModels(std::span<const CompartmentModel> models,
                            const std::vector<std::vector<CellLocation>>& locations,
                            const Execution& execution) {
     // the cells and faces of each model that are wanted: how many, then how many before
@@ -105,30 +105,30 @@ MergedModels::MergedModels(std::span<const PartModel> models,
     const auto is_wanted = [&](std::size_t m, std::int32_t cell) {
         return cell >= 0 && locations[m][index(cell)] != CellLocation::kElsewhere;
     };
-    const auto each_face = [&](std::size_t m, const auto& visit) {
+    const auto for_each_face = [&](std::size_t m, const auto& visit) {
         const ComplexView& model = models[m].model;
         for (std::size_t f = 0; f < model.face_count(); ++f) {
             const std::array wanted{is_wanted(m, model.cell(f, 0)), is_wanted(m, model.cell(f, 1))};
             if (wanted[0] || wanted[1]) visit(f, wanted);
         }
     };
-    for (const PartModel& part : models) {
-        positions.push_back(part.model.vertex_count());
-        model_sides.push_back(part.sides);
-        blocks = std::max(blocks, part.model.blocks);
-        surfaces = std::max(surfaces, part.model.surfaces);
-        if (part.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
+    for (const CompartmentModel& compartment : models) {
+        positions.push_back(compartment.model.vertex_count());
+        model_sides.push_back(compartment.sides);
+        blocks = std::max(blocks, compartment.model.blocks);
+        surfaces = std::max(surfaces, compartment.model.surfaces);
+        if (compartment.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
     }
     parallel_chunks(models.size(), execution, [&](std::size_t m) {
         cells[m] = locations[m].size() - static_cast<std::size_t>(std::ranges::count(
                                              locations[m], CellLocation::kElsewhere));
-        std::size_t own_faces = 0, own_corners = 0;
-        each_face(m, [&](std::size_t f, const auto&) {
-            ++own_faces;
-            own_corners += models[m].model.face(f).size();
+        std::size_t face_count = 0, corner_count = 0;
+        for_each_face(m, [&](std::size_t f, const auto&) {
+            ++face_count;
+            corner_count += models[m].model.face(f).size();
         });
-        faces[m] = own_faces;
-        corners[m] = own_corners;
+        faces[m] = face_count;
+        corners[m] = corner_count;
     });
     vertices.resize(exclusive_scan(positions));
     cell_block.resize(exclusive_scan(cells));
@@ -155,7 +155,7 @@ MergedModels::MergedModels(std::span<const PartModel> models,
         for (std::size_t v = 0; v < model.vertex_count(); ++v)
             vertices[positions[m] + v] =  // both zeros alike
                 plus(model.vertex(static_cast<std::int32_t>(v)), Position{});
-        each_face(m, [&](std::size_t f, const std::array<bool, 2>& wanted) {
+        for_each_face(m, [&](std::size_t f, const std::array<bool, 2>& wanted) {
             const auto loop = model.face(f);
             face_offsets[face] = static_cast<std::int64_t>(corner);
             for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -174,7 +174,7 @@ MergedModels::MergedModels(std::span<const PartModel> models,
 }
 
 /// Equal positions of near cells get one vertex, and are numbered in their order. Vertices of other
-/// cells alone are of one model each, for between two parts there is a structure.
+/// cells alone are of one model each, for between two compartments there is a structure.
 void MergedModels::share_vertices(const Execution& execution) {
     std::vector<std::uint8_t> is_shared(vertices.size(), 0);
     for (std::size_t f = 0; f < face_surface.size(); ++f) {
@@ -218,21 +218,21 @@ CellComplex assemble(const MergedModels& merged, const std::vector<Position>& ne
         return piece.parts[0] >= 0 || piece.parts[1] >= 0;
     };
     parallel_chunks(pieces.chunks(), execution, [&](std::size_t chunk) {
-        pieces.each_of(chunk,
-                       [&](std::span<const cutting::NodeId> nodes, const cutting::CutPiece& piece) {
-                           if (is_left(piece)) chunked.count(chunk, nodes.size());
-                       });
+        pieces.for_each_of(
+            chunk, [&](std::span<const cutting::NodeId> nodes, const cutting::CutPiece& piece) {
+                if (is_left(piece)) chunked.count(chunk, nodes.size());
+            });
     });
     chunked.make_room();
     parallel_chunks(pieces.chunks(), execution, [&](std::size_t chunk) {
         cutting::ChunkedComplex::Writer writer(chunked, chunk);
-        pieces.each_of(chunk,
-                       [&](std::span<const cutting::NodeId> nodes, const cutting::CutPiece& piece) {
-                           if (!is_left(piece)) return;
-                           writer.write(nodes, piece.parts,
-                                        piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
-                                                       : merged.face_surface[index(piece.face)]);
-                       });
+        pieces.for_each_of(
+            chunk, [&](std::span<const cutting::NodeId> nodes, const cutting::CutPiece& piece) {
+                if (!is_left(piece)) return;
+                writer.write(nodes, piece.parts,
+                             piece.face < 0 ? WantedParts::surface_of_cut_face(piece.face)
+                                            : merged.face_surface[index(piece.face)]);
+            });
     });
     cutting::number_nodes(
         complex.face_vertices, merged_vertices + new_positions.size(),
@@ -245,16 +245,16 @@ CellComplex assemble(const MergedModels& merged, const std::vector<Position>& ne
 }
 
 /// On which side of each structure something is.
-std::vector<cutting::NearestSide> nearest_sides(const StructureSurface& surface,
+std::vector<cutting::NearestSide> nearest_sides(const StructureCutter& cutter,
                                                 const Execution& execution) {
-    return transformed(surface.single, [&](const cutting::CutterSurface& single) {
+    return transformed(cutter.single, [&](const cutting::Cutter& single) {
         return cutting::NearestSide(single, execution);
     });
 }
 
 /// The structures that models are joined at.
 struct StructuresHere {
-    const StructureSurface& surface;
+    const StructureCutter& cutter;
     std::span<const Structure> structures;
     std::span<const cutting::NearestSide> nearest;  ///< of single ones
 };
@@ -265,35 +265,35 @@ std::optional<Joined> join(const MergedModels& merged, const StructuresHere& her
                            std::span<const std::uint8_t> acts, double least_rounding,
                            const Execution& execution) {
     const ComplexView all = merged.view();
-    const cutting::NearPart part(all, merged.is_near, execution);
-    const ComplexView near = part.view();
-    const auto model_of_cell =
-        transformed(part.cells(), [&](std::int32_t c) { return merged.model_of_cell[index(c)]; });
+    const cutting::NearModel near_model(all, merged.is_near, execution);
+    const ComplexView near = near_model.view();
+    const auto model_of_cell = transformed(
+        near_model.cells(), [&](std::int32_t c) { return merged.model_of_cell[index(c)]; });
     begin_phase(execution.progress, 0.1, 0.15, "finding faces near structures");
     // with what continues a structure nothing else is left undivided
     std::vector<std::int32_t> groups;
-    for (std::size_t t = 0; t < here.surface.structure.size(); ++t)
-        groups.push_back(2 * here.surface.structure[t] + here.surface.is_continuation[t]);
-    SurfaceOverlay overlay(near, here.surface.surface, execution, least_rounding, groups);
+    for (std::size_t t = 0; t < here.cutter.structure.size(); ++t)
+        groups.push_back(2 * here.cutter.structure[t] + here.cutter.is_continuation[t]);
+    CutterOverlay overlay(near, here.cutter.combined, execution, least_rounding, groups);
     begin_phase(execution.progress, 0.3, 0.5, "finding what structures go through");
     const CutterWinding winding(overlay, execution.progress);
-    const StructureSides sides(overlay, winding, here.surface, here.structures, here.nearest,
+    const StructureSides sides(overlay, winding, here.cutter, here.structures, here.nearest,
                                execution.progress);
     assert(model_of_cell.size() == near.cell_count());
     const WantedParts wanted(overlay, winding, sides, model_of_cell, merged.model_sides, acts);
     begin_phase(execution.progress, 0.5, 0.68, "finding the parts of cells");
-    cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
+    cutting::CellParts made(overlay, winding, wanted, execution.progress);
     begin_phase(execution.progress, 0.85, 0.92, "rounding what was cut");
     round_joined_parts(
         {near, overlay.new_positions(), made.pieces, made.half_cells, true, execution},
         made.touches, least_rounding);
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
-    const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
+    const auto pieces = near_model.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
     begin_phase(execution.progress, 0.95, 1.0, "putting the parts together");
     Joined joined;
     joined.complex = assemble(merged, overlay.new_positions(), *pieces, made.half_cells, execution);
-    joined.cell_part = transformed(made.half_cells, [&](const cutting::HalfCell& cell) {
+    joined.cell_compartment = transformed(made.half_cells, [&](const cutting::HalfCell& cell) {
         return merged.model_of_cell[index(cell.cell)];
     });
     joined.complex.volumes = strata::block_volumes(joined.complex, merged.blocks, execution);
@@ -317,20 +317,21 @@ CellComplex box_cell(const std::array<Position, 2>& corners) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
-                           std::span<const Structure> structures, const Execution& execution) {
+std::vector<Compartment> compartments_of(const std::array<std::array<double, 3>, 2>& corners,
+                                         std::span<const Structure> structures,
+                                         const Execution& execution) {
     const CellComplex cell = box_cell(corners);
     ComplexView rock = cell;
     rock.blocks = 1;
     cutting::check_model(rock);
-    const StructureSurface surface = structure_surface(structures, box_of(rock));
-    SurfaceOverlay overlay(rock, surface.surface, execution);
+    const StructureCutter cutter = structure_cutter(structures, box_of(rock));
+    CutterOverlay overlay(rock, cutter.combined, execution);
     const CutterWinding winding(overlay, execution.progress);
-    const auto nearest = nearest_sides(surface, execution);
-    const StructureSides sides(overlay, winding, surface, structures, nearest, execution.progress);
+    const auto nearest = nearest_sides(cutter, execution);
+    const StructureSides sides(overlay, winding, cutter, structures, nearest, execution.progress);
     std::map<Sides, Box> boxes;
-    const auto include = [&](std::size_t part, const auto& loops) {
-        Box& box = boxes[sides.sides(part)];
+    const auto include = [&](std::size_t compartment, const auto& loops) {
+        Box& box = boxes[sides.sides(compartment)];
         for (const auto& loop : loops) {
             for (const NodeId node : loop)
                 box.include(overlay.position(node));
@@ -338,41 +339,43 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
     };
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (!overlay.of_cutter(r)) {
-            if (winding.coincident(r) < 0) include(sides.part_of(r), overlay.loops(r));
+            if (winding.coincident(r) < 0) include(sides.compartment_of(r), overlay.loops(r));
         } else if (winding.counts(r) && winding.touches_model(r)) {
             for (std::size_t k = 0; k < 2; ++k) {
-                if (!winding.around(r, k).empty()) include(sides.part_at(r, k), overlay.loops(r));
+                if (!winding.around(r, k).empty())
+                    include(sides.compartment_at(r, k), overlay.loops(r));
             }
         }
     }
     for (std::size_t f = 0; f < rock.face_count(); ++f) {
         if (!overlay.is_active(f))
-            include(sides.part_of(overlay.size() + f), std::array{rock.face(f)});
+            include(sides.compartment_of(overlay.size() + f), std::array{rock.face(f)});
     }
-    return transformed(boxes, [](const auto& part) {
-        return Part{part.first, part.second.low, part.second.high};
+    return transformed(boxes, [](const auto& box) {
+        return Compartment{box.first, box.second.low, box.second.high};
     });
 }
 
-Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
+Joined join_models(std::span<const CompartmentModel> models, std::span<const Structure> structures,
                    std::span<const std::uint8_t> acts, const Execution& execution,
                    std::span<const ContinuedStructure> continued, double largest) {
     Box rock;
-    for (const PartModel& part : models) {
-        cutting::check_model(part.model);
-        rock.include(box_of(part.model));
+    for (const CompartmentModel& compartment : models) {
+        cutting::check_model(compartment.model);
+        rock.include(box_of(compartment.model));
     }
-    const StructureSurface surface = continued.empty() ? structure_surface(structures, rock)
-                                                       : structure_surface(structures, continued);
-    const auto nearest = nearest_sides(surface, execution);
+    const StructureCutter cutter = continued.empty() ? structure_cutter(structures, rock)
+                                                     : structure_cutter(structures, continued);
+    const auto nearest = nearest_sides(cutter, execution);
     begin_phase(execution.progress, 0, 0.1, "leaving out what is in other parts");
-    const auto locations = transformed(models, [&](const PartModel& part) {
-        return locations_of_cells(part.model, part.sides, nearest, structures, execution);
+    const auto locations = transformed(models, [&](const CompartmentModel& compartment) {
+        return locations_of_cells(compartment.model, compartment.sides, nearest, structures,
+                                  execution);
     });
     MergedModels merged(models, locations, execution);
     merged.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
-    const StructuresHere here{surface, structures, nearest};
+    const StructuresHere here{cutter, structures, nearest};
     if (auto joined = join(merged, here, acts, least, execution)) return *std::move(joined);
     merged.is_near.assign(merged.is_near.size(), 1);
     merged.share_vertices(execution);
@@ -396,7 +399,7 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
     };
     if (!structures[0].is_body) {
         // what is beside the fault itself is on its side, wherever its continuation goes
-        const cutting::CutterSurface fault = checked_surface(structures[0], 0);
+        const cutting::Cutter fault = checked_cutter(structures[0], 0);
         const cutting::NearestSide beside(fault, execution);
         constexpr std::size_t kTogether = 16;  // that mostly lie together, as nodes of a mesh do
         parallel_ranges(sides.size(), kTogether << 4, execution,
@@ -426,8 +429,8 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
     Box box;
     for (std::size_t i = 0; i < sides.size(); ++i)
         box.include(at(i));
-    const StructureSurface surface = first_surface(structures, box);
-    const cutting::NearestSide nearest(surface.single[0], execution);
+    const StructureCutter cutter = cutter_of_first(structures, box);
+    const cutting::NearestSide nearest(cutter.single[0], execution);
     decide(
         [&](const Position& p) { return structures[0].is_body ? nearest.within(p) : nearest(p); });
     return sides;

@@ -21,7 +21,7 @@ using cutting::RoundedParts;
 
 namespace {
 
-using Edge = std::array<NodeId, 2>;
+using NodeEdge = std::array<NodeId, 2>;
 
 /// Contracts edges one after another. What a contraction does to a part is known from the polygons
 /// around it: of parts with many polygons only those are looked at that share nodes with one at
@@ -39,10 +39,10 @@ public:
             });
     }
 
-    void contract_all(const std::set<Edge>& edges) {
+    void contract_all(const std::set<NodeEdge>& edges) {
         ShapeScratch scratch;
         bool any = false;
-        for (const Edge& edge : edges) {
+        for (const NodeEdge& edge : edges) {
             poll(parts_.execution.progress, static_cast<std::size_t>(edge[0]));
             any = contract(edge, scratch) || any;
         }
@@ -55,7 +55,7 @@ private:
     static constexpr std::size_t kMany = 200;
 
     template <class Visit>
-    void each_part_at(NodeId node, const Visit& visit) const {
+    void for_each_part_at(NodeId node, const Visit& visit) const {
         for (const std::int32_t p : pieces_at_[index(node)]) {
             for (const std::int32_t part : parts_.pieces[index(p)].parts) {
                 if (part >= 0) visit(part);
@@ -65,7 +65,7 @@ private:
 
     /// Makes the nodes that its ends became one, the lesser one if walls allow it, where no part
     /// comes to touch itself for it.
-    bool contract(const Edge& edge, ShapeScratch& scratch) {
+    bool contract(const NodeEdge& edge, ShapeScratch& scratch) {
         const NodeId a = contraction_.becomes[index(edge[0])];
         const NodeId b = contraction_.becomes[index(edge[1])];
         const NodeId to = std::min(a, b), from = std::max(a, b);
@@ -75,7 +75,7 @@ private:
         if (!parts_.is_new(from) || leaves_wall(from, to)) return false;
         std::map<std::int32_t, std::optional<PartShape>> after;
         for (const NodeId node : nodes_of(from))
-            each_part_at(node, [&after](std::int32_t part) { after[part]; });
+            for_each_part_at(node, [&after](std::int32_t part) { after[part]; });
         if (std::ranges::any_of(
                 after, [&](const auto& part_after) { return !now(part_after.first, scratch); }))
             return false;
@@ -214,13 +214,14 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
     const double allowed = std::max(cutting::rounding_of(parts.vertices), least_rounding);
     const cutting::CutPieces& pieces = parts.pieces;
     constexpr std::size_t kPieces = 1 << 12;  // at a time
-    const auto short_edges = found_in_ranges<Edge>(
+    const auto short_edges = collect_ranges<NodeEdge>(
         pieces.size(), kPieces, parts.execution,
-        [&](std::size_t begin, std::size_t end, std::vector<Edge>& in_range) {
+        [&](std::size_t begin, std::size_t end, std::vector<NodeEdge>& in_range) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces.polygons[p];
                 for (std::size_t i = 0; i < nodes.size(); ++i) {
-                    const Edge edge = unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
+                    const NodeEdge edge =
+                        unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
                     if (!parts.is_new(edge[1])) continue;
                     const Position away = minus(parts.at(edge[0]), parts.at(edge[1]));
                     if (std::ranges::all_of(away,
@@ -230,7 +231,7 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
             }
         },
         0.05);
-    const std::set<Edge> edges(short_edges.begin(), short_edges.end());
+    const std::set<NodeEdge> edges(short_edges.begin(), short_edges.end());
     if (!edges.empty()) ShortEdges(parts, allowed).contract_all(edges);
 }
 

@@ -43,7 +43,7 @@ void merge_needles(RoundedParts& parts, double least_rounding) {
     };
     bool any = false;
     for (const CutPiece& piece : parts.pieces.origins) {
-        if (piece.face >= 0 || WantedParts::surface_of_cap(piece.face) != kWall) continue;
+        if (piece.face >= 0 || WantedParts::surface_of_cut_face(piece.face) != kWall) continue;
         const std::int32_t one = find(piece.parts[0]), other = find(piece.parts[1]);
         if (one < 0 || other < 0 || one == other) continue;
         for (const auto& [needle, rest] : {std::pair(one, other), std::pair(other, one)}) {
@@ -124,11 +124,11 @@ void cancel_facing(cutting::RoundedParts& parts) {
 
 namespace {
 
-using Edge = std::array<NodeId, 2>;
+using NodeEdge = std::array<NodeId, 2>;
 
 /// A polygon that has an edge, and which way it goes along it; between two parts, -1 none.
 struct EdgeOfPiece {
-    Edge edge;
+    NodeEdge edge;
     std::size_t piece;
     int direction;
     std::array<std::int32_t, 2> parts;
@@ -193,10 +193,10 @@ std::vector<std::size_t> shortest_way_back(std::span<const EdgeOfPiece> uses) {
 }
 
 /// The edges near structures that some part has more than twice, in order.
-std::vector<Edge> touching_edges(const RoundedParts& parts) {
-    auto edges = found_in_ranges<Edge>(
+std::vector<NodeEdge> touching_edges(const RoundedParts& parts) {
+    auto edges = collect_ranges<NodeEdge>(
         parts.half_cells.size(), 1 << 6, parts.execution,
-        [&](std::size_t begin, std::size_t end, std::vector<Edge>& in_range) {
+        [&](std::size_t begin, std::size_t end, std::vector<NodeEdge>& in_range) {
             std::vector<std::uint64_t> uses;
             for (std::size_t part = begin; part < end; ++part) {
                 uses.clear();
@@ -221,7 +221,7 @@ std::vector<Edge> touching_edges(const RoundedParts& parts) {
 }
 
 /// A new node between the ends of an edge.
-NodeId add_between(RoundedParts& parts, const Edge& edge) {
+NodeId add_between(RoundedParts& parts, const NodeEdge& edge) {
     cutting::Position middle;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] = parts.at(edge[0])[k] + (parts.at(edge[1])[k] - parts.at(edge[0])[k]) / 2;
@@ -231,7 +231,7 @@ NodeId add_between(RoundedParts& parts, const Edge& edge) {
 }  // namespace
 
 void set_touching_apart(RoundedParts& parts) {
-    const std::vector<Edge> touching = touching_edges(parts);
+    const std::vector<NodeEdge> touching = touching_edges(parts);
     if (touching.empty()) return;
     const CutPieces& pieces = parts.pieces;
     std::vector<EdgeOfPiece> uses;
@@ -244,10 +244,10 @@ void set_touching_apart(RoundedParts& parts) {
         }
     }
     std::ranges::stable_sort(uses, {}, &EdgeOfPiece::edge);
-    std::map<std::size_t, std::vector<std::pair<Edge, NodeId>>> nodes_on;
+    std::map<std::size_t, std::vector<std::pair<NodeEdge, NodeId>>> nodes_on;
     for (const auto of_edge : groups_of(uses, &EdgeOfPiece::edge)) {
         if (of_edge.size() <= 2) continue;
-        const Edge edge = of_edge[0].edge;
+        const NodeEdge edge = of_edge[0].edge;
         std::vector<EdgeOfPiece> left(of_edge.begin(), of_edge.end());
         for (;;) {
             std::vector<std::size_t> way = shortest_way_back(left);
@@ -271,7 +271,7 @@ void set_touching_apart(RoundedParts& parts) {
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             loop.push_back(nodes[i]);
             if (of_piece == nodes_on.end()) continue;
-            const Edge edge = unordered(nodes[i], nodes[(i + 1) % nodes.size()]);
+            const NodeEdge edge = unordered(nodes[i], nodes[(i + 1) % nodes.size()]);
             for (const auto& [at, middle] : of_piece->second) {
                 if (at == edge) loop.push_back(middle);
             }

@@ -10,19 +10,18 @@ namespace realmodel::structures {
 using cutting::kAbove;
 using cutting::kBelow;
 
-StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
-                               const StructureSurface& surface,
-                               std::span<const Structure> structures,
+StructureSides::StructureSides(CutterOverlay& overlay, const CutterWinding& winding,
+                               const StructureCutter& cutter, std::span<const Structure> structures,
                                std::span<const cutting::NearestSide> nearest, Progress* progress)
     : overlay_(overlay),
       winding_(winding),
-      surface_(surface),
+      cutter_(cutter),
       structures_(structures),
-      near_(cutting::cells_near_surface(overlay, winding)),
+      near_(cutting::cells_near_cutter(overlay, winding)),
       of_(named_structures()),
-      parts_(overlay, winding, near_, rules(), progress),
-      sides_(parts_.size(), Sides(structures.size(), 0)),
-      kept_sides_(structures.size()),
+      compartments_(overlay, winding, near_, rules(), progress),
+      sides_(compartments_.size(), Sides(structures.size(), 0)),
+      end_sides_(structures.size()),
       nearest_(nearest) {
     // a fault that others end at comes before these
     std::vector<std::uint8_t> done(structures.size(), 0);
@@ -34,7 +33,7 @@ StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& win
                     return done[index(other)] != 0;
                 }))
                 continue;
-            find_kept_sides(static_cast<std::int32_t>(s));
+            find_end_sides(static_cast<std::int32_t>(s));
             find_sides(static_cast<std::int32_t>(s));
             done[s] = 1;
         }
@@ -60,8 +59,8 @@ std::vector<std::vector<RegionOf>> StructureSides::named_structures() const {
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!overlay_.of_cutter(r) || winding_.coincident(r) < 0) continue;
         const auto triangle = index(overlay_.cutter_triangle(r));
-        const std::int32_t s = surface_.structure[triangle];
-        const bool is_own = surface_.is_continuation[triangle] == 0;
+        const std::int32_t s = cutter_.structure[triangle];
+        const bool is_structure = cutter_.is_continuation[triangle] == 0;
         auto& of_region = named[index(winding_.coincident(r))];
         auto known = std::ranges::find(of_region, s, &RegionOf::structure);
         if (known == of_region.end()) known = of_region.insert(of_region.end(), {s, 0, false});
@@ -70,7 +69,7 @@ std::vector<std::vector<RegionOf>> StructureSides::named_structures() const {
         } else {
             known->change += winding_.coincident_facing(r);
         }
-        known->is_own = known->is_own || is_own;
+        known->is_structure = known->is_structure || is_structure;
     }
     for (auto& of_region : named) {
         std::erase_if(of_region, [](const RegionOf& of) { return of.change == 0; });
@@ -97,7 +96,7 @@ bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const
            std::ranges::any_of(count, [](const auto& one) { return one.second % 2 == 1; });
 }
 
-/// Of regions: those of the surface that reach away from the rock. There structures may end without
+/// Of regions: those of the cutter that reach away from the rock. There structures may end without
 /// crossing one another.
 std::vector<std::uint8_t> StructureSides::regions_beyond() const {
     std::vector<std::uint8_t> are_beyond(overlay_.size(), 0);
@@ -113,32 +112,32 @@ std::vector<std::uint8_t> StructureSides::regions_beyond() const {
 }
 
 /// Structures may end unnoticed outside of the rock: there the outside gets no label at such edges.
-cutting::SurfaceCells::Rules StructureSides::rules() const {
+cutting::CutterCompartments::Rules StructureSides::rules() const {
     return {[this](std::span<const EdgeUse> uses) { return is_known_in_rock_alone(uses); },
             [is_beyond = regions_beyond()](std::size_t region) { return is_beyond[region] != 0; }};
 }
 
-/// Whether a part is beyond one of the faults that a fault ends at.
-bool StructureSides::is_beyond(std::int32_t s, std::size_t part) const {
+/// Whether a compartment is beyond one of the faults that a fault ends at.
+bool StructureSides::is_beyond(std::int32_t s, std::size_t compartment) const {
     const auto& ends_at = structures_[index(s)].ends_at;
     for (std::size_t i = 0; i < ends_at.size(); ++i) {
-        const std::int8_t side = sides_[part][index(ends_at[i])];
-        if (side != 0 && side != kept_sides_[index(s)][i]) return true;
+        const std::int8_t side = sides_[compartment][index(ends_at[i])];
+        if (side != 0 && side != end_sides_[index(s)][i]) return true;
     }
     return false;
 }
 
 /// Of a fault that ends at others: on which side of each the larger part of its area lies.
-void StructureSides::find_kept_sides(std::int32_t s) {
-    if (!surface_.kept_sides.empty()) {
-        kept_sides_[index(s)] = surface_.kept_sides[index(s)];
+void StructureSides::find_end_sides(std::int32_t s) {
+    if (!cutter_.end_sides.empty()) {
+        end_sides_[index(s)] = cutter_.end_sides[index(s)];
         return;
     }
     for (const std::int32_t other : structures_[index(s)].ends_at)
-        kept_sides_[index(s)].push_back(kept_side(surface_, s, other));
+        end_sides_[index(s)].push_back(larger_side(cutter_, s, other));
 }
 
-/// Takes what is known of a part to all that can be reached from it.
+/// Takes what is known of a compartment to all that can be reached from it.
 void StructureSides::spread(std::int32_t s, std::size_t start, Known& known) const {
     using Way = arrangement::SpaceCells::Way;
     const bool is_body = structures_[index(s)].is_body;
@@ -150,36 +149,36 @@ void StructureSides::spread(std::int32_t s, std::size_t start, Known& known) con
         }
         return side;
     };
-    parts_.cells().spread(start, known, beyond, [&](const Way& way) {
+    compartments_.cells().spread(start, known, beyond, [&](const Way& way) {
         refuse("ends_inside", "the fault ends in the rock", s, index(way.facet));
     });
 }
 
 /// By the rays that leave the body.
-bool StructureSides::is_inside(std::int32_t s, std::size_t part) {
-    const auto [item, side] = parts_.first_side(part);
+bool StructureSides::is_inside(std::int32_t s, std::size_t compartment) {
+    const auto [item, side] = compartments_.first_side(compartment);
     const auto& body = nearest_[index(s)];
     if (item >= overlay_.size()) {
         const auto face = overlay_.model().face(item - overlay_.size());
         return body.within(overlay_.points(), overlay_.exact(face[0]), 2, false) == kBelow;
     }
     const auto [axis, facing] = overlay_.view_of(item);
-    // of a region of the surface that is crossed, too, by a ray from where it is seen from behind
+    // of a region of the cutter that is crossed, too, by a ray from where it is seen from behind
     const bool is_below = overlay_.of_cutter(item) && (side == 0) == (facing > 0);
     return body.within(overlay_.points(), overlay_.inner_point(item), axis, is_below) == kBelow;
 }
 
 void StructureSides::find_sides(std::int32_t s) {
     const bool is_body = structures_[index(s)].is_body;
-    Known known(parts_.size());
+    Known known(compartments_.size());
     // where a fault itself is between rock on both sides, below is 0 and above is 1
     if (!is_body) {
         for (std::size_t r = 0; r < overlay_.size(); ++r) {
-            if (!overlay_.of_cutter(r) || parts_.of(r) < 0) continue;
+            if (!overlay_.of_cutter(r) || compartments_.of(r) < 0) continue;
             for (const RegionOf& of : of_[r]) {
-                if (of.structure != s || !of.is_own || std::abs(of.change) != 1) continue;
-                const std::size_t low = part_at(r, of.change > 0 ? 0 : 1);
-                const std::size_t high = part_at(r, of.change > 0 ? 1 : 0);
+                if (of.structure != s || !of.is_structure || std::abs(of.change) != 1) continue;
+                const std::size_t low = compartment_at(r, of.change > 0 ? 0 : 1);
+                const std::size_t high = compartment_at(r, of.change > 0 ? 1 : 0);
                 if (is_beyond(s, low) || is_beyond(s, high)) continue;
                 if (known[low] || known[high]) continue;
                 known[low] = 0;
@@ -187,23 +186,23 @@ void StructureSides::find_sides(std::int32_t s) {
             }
         }
     }
-    for (std::size_t part = 0; part < parts_.size(); ++part) {
-        if (is_beyond(s, part)) continue;
-        if (!known[part]) {
+    for (std::size_t compartment = 0; compartment < compartments_.size(); ++compartment) {
+        if (is_beyond(s, compartment)) continue;
+        if (!known[compartment]) {
             if (is_body) {
-                known[part] = is_inside(s, part) ? 1 : 0;
+                known[compartment] = is_inside(s, compartment) ? 1 : 0;
             } else {
-                const std::size_t item = parts_.first_side(part).first;
+                const std::size_t item = compartments_.first_side(compartment).first;
                 const Position p =
                     item < overlay_.size()
                         ? middle_of(item)
                         : overlay_.position(overlay_.model().face(item - overlay_.size())[0]);
-                known[part] = nearest_[index(s)](p) == kAbove;
+                known[compartment] = nearest_[index(s)](p) == kAbove;
             }
-            spread(s, part, known);
+            spread(s, compartment, known);
         }
-        const bool below = is_body ? *known[part] == 1 : *known[part] < 1;
-        sides_[part][index(s)] = below ? kBelow : kAbove;
+        const bool below = is_body ? *known[compartment] == 1 : *known[compartment] < 1;
+        sides_[compartment][index(s)] = below ? kBelow : kAbove;
     }
 }
 

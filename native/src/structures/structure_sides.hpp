@@ -6,46 +6,49 @@
 
 #include "cutting/cutter_sides.hpp"
 #include "realmodel/base/errors.hpp"
-#include "structures/structure_surface.hpp"
+#include "structures/structure_cutter.hpp"
 
 namespace realmodel::structures {
 
 using arrangement::EdgeUse;
+using cutting::CutterOverlay;
 using cutting::CutterWinding;
 using cutting::NodeId;
 using cutting::Position;
-using cutting::SurfaceOverlay;
 using cutting::Winding;
 
-/// What a region of the surface is of one structure.
+/// What a region of the cutter is of one structure.
 struct RegionOf {
     std::int32_t structure;
     std::int32_t change;  ///< of a fault: how far its side goes up from side 0 of the region to 1;
                           ///< of a body: 1 where its inside ends there
-    bool is_own;          ///< not only its continuation
+    bool is_structure;    ///< not only its continuation
 };
 
-/// The parts of space that structures leave where rock is, and on which side of each structure they
-/// are. Going round the edges of their regions, the part changes with every region crossed and with
-/// nothing else. Sides are known at one region of each structure and change only with its regions.
+/// The compartments that structures leave where rock is, and on which side of each structure they
+/// are. Going round the edges of their regions, the compartment changes with every region crossed
+/// and with nothing else. Sides are known at one region of each structure and change only with its
+/// regions.
 class StructureSides {
 public:
-    /// @param nearest  of the surfaces of single structures
+    /// @param nearest  of the cutters of single structures
     /// @throws InputError kinds does_not_meet, equal_halves, ends_inside
-    StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
-                   const StructureSurface& surface, std::span<const Structure> structures,
+    StructureSides(CutterOverlay& overlay, const CutterWinding& winding,
+                   const StructureCutter& cutter, std::span<const Structure> structures,
                    std::span<const cutting::NearestSide> nearest, Progress* progress);
 
-    std::size_t parts() const { return parts_.size(); }
-    const Sides& sides(std::size_t part) const { return sides_[part]; }
-    /// The part that a region of a face or a face without regions (counted after all regions) is
-    /// in.
-    std::size_t part_of(std::size_t item) const { return checked_part(parts_.of(item)); }
-    /// The part at side 0 or 1 of a region of the surface that counts and touches rock.
-    std::size_t part_at(std::size_t region, std::size_t side) const {
-        return checked_part(parts_.at(region, side));
+    std::size_t compartments() const { return compartments_.size(); }
+    const Sides& sides(std::size_t compartment) const { return sides_[compartment]; }
+    /// The compartment that a region of a face or a face without regions (counted after all
+    /// regions) is in.
+    std::size_t compartment_of(std::size_t item) const {
+        return checked_compartment(compartments_.of(item));
     }
-    /// Of a region of the surface that counts.
+    /// The compartment at side 0 or 1 of a region of the cutter that counts and touches rock.
+    std::size_t compartment_at(std::size_t region, std::size_t side) const {
+        return checked_compartment(compartments_.at(region, side));
+    }
+    /// Of a region of the cutter that counts.
     const std::vector<RegionOf>& structures_at(std::size_t region) const { return of_[region]; }
     const std::vector<std::uint8_t>& near_cells() const { return near_; }
     bool is_body(std::int32_t structure) const { return structures_[index(structure)].is_body; }
@@ -54,33 +57,33 @@ public:
                              std::size_t region) const;
 
 private:
-    using Known = std::vector<std::optional<std::int32_t>>;  ///< of parts: on which side
+    using Known = std::vector<std::optional<std::int32_t>>;  ///< of compartments: on which side
 
-    static std::size_t checked_part(std::int32_t part) {
-        if (part < 0) throw InternalError("what bounds rock is in a part of space");
-        return index(part);
+    static std::size_t checked_compartment(std::int32_t compartment) {
+        if (compartment < 0) throw InternalError("what bounds rock is in a part of space");
+        return index(compartment);
     }
-    cutting::SurfaceCells::Rules rules() const;
+    cutting::CutterCompartments::Rules rules() const;
     std::vector<std::vector<RegionOf>> named_structures() const;
     bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;
     std::vector<std::uint8_t> regions_beyond() const;
     void find_sides(std::int32_t s);
     void spread(std::int32_t s, std::size_t start, Known& known) const;
-    bool is_beyond(std::int32_t s, std::size_t part) const;
-    void find_kept_sides(std::int32_t s);
+    bool is_beyond(std::int32_t s, std::size_t compartment) const;
+    void find_end_sides(std::int32_t s);
     Position middle_of(std::size_t region) const;
-    bool is_inside(std::int32_t s, std::size_t part);
+    bool is_inside(std::int32_t s, std::size_t compartment);
 
-    SurfaceOverlay& overlay_;
+    CutterOverlay& overlay_;
     const CutterWinding& winding_;
-    const StructureSurface& surface_;
+    const StructureCutter& cutter_;
     std::span<const Structure> structures_;
     std::vector<std::uint8_t> near_;
     std::vector<std::vector<RegionOf>> of_;
-    cutting::SurfaceCells parts_;
+    cutting::CutterCompartments compartments_;
     std::vector<Sides> sides_;
-    std::vector<std::vector<std::int8_t>> kept_sides_;  ///< of structures: side of each it ends at
-    std::span<const cutting::NearestSide> nearest_;     ///< of structures
+    std::vector<std::vector<std::int8_t>> end_sides_;  ///< of structures: side of each it ends at
+    std::span<const cutting::NearestSide> nearest_;    ///< of structures
 };
 
 }  // namespace realmodel::structures

@@ -26,7 +26,7 @@ bool is_narrow(std::span<const std::vector<Position>> loops, double rounding) {
     return area <= kTimes * rounding * border;
 }
 
-WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
+WantedParts::WantedParts(CutterOverlay& overlay, const CutterWinding& winding,
                          const StructureSides& sides, std::span<const std::int32_t> model_of_cell,
                          std::span<const Sides> model_sides, std::span<const std::uint8_t> acts)
     : PartSides(sides.near_cells()),
@@ -36,17 +36,17 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
       model_of_cell_(model_of_cell),
       acts_(acts) {
     assert(model_of_cell.size() == overlay.model().cell_count());
-    for (std::size_t part = 0; part < sides.parts(); ++part) {
-        const Sides& of_part = sides.sides(part);
-        const auto allows = [&of_part](const Sides& wanted) {
-            return std::ranges::equal(wanted, of_part, [](std::int8_t asked, std::int8_t is) {
-                return asked == 0 || asked == is;
-            });
+    for (std::size_t compartment = 0; compartment < sides.compartments(); ++compartment) {
+        const Sides& of_compartment = sides.sides(compartment);
+        const auto allows = [&of_compartment](const Sides& wanted) {
+            return std::ranges::equal(
+                wanted, of_compartment,
+                [](std::int8_t asked, std::int8_t is) { return asked == 0 || asked == is; });
         };
         const auto model = std::ranges::find_if(model_sides, allows);
-        model_of_part_.push_back(model == model_sides.end()
-                                     ? -1
-                                     : static_cast<std::int32_t>(model - model_sides.begin()));
+        model_of_compartment_.push_back(
+            model == model_sides.end() ? -1
+                                       : static_cast<std::int32_t>(model - model_sides.begin()));
     }
     faces_on_.resize(overlay.size());
     is_same_.assign(overlay.size(), 0);
@@ -68,18 +68,20 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
 }
 
 std::int8_t WantedParts::of_item(std::size_t item, std::size_t face) const {
-    assert(sides_.part_of(item) < model_of_part_.size());
+    assert(sides_.compartment_of(item) < model_of_compartment_.size());
     const std::int32_t model = model_of_cell_[index(overlay_.model().cell(face, 0))];
-    return model_of_part_[sides_.part_of(item)] == model ? kAbove : kOn;
+    return model_of_compartment_[sides_.compartment_of(item)] == model ? kAbove : kOn;
 }
 
 std::int8_t WantedParts::of_face(std::size_t face) const {
     return of_item(overlay_.size() + face, face);
 }
 
-std::int8_t WantedParts::of_cap(std::size_t region, std::size_t side, std::int32_t cell) const {
-    return model_of_part_[sides_.part_at(region, side)] == model_of_cell_[index(cell)] ? kAbove
-                                                                                       : kOn;
+std::int8_t WantedParts::of_cut_face(std::size_t region, std::size_t side,
+                                     std::int32_t cell) const {
+    return model_of_compartment_[sides_.compartment_at(region, side)] == model_of_cell_[index(cell)]
+               ? kAbove
+               : kOn;
 }
 
 bool WantedParts::does_act(std::int32_t structure, std::int32_t cell) const {
@@ -87,7 +89,7 @@ bool WantedParts::does_act(std::int32_t structure, std::int32_t cell) const {
     return cell >= 0 && acts_[index(structure) * blocks + index(overlay_.model().block(cell))] != 0;
 }
 
-/// Whether a cell at one side of a region of the surface ends there without the surface, too.
+/// Whether a cell at one side of a region of the cutter ends there without the cutter, too.
 bool WantedParts::cell_ends_at(std::int32_t cell, std::size_t region) const {
     const auto is_at = [&](std::size_t side) {
         return std::ranges::any_of(winding_.around(region, side),
@@ -108,18 +110,18 @@ std::int32_t WantedParts::last_active_structure(std::size_t region, std::int32_t
     const bool is_cut_off = differs && !(cell_ends_at(low, region) && cell_ends_at(high, region));
     const bool may_end_here =
         is_cut_off && (low < 0 || high < 0 || is_in_body(region, 0) || is_in_body(region, 1));
-    std::int32_t acting = -1, last = -1;
+    std::int32_t last_active = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
-        if (!of.is_own || !divides_at(of.structure, region)) continue;
-        if (does_act(of.structure, low) || does_act(of.structure, high)) acting = of.structure;
+        if (!of.is_structure || !divides_at(of.structure, region)) continue;
+        if (does_act(of.structure, low) || does_act(of.structure, high)) last_active = of.structure;
         if (may_end_here) last = of.structure;
     }
-    return acting >= 0 ? acting : last;
+    return last_active >= 0 ? last_active : last;
 }
 
 /// Whether what is at one side of a region lies in one of the bodies.
 bool WantedParts::is_in_body(std::size_t region, std::size_t side) const {
-    const Sides& sides = sides_.sides(sides_.part_at(region, side));
+    const Sides& sides = sides_.sides(sides_.compartment_at(region, side));
     for (std::size_t s = 0; s < sides.size(); ++s) {
         if (sides[s] < 0 && sides_.is_body(static_cast<std::int32_t>(s))) return true;
     }
@@ -133,7 +135,8 @@ bool WantedParts::ends_at_outer_face(std::size_t region, std::int32_t cell) cons
 /// Where nothing acts it is what the cells have there without the structures. In slivers that
 /// rounding left there is a wall between cells of one block, and between blocks the surface that
 /// they meet at.
-std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::int32_t high) const {
+std::int32_t WantedParts::cut_face_number(std::size_t region, std::int32_t low,
+                                          std::int32_t high) const {
     const std::int32_t structure = last_active_structure(region, low, high);
     const ComplexView& model = overlay_.model();
     if (structure >= 0) return -2 - (model.surfaces + structure);
@@ -158,7 +161,7 @@ std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::in
 /// Whether a structure has what is below and above a region on two sides.
 bool WantedParts::divides_at(std::int32_t structure, std::size_t region) const {
     const auto side = [&](std::size_t k) {
-        return sides_.sides(sides_.part_at(region, k))[index(structure)];
+        return sides_.sides(sides_.compartment_at(region, k))[index(structure)];
     };
     return side(0) != side(1);
 }
@@ -183,16 +186,16 @@ bool WantedParts::is_tall(std::size_t region) const {
 /// The cell that is wanted on one side of a region, -1 none.
 std::int32_t WantedParts::wanted_at(std::size_t region, std::size_t side) const {
     for (const auto& [cell, times] : winding_.around(region, side)) {
-        if (times > 0 && of_cap(region, side, cell) == kAbove) return cell;
+        if (times > 0 && of_cut_face(region, side, cell) == kAbove) return cell;
     }
     return -1;
 }
 
 /// Whether the models on both sides of a region have the same blocks there, each by itself.
-bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t low,
-                                              std::int32_t high) const {
+bool WantedParts::exists_without_structures(std::size_t region, std::int32_t low,
+                                            std::int32_t high) const {
     const auto has = [&](std::size_t side, std::int32_t cell) {
-        const std::int32_t model = model_of_part_[sides_.part_at(region, 1 - side)];
+        const std::int32_t model = model_of_compartment_[sides_.compartment_at(region, 1 - side)];
         return std::ranges::any_of(winding_.around(region, side), [&](const auto& one) {
             return one.second > 0 && model_of_cell_[index(one.first)] == model &&
                    overlay_.model().block(one.first) == overlay_.model().block(cell);
@@ -201,7 +204,7 @@ bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t l
     return has(0, low) && has(1, high);
 }
 
-/// Whether a region of the surface is narrower than rounding may have made it.
+/// Whether a region of the cutter is narrower than rounding may have made it.
 bool WantedParts::is_sliver(std::size_t region) const {
     std::vector<std::vector<Position>> loops;
     for (const auto& loop : overlay_.loops(region))
@@ -213,8 +216,8 @@ bool WantedParts::is_sliver(std::size_t region) const {
 /// out there.
 void WantedParts::refuse_undeclared_tip(std::size_t region, std::int32_t cell) const {
     for (const RegionOf& of : sides_.structures_at(region)) {
-        if (!of.is_own && divides_at(of.structure, region) && !sides_.dies_out(of.structure) &&
-            does_act(of.structure, cell))
+        if (!of.is_structure && divides_at(of.structure, region) &&
+            !sides_.dies_out(of.structure) && does_act(of.structure, cell))
             sides_.refuse("ends_inside", "the fault ends in rock that it displaces", of.structure,
                           region);
     }
@@ -237,10 +240,11 @@ bool WantedParts::are_same(std::size_t region, bool may_be_sliver) const {
     const bool is_beyond_tip =
         low >= 0 && high >= 0 &&
         std::ranges::any_of(sides_.structures_at(region), [&](const RegionOf& of) {
-            return !of.is_own && sides_.dies_out(of.structure) && divides_at(of.structure, region);
+            return !of.is_structure && sides_.dies_out(of.structure) &&
+                   divides_at(of.structure, region);
         });
     if (cell_ends_at(low, region) && cell_ends_at(high, region) &&
-        (!is_beyond_tip || is_there_without_structures(region, low, high)))
+        (!is_beyond_tip || exists_without_structures(region, low, high)))
         return false;
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",

@@ -120,9 +120,9 @@ Findings check_arrays(const ComplexView& m, const Execution& execution) {
     const auto face = [&](std::size_t f, Findings& flaws) { check_face(m, f, has_face, flaws); };
     const auto cell = [&](std::size_t c, Findings& flaws) { check_cell(m, c, has_face, flaws); };
     const auto vertex = [&](std::size_t v, Findings& flaws) { check_vertex(m, v, flaws); };
-    findings = look_at_each(m.face_count(), execution, face);
-    findings.append(look_at_each(m.cell_count(), execution, cell));
-    findings.append(look_at_each(m.vertex_count(), execution, vertex));
+    findings = examine_all(m.face_count(), execution, face);
+    findings.append(examine_all(m.cell_count(), execution, cell));
+    findings.append(examine_all(m.vertex_count(), execution, vertex));
     findings.examined = static_cast<std::int64_t>(m.face_count());
     return findings;
 }
@@ -250,8 +250,8 @@ Findings check_distinct(const ComplexView& model, const Execution& execution) {
 
 Findings check_used(const ComplexView& model, const Execution& execution) {
     std::vector<std::uint8_t> used(model.vertex_count(), 0);
-    parallel_each(model.face_vertices.size(), execution,
-                  [&](std::size_t i) { atomic_set(used[index(model.face_vertices[i])]); });
+    parallel_for_each(model.face_vertices.size(), execution,
+                      [&](std::size_t i) { atomic_set(used[index(model.face_vertices[i])]); });
     Findings findings;
     for (std::size_t v = 0; v < used.size(); ++v) {
         if (used[v] != 0) continue;
@@ -292,7 +292,7 @@ Findings check_vertices(const ComplexView& model, const Execution& execution) {
 }
 
 Findings check_loops(const ComplexView& model, const Execution& execution) {
-    Findings all = look_at_each(model.face_count(), execution, [&](std::size_t f, Findings& flaws) {
+    Findings all = examine_all(model.face_count(), execution, [&](std::size_t f, Findings& flaws) {
         const std::int32_t v = repeated_vertex(model.face(f));
         if (v < 0) return;
         flaws.fail([&] {

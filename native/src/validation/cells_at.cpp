@@ -51,7 +51,7 @@ std::vector<std::int32_t> cells_at(const ComplexView& model,
             }
         });
     };
-    auto all = found_in_each<Passage>(model.face_count(), execution, look);
+    auto all = collect_items<Passage>(model.face_count(), execution, look);
     const auto position_and_cell = [](const Passage& p) { return std::pair{p.position, p.cell}; };
     std::ranges::sort(all, {}, position_and_cell);
     std::vector<std::int32_t> cells(positions.size(), -1);

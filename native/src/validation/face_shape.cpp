@@ -213,7 +213,7 @@ bool FaceShape::crosses_itself() const {
     const std::size_t n = flat_.size();
     const auto at = [&](std::size_t i) -> const PlanPosition& { return flat_[i < n ? i : i - n]; };
     // whether the ends of the other edge lie on different sides of an edge, beyond rounding
-    const auto parts = [&](std::size_t edge, std::size_t other) {
+    const auto separates = [&](std::size_t edge, std::size_t other) {
         const PlanPosition way = minus(at(edge + 1), at(edge));
         const PlanPosition p = minus(at(other), at(edge)), q = minus(at(other + 1), at(edge));
         const double one = cross(way, p), two = cross(way, q);
@@ -223,7 +223,7 @@ bool FaceShape::crosses_itself() const {
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = i + 2; j < n; ++j) {
             if (i == 0 && j + 1 == n) continue;
-            if (parts(i, j) && parts(j, i)) return true;
+            if (separates(i, j) && separates(j, i)) return true;
         }
     }
     return false;
@@ -273,10 +273,10 @@ namespace {
 using Position = std::array<double, 3>;
 
 /// A corner of each cell.
-std::vector<std::int32_t> cell_origins(const ComplexView& model, const SidesByCell& sides,
+std::vector<std::int32_t> cell_origins(const ComplexView& model, const FacesByCell& sides,
                                        const Execution& execution) {
     std::vector<std::int32_t> origin(model.cell_count());
-    parallel_each(origin.size(), execution, [&](std::size_t c) {
+    parallel_for_each(origin.size(), execution, [&](std::size_t c) {
         origin[c] = model.face(face_of(sides[c].front())).front();
     });
     return origin;
@@ -294,7 +294,7 @@ Position coordinate_steps(const ComplexView& model) {
 
 }  // namespace
 
-FaceMeasures::FaceMeasures(const ComplexView& model, const SidesByCell& sides,
+FaceMeasures::FaceMeasures(const ComplexView& model, const FacesByCell& sides,
                            const Execution& execution)
     : measures_(model.face_count()) {
     const auto origin = cell_origins(model, sides, execution);

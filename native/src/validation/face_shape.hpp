@@ -9,7 +9,7 @@
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/validation/findings.hpp"
-#include "validation/cell_sides.hpp"
+#include "validation/cell_faces.hpp"
 
 namespace realmodel::validation {
 
@@ -74,7 +74,7 @@ struct FaceMeasure {
 /// should be, and its share in volumes.
 class FaceMeasures {
 public:
-    FaceMeasures(const ComplexView& model, const SidesByCell& sides, const Execution& execution);
+    FaceMeasures(const ComplexView& model, const FacesByCell& sides, const Execution& execution);
 
     const FaceMeasure& operator[](std::size_t face) const { return measures_[face]; }
     Findings& findings() { return findings_; }

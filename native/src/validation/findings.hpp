@@ -22,22 +22,22 @@ inline constexpr std::size_t kItemsOfChunk = 8192;
 
 /// Calls work(begin, end, findings) for chunks of 0 .. count on several threads; what is found in
 /// all chunks, in order.
-template <class Found = Findings, class Work>
-Found in_chunks(std::size_t count, const Execution& execution, const Work& work,
-                std::size_t size = kItemsOfChunk) {
-    std::vector<Found> chunks((count + size - 1) / size);
+template <class Result = Findings, class Work>
+Result in_chunks(std::size_t count, const Execution& execution, const Work& work,
+                 std::size_t size = kItemsOfChunk) {
+    std::vector<Result> chunks((count + size - 1) / size);
     parallel_ranges(count, size, execution, [&](std::size_t begin, std::size_t end) {
         work(begin, end, chunks[begin / size]);
     });
-    Found all;
-    for (const Found& part : chunks)
-        all.append(part);
+    Result all;
+    for (const Result& chunk : chunks)
+        all.append(chunk);
     return all;
 }
 
 /// Calls look(item, findings) for all items in chunks.
 template <class Look>
-Findings look_at_each(std::size_t count, const Execution& execution, const Look& look) {
+Findings examine_all(std::size_t count, const Execution& execution, const Look& look) {
     return in_chunks(count, execution, [&](std::size_t begin, std::size_t end, Findings& findings) {
         for (std::size_t i = begin; i < end; ++i)
             look(i, findings);

@@ -335,7 +335,7 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
     /// Calls visit(probe, triangle) for all triangles of a mesh that contain a probe.
     const auto look = [&](std::span<const double> vertices, std::size_t columns,
                           std::span<const std::int32_t> triangles, const auto& visit) {
-        parallel_each(triangles.size() / 3, execution, [&](std::size_t t) {
+        parallel_for_each(triangles.size() / 3, execution, [&](std::size_t t) {
             std::array<PlanPosition, 3> p;
             for (std::size_t i = 0; i < 3; ++i) {
                 const double* row = &vertices[index(triangles[3 * t + i]) * columns];
@@ -461,10 +461,10 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
                 bins.within(box, [&](std::size_t i, const PlanPosition&) {
                     if (i >= count) {
                         const WallSample& wall = probes.walls[i - count];
-                        const auto its_own = [&](const auto& p, const auto& q) {
+                        const auto passes_edge = [&](const auto& p, const auto& q) {
                             return same_stretch(wall, p, q);
                         };
-                        if (edge_passes(i, beside, its_own)) atomic_set(coincident_[i - count]);
+                        if (edge_passes(i, beside, passes_edge)) atomic_set(coincident_[i - count]);
                         return;
                     }
                     const auto none = [](const auto&, const auto&) { return false; };
@@ -479,8 +479,8 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
             }
         });
     crossings_ = bucketize<Crossing>(count, [&](const auto& put) {
-        for (const auto& part : crossings) {
-            for (const Crossing& c : part)
+        for (const auto& hits_of_chunk : crossings) {
+            for (const Crossing& c : hits_of_chunk)
                 put(index(c.probe), c);
         }
     });

@@ -6,7 +6,7 @@
 
 #include "base/floating_point.hpp"
 #include "validation/array_tests.hpp"
-#include "validation/cell_sides.hpp"
+#include "validation/cell_faces.hpp"
 #include "validation/face_shape.hpp"
 #include "validation/findings.hpp"
 
@@ -29,11 +29,11 @@ struct CellFindings {
 /// Cell by cell: is it closed, and has it a volume.
 class CellTests {
 public:
-    CellTests(const ComplexView& model, const SidesByCell& sides, const FaceMeasures& faces,
-              const Execution& execution)
+    CellTests(const ComplexView& model, const FacesByCell& oriented_faces,
+              const FaceMeasures& faces, const Execution& execution)
         : model_(model),
           execution_(execution),
-          sides_(sides),
+          faces_of_cells_(oriented_faces),
           faces_(faces),
           volume_(model.cell_count()) {}
 
@@ -45,12 +45,13 @@ public:
             EdgeTable table;
             const std::size_t end = std::min(model_.cell_count(), (chunk + 1) * kCellsOfChunk);
             for (std::size_t c = chunk * kCellsOfChunk; c < end; ++c) {
-                const auto sides = sides_[c];
+                const auto oriented_faces = faces_of_cells_[c];
                 volume(c, chunk_findings[chunk].volumes);
-                if (sides.size() > kFacesOfLargeCell) {
+                if (oriented_faces.size() > kFacesOfLargeCell) {
                     large[chunk].push_back(c);
                 } else {
-                    closed(c, open_edge(model_, sides, table), chunk_findings[chunk].closed);
+                    closed(c, open_edge(model_, oriented_faces, table),
+                           chunk_findings[chunk].closed);
                 }
             }
         });
@@ -58,7 +59,8 @@ public:
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
             all.append(chunk_findings[chunk]);
             for (const std::size_t c : large[chunk])
-                closed(c, open_edge_of_large_cell(model_, sides_[c], execution_), all.closed);
+                closed(c, open_edge_of_large_cell(model_, faces_of_cells_[c], execution_),
+                       all.closed);
         }
         all.closed.examined = all.volumes.examined = static_cast<std::int64_t>(model_.cell_count());
         return all;
@@ -88,14 +90,14 @@ private:
 
     void volume(std::size_t c, Findings& findings) {
         double sum = 0, rounding = 0;
-        for (const Side side : sides_[c]) {
-            const FaceMeasure& face = faces_[face_of(side)];
-            sum += face.volume[is_reversed(side) ? 1 : 0];
+        for (const OrientedFace oriented_face : faces_of_cells_[c]) {
+            const FaceMeasure& face = faces_[face_of(oriented_face)];
+            sum += face.volume[is_reversed(oriented_face) ? 1 : 0];
             rounding += face.rounding;
         }
         volume_[c] = sum;
         if (sum > kRoundingSteps * rounding) return;
-        const CellExtent extent(model_, sides_[c]);
+        const CellExtent extent(model_, faces_of_cells_[c]);
         ++findings.undecided;
         if (!extent.is_flat() && sum >= -extent.volume_rounding()) return;
         findings.fail([&] {
@@ -110,22 +112,23 @@ private:
 
     const ComplexView& model_;
     Execution execution_;
-    const SidesByCell& sides_;
+    const FacesByCell& faces_of_cells_;
     const FaceMeasures& faces_;
     std::vector<double> volume_;
 };
 
 /// How far the volumes of the cells of a block may be off, each by the rounding of all its extent.
-double volume_rounding(const ComplexView& model, const SidesByCell& sides, std::size_t block) {
+double volume_rounding(const ComplexView& model, const FacesByCell& oriented_faces,
+                       std::size_t block) {
     double rounding = 0;
     for (std::size_t c = 0; c < model.cell_count(); ++c) {
         if (model.cell_block[c] == static_cast<std::int32_t>(block))
-            rounding += CellExtent(model, sides[c]).volume_rounding();
+            rounding += CellExtent(model, oriented_faces[c]).volume_rounding();
     }
     return rounding;
 }
 
-Findings check_block_volumes(const ComplexView& model, const SidesByCell& sides,
+Findings check_block_volumes(const ComplexView& model, const FacesByCell& oriented_faces,
                              const std::vector<double>& cell_volume) {
     std::vector<CorrectedSum> sums(model.block_volume.size());
     for (std::size_t c = 0; c < cell_volume.size(); ++c)
@@ -136,7 +139,7 @@ Findings check_block_volumes(const ComplexView& model, const SidesByCell& sides,
         const double stated = model.block_volume[b], summed = sums[b].value();
         const double off = std::abs(stated - summed);
         if (off <= 1e-9 * std::abs(summed)) continue;
-        if (off <= volume_rounding(model, sides, b)) {  // a block as thin as rounding
+        if (off <= volume_rounding(model, oriented_faces, b)) {  // a block as thin as rounding
             ++findings.undecided;
             continue;
         }
@@ -182,15 +185,15 @@ std::vector<TestResult> check_topology(const ComplexView& model, const Execution
     add("loops", "faces", check_loops(model, execution));
     add("vertices", "vertices", check_vertices(model, execution));
     add("outside", "faces", check_outside(model, execution));
-    const SidesByCell sides(model, execution);
-    FaceMeasures faces(model, sides, execution);
+    const FacesByCell oriented_faces(model, execution);
+    FaceMeasures faces(model, oriented_faces, execution);
     add("faces", "faces", std::move(faces.findings()));
     report(0.5, "checking every cell");
-    CellTests tests(model, sides, faces, execution);
+    CellTests tests(model, oriented_faces, faces, execution);
     CellFindings cells = tests.run();
     add("closed", "cells", std::move(cells.closed));  // its time is that of the volumes, too
     add("volumes", "cells", std::move(cells.volumes));
-    add("block volumes", "blocks", check_block_volumes(model, sides, tests.volumes()));
+    add("block volumes", "blocks", check_block_volumes(model, oriented_faces, tests.volumes()));
     report(1.0, "checking every cell");
     return results;
 }

@@ -10,12 +10,12 @@ class AnEdgeUpward : public testing::Test {
 protected:
     exact::SpacePointId at(double x, double y, double z) { return points.add(Position{x, y, z}); }
     HalfPlane towards(double x, double y) { return {at(x, y, 0.5), -1, 1}; }
-    std::vector<std::vector<std::size_t>> blades(const std::vector<HalfPlane>& items) {
+    std::vector<std::vector<std::size_t>> half_planes(const std::vector<HalfPlane>& items) {
         EdgeFan fan;
         find_fan(points, a, b, items, fan);
         std::vector<std::vector<std::size_t>> found;
-        for (std::size_t i = 0; i < fan.blades(); ++i)
-            found.emplace_back(fan.blade(i).begin(), fan.blade(i).end());
+        for (std::size_t i = 0; i < fan.half_planes(); ++i)
+            found.emplace_back(fan.half_plane(i).begin(), fan.half_plane(i).end());
         return found;
     }
     exact::SpacePoints points;
@@ -26,20 +26,20 @@ using Blades = std::vector<std::vector<std::size_t>>;
 
 TEST_F(AnEdgeUpward, HalfPlanesStandInOneDirectionFromTheFirst) {
     // whoever looks along the edge, upward, sees them turn clockwise from above
-    EXPECT_EQ(blades({towards(1, 0), towards(0, 1), towards(-1, 0.1), towards(-1, -1)}),
+    EXPECT_EQ(half_planes({towards(1, 0), towards(0, 1), towards(-1, 0.1), towards(-1, -1)}),
               (Blades{{0}, {3}, {2}, {1}}));
-    EXPECT_EQ(blades({towards(1, 0), towards(-1, -1), towards(-1, 0), towards(1, 1)}),
+    EXPECT_EQ(half_planes({towards(1, 0), towards(-1, -1), towards(-1, 0), towards(1, 1)}),
               (Blades{{0}, {1}, {2}, {3}}));
 }
 
 TEST_F(AnEdgeUpward, WhatLiesInOneDirectionMakesOneBlade) {
-    EXPECT_EQ(blades({towards(1, 1), towards(-1, 0), towards(3, 3), towards(-2, 0)}),
+    EXPECT_EQ(half_planes({towards(1, 1), towards(-1, 0), towards(3, 3), towards(-2, 0)}),
               (Blades{{0, 2}, {1, 3}}));
-    EXPECT_EQ(blades({towards(1, 1), towards(2, 2)}), (Blades{{0, 1}}));
+    EXPECT_EQ(half_planes({towards(1, 1), towards(2, 2)}), (Blades{{0, 1}}));
 }
 
 TEST_F(AnEdgeUpward, ParallelToAnAxisItIsSeenAlongAnother) {
-    EXPECT_EQ(blades({towards(0, 1), towards(0, -1), towards(0, 2)}), (Blades{{0, 2}, {1}}));
+    EXPECT_EQ(half_planes({towards(0, 1), towards(0, -1), towards(0, 2)}), (Blades{{0, 2}, {1}}));
 }
 
 TEST_F(AnEdgeUpward, TwoOfOnePlaneNeedNoArithmetic) {
@@ -47,13 +47,13 @@ TEST_F(AnEdgeUpward, TwoOfOnePlaneNeedNoArithmetic) {
     one.plane = same.plane = back.plane = 7;
     back.direction = -1;
     // what they are said to be counts, wherever they point
-    EXPECT_EQ(blades({one, same, back}), (Blades{{0, 1}, {2}}));
+    EXPECT_EQ(half_planes({one, same, back}), (Blades{{0, 1}, {2}}));
 }
 
 TEST(EdgeUse, KnowsWhatIsAheadGoingRound) {
     std::vector<EdgeUse> uses;
-    each_edge(std::vector<std::vector<NodeId>>{{1, 5, 3}}, 9,
-              [&](const EdgeUse& use) { uses.push_back(use); });
+    for_each_edge(std::vector<std::vector<NodeId>>{{1, 5, 3}}, 9,
+                  [&](const EdgeUse& use) { uses.push_back(use); });
     ASSERT_EQ(uses.size(), 3U);
     EXPECT_EQ(uses[0].edge, (std::array<NodeId, 2>{1, 5}));
     EXPECT_EQ(uses[0].ahead(), 0U);

@@ -132,7 +132,7 @@ using NodeLoops = std::vector<std::vector<NodeId>>;
 
 NodeLoops outlines(JoinedPolygons& joined) {
     NodeLoops found;
-    joined.each_outline([&](std::span<const JoinedPolygons::PolygonHalfEdge> outline) {
+    joined.for_each_outline([&](std::span<const JoinedPolygons::PolygonHalfEdge> outline) {
         auto& loop = found.emplace_back();
         for (const auto& edge : outline)
             loop.push_back(edge.from);
@@ -154,7 +154,7 @@ TEST(JoinedPolygons, TwoTrianglesMakeASquare) {
     square.pair(kAlways);
     EXPECT_EQ(outlines(square), (NodeLoops{{0, 1, 2, 3}}));
     int pairs = 0;
-    square.each_pair([&](std::int32_t p, std::int32_t q) {
+    square.for_each_pair([&](std::int32_t p, std::int32_t q) {
         EXPECT_NE(p, q);
         ++pairs;
     });
@@ -172,7 +172,7 @@ TEST(JoinedPolygons, WhatMayNotJoinStaysApart) {
 TEST(JoinedPolygons, PairsThatMayNotStayArePartedAgain) {
     JoinedPolygons fan = joined({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
     fan.pair(kAlways);
-    fan.part([](std::int32_t p, std::int32_t q) { return p < 2 && q < 2; });
+    fan.separate([](std::int32_t p, std::int32_t q) { return p < 2 && q < 2; });
     EXPECT_EQ(outlines(fan), (NodeLoops{{0, 1, 2, 3}, {0, 3, 4}}));
 }
 

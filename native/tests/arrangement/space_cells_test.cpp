@@ -121,7 +121,7 @@ TEST(SpaceCells, WhereASurfaceEndsTwoWaysDiffer) {
 }
 
 TEST(SpaceCells, ASectorIsBetweenWhatIsAheadOfABladeAndBehindTheNext) {
-    // blades: item 0; items 1 and 2, which lie upon each other and face each other; item 3
+    // half-planes: item 0; items 1 and 2, which lie upon each other and face each other; item 3
     const std::vector<EdgeUse> uses{
         {{4, 7}, 0, 1}, {{4, 7}, 1, 1}, {{4, 7}, 2, -1}, {{4, 7}, 3, 1}};
     const EdgeFan fan{{0, 1, 2, 3}, {0, 1, 3, 4}};
@@ -129,8 +129,8 @@ TEST(SpaceCells, ASectorIsBetweenWhatIsAheadOfABladeAndBehindTheNext) {
     const auto side_of = [](std::size_t item, std::size_t side) {
         return static_cast<std::int32_t>(2 * item + side);
     };
-    for (std::size_t blade = 0; blade < fan.blades(); ++blade)
-        cells.join_sector(uses, fan, blade, side_of);
+    for (std::size_t half_plane = 0; half_plane < fan.half_planes(); ++half_plane)
+        cells.join_sector(uses, fan, half_plane, side_of);
     cells.number([](std::size_t) { return true; }, {1});
     EXPECT_EQ(cells.size(), 3U);
     EXPECT_EQ(cells.of(0), cells.of(3));  // ahead of 0, behind 1

@@ -9,7 +9,7 @@ namespace {
 TEST(Algorithms, WhatIsFoundInEachKeepsItsOrder) {
     constexpr std::size_t kItems = 100000;  // several ranges
     for (const int threads : {1, 3}) {
-        const auto found = found_in_each<std::size_t>(
+        const auto found = collect_items<std::size_t>(
             kItems, {threads, nullptr}, [](std::size_t item, std::vector<std::size_t>& own) {
                 if (item % 3 == 1) own.insert(own.end(), {2 * item, 2 * item + 1});
             });

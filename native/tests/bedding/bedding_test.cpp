@@ -14,8 +14,8 @@ namespace {
 using strata::OwnedSurface;
 
 /// All sides of all faces of a model of one rock mass.
-std::vector<Polygon> sides_of(const ComplexView& complex) {
-    std::vector<Polygon> polygons;
+std::vector<BedPolygon> sides_of(const ComplexView& complex) {
+    std::vector<BedPolygon> polygons;
     for (std::size_t f = 0; f < complex.face_count(); ++f) {
         for (const bool reversed : {false, true}) {
             const std::int32_t cell = complex.cell(f, reversed ? 1 : 0);
@@ -28,7 +28,7 @@ std::vector<Polygon> sides_of(const ComplexView& complex) {
 
 struct Made {
     CellComplex complex;
-    std::vector<Polygon> polygons;
+    std::vector<BedPolygon> polygons;
     Bedding bedding;
 
     /// Calls visit(polygon, position, corner) for all corners.
@@ -36,7 +36,7 @@ struct Made {
     void for_each(const Visit& visit) const {
         const ComplexView view = complex;
         std::size_t corner = 0;
-        for (const Polygon& polygon : polygons) {
+        for (const BedPolygon& polygon : polygons) {
             const auto face = view.face(static_cast<std::size_t>(polygon.face));
             for (std::size_t i = 0; i < face.size(); ++i, ++corner)
                 visit(polygon, view.vertex(face[polygon.reversed ? face.size() - 1 - i : i]),
@@ -67,16 +67,17 @@ TEST(BeddingTest, HeightsInAFoldedLayerThatIsErodedLater) {
         made_of({strata::grid(12, 4, 0, 0, 12, 4, fold), strata::grid(12, 4, 0, 0, 12, 4, above),
                  strata::grid(9, 5, 0, 0, 12, 4, ground, true)});
     std::size_t inside = 0;
-    made.for_each([&](const Polygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
-        const double depth = 2 + 0.1 * at[1] - at[2];
-        EXPECT_NEAR(made.bedding.depth[corner], std::max(0.0, depth), 1e-5);
-        if (polygon.layer != 1) return;
-        const double left = std::floor(at[0]), share = at[0] - left;  // of a column of the grid
-        const double base = (1 - share) * fold(left, 0) + share * fold(left + 1, 0);
-        EXPECT_NEAR(made.bedding.thickness[corner], 4.0, 1e-5);
-        EXPECT_NEAR(made.bedding.height[corner], (at[2] - base) / 4, 1e-6);
-        inside += made.bedding.height[corner] > 0.01 && made.bedding.height[corner] < 0.99;
-    });
+    made.for_each(
+        [&](const BedPolygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
+            const double depth = 2 + 0.1 * at[1] - at[2];
+            EXPECT_NEAR(made.bedding.depth[corner], std::max(0.0, depth), 1e-5);
+            if (polygon.layer != 1) return;
+            const double left = std::floor(at[0]), share = at[0] - left;  // of a column of the grid
+            const double base = (1 - share) * fold(left, 0) + share * fold(left + 1, 0);
+            EXPECT_NEAR(made.bedding.thickness[corner], 4.0, 1e-5);
+            EXPECT_NEAR(made.bedding.height[corner], (at[2] - base) / 4, 1e-6);
+            inside += made.bedding.height[corner] > 0.01 && made.bedding.height[corner] < 0.99;
+        });
     EXPECT_GT(inside, 100);  // corners of the eroded top
 }
 
@@ -91,11 +92,12 @@ TEST(BeddingTest, TheBaseOfALayerIsWhatIsThereNotTheSurfaceBelow) {
                  strata::Rule::kErosional, strata::Rule::kConformable},
                 -5.0);
     std::set<std::tuple<int, float, float, float>> found;  // layer, z, height, thickness
-    made.for_each([&](const Polygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
-        found.emplace(polygon.layer, static_cast<float>(at[2]), made.bedding.height[corner],
-                      made.bedding.thickness[corner]);
-        EXPECT_FLOAT_EQ(made.bedding.depth[corner], static_cast<float>(6 - at[2]));
-    });
+    made.for_each(
+        [&](const BedPolygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
+            found.emplace(polygon.layer, static_cast<float>(at[2]), made.bedding.height[corner],
+                          made.bedding.thickness[corner]);
+            EXPECT_FLOAT_EQ(made.bedding.depth[corner], static_cast<float>(6 - at[2]));
+        });
     const std::set<std::tuple<int, float, float, float>> wanted{
         {0, -5, 0, 5}, {0, 0, 1, 5}, {1, 0, 0, 10}, {1, 2, 0.2F, 10}, {3, 2, 0, 4}, {3, 6, 1, 4}};
     EXPECT_EQ(found, wanted);
@@ -113,7 +115,8 @@ TEST(BeddingTest, EachSideOfAStepHasItsOwnLayer) {
     const Made made =
         made_of({base, strata::grid(1, 1, 0, 0, 2, 1, [](double, double) { return 4.0; })});
     const ComplexView view = made.complex;
-    made.for_each([&](const Polygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
+    made.for_each([&](const BedPolygon& polygon, const std::array<double, 3>& at,
+                      std::size_t corner) {
         double middle = 0;
         const auto face = view.face(static_cast<std::size_t>(polygon.face));
         for (const std::int32_t v : face)
@@ -133,14 +136,15 @@ TEST(BeddingTest, WhereALayerEndsItsSidesKeepTheirHeights) {
                 {strata::Rule::kErosional, strata::Rule::kConformable});
     const ComplexView view = made.complex;
     std::size_t ends = 0;
-    made.for_each([&](const Polygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
-        const bool is_wall = view.face_surface[static_cast<std::size_t>(polygon.face)] == kWall;
-        if (at[0] != 1.0) return;
-        ++ends;
-        const bool is_top = view.face_surface[static_cast<std::size_t>(polygon.face)] == 1;
-        EXPECT_FLOAT_EQ(made.bedding.height[corner], is_wall ? 0.5F : is_top ? 1.0F : 0.0F);
-        EXPECT_EQ(made.bedding.thickness[corner], 0.0F);
-    });
+    made.for_each(
+        [&](const BedPolygon& polygon, const std::array<double, 3>& at, std::size_t corner) {
+            const bool is_wall = view.face_surface[static_cast<std::size_t>(polygon.face)] == kWall;
+            if (at[0] != 1.0) return;
+            ++ends;
+            const bool is_top = view.face_surface[static_cast<std::size_t>(polygon.face)] == 1;
+            EXPECT_FLOAT_EQ(made.bedding.height[corner], is_wall ? 0.5F : is_top ? 1.0F : 0.0F);
+            EXPECT_EQ(made.bedding.thickness[corner], 0.0F);
+        });
     EXPECT_GT(ends, 4);
 }
 
@@ -179,11 +183,11 @@ TEST(BeddingTest, NumbersOutOfRangeAreRefused) {
     const Made made =
         made_of({strata::grid(1, 1, 0, 0, 1, 1, [](double, double) { return 1.0; })}, {}, 0.0);
     const History history;
-    for (const Polygon& bad : {Polygon{-1, false, 0, -1}, Polygon{0, false, 1, -1},
-                               Polygon{0, false, 0, 0}, Polygon{9999, false, 0, -1}}) {
+    for (const BedPolygon& bad : {BedPolygon{-1, false, 0, -1}, BedPolygon{0, false, 1, -1},
+                                  BedPolygon{0, false, 0, 0}, BedPolygon{9999, false, 0, -1}}) {
         EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&bad, 1}, {}, {1}), InputError);
     }
-    const Polygon good{0, false, 0, -1};
+    const BedPolygon good{0, false, 0, -1};
     const std::vector<std::int32_t> few{0}, wrong{0, 0, 1};
     for (const auto& histories : {few, wrong}) {
         EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&good, 1}, histories, {1}),

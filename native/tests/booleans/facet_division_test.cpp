@@ -42,10 +42,10 @@ private:
     std::vector<SpacePointId> corners_;
 };
 
-std::set<Edge> edges_in(const std::vector<TriangleCorners>& triangles) {
-    std::set<Edge> found;
+std::set<SpaceEdge> edges_in(const std::vector<TriangleCorners>& triangles) {
+    std::set<SpaceEdge> found;
     for (const TriangleCorners& t : triangles) {
-        for (const Edge& edge : edges_of(t))
+        for (const SpaceEdge& edge : edges_of(t))
             found.insert(edge);
     }
     return found;
@@ -85,7 +85,7 @@ TEST(FacetDivision, ManyPointsAndAChainOfEdges) {
     EXPECT_EQ(triangles.size(), 1 + 2 * kInside + kOnEdge);
     expect_tiled(sample, triangles);
     const auto edges = edges_in(triangles);
-    for (const Edge& edge : sample.facet.wanted)
+    for (const SpaceEdge& edge : sample.facet.wanted)
         EXPECT_TRUE(edges.contains(edge));
 }
 

@@ -19,8 +19,8 @@ FacetMesh mesh() {
 
 TEST(Facets, PartsThatCoincideAreOne) {
     const FacetMesh found = mesh();
-    EXPECT_EQ(found.of_part, (std::vector<std::int32_t>{0, 1, 0, 0}));
-    EXPECT_EQ(found.first_part, (std::vector<std::int32_t>{0, 1, 0, 0}));
+    EXPECT_EQ(found.of_piece, (std::vector<std::int32_t>{0, 1, 0, 0}));
+    EXPECT_EQ(found.first_piece, (std::vector<std::int32_t>{0, 1, 0, 0}));
     ASSERT_EQ(found.facets.size(), 2U);
     EXPECT_EQ(found.facets[0].corners, (std::array{0, 1, 2}));
     EXPECT_EQ(found.facets[0].times, (std::array{2, -1}));

@@ -14,8 +14,8 @@ protected:
     SpacePointId at(double x, double y, double z) {
         return points.add(exact::SpacePosition{x, y, z});
     }
-    NearParts find(const TriangleCorners& other) const {
-        NearParts found;
+    NearFeatures find(const TriangleCorners& other) const {
+        NearFeatures found;
         nearness.find(pair_of(level, other), found);
         return found;
     }
@@ -28,23 +28,24 @@ protected:
 
 TEST_F(Near, VerticesBecomeOne) {
     const SpacePointId beside = at(4, 0, little);
-    const NearParts found = find({beside, at(9, 0, 3), at(9, 9, 3)});
-    EXPECT_EQ(found.same, std::vector<Edge>{unordered(level[1], beside)});
+    const NearFeatures found = find({beside, at(9, 0, 3), at(9, 9, 3)});
+    EXPECT_EQ(found.same, std::vector<SpaceEdge>{unordered(level[1], beside)});
 }
 
 TEST_F(Near, AVertexIsOnAnEdgeOrOverTheInside) {
     const SpacePointId on = at(2, little, 0), over = at(1, 1, -little);
-    const NearParts beside = find({on, at(2, -9, 3), at(3, -9, 3)});
-    EXPECT_EQ(beside.on_edges,
-              (std::vector<std::pair<Edge, SpacePointId>>{{unordered(level[0], level[1]), on}}));
-    const NearParts above = find({over, at(1, 1, -9), at(1, 2, -9)});
+    const NearFeatures beside = find({on, at(2, -9, 3), at(3, -9, 3)});
+    EXPECT_EQ(
+        beside.on_edges,
+        (std::vector<std::pair<SpaceEdge, SpacePointId>>{{unordered(level[0], level[1]), on}}));
+    const NearFeatures above = find({over, at(1, 1, -9), at(1, 2, -9)});
     EXPECT_EQ(above.over, (std::vector<std::pair<TriangleCorners, SpacePointId>>{{level, over}}));
     EXPECT_TRUE(above.same.empty());
 }
 
 TEST_F(Near, EdgesThatPassEachOtherHaveACrossing) {
     const TriangleCorners across{at(2, -1, little), at(2, 1, little), at(2, 0, 9)};
-    const NearParts found = find(across);
+    const NearFeatures found = find(across);
     ASSERT_EQ(found.crossings.size(), 1U);
     EXPECT_NEAR(found.crossings[0].at[0], 2, 1e-12);
     EXPECT_NEAR(found.crossings[0].at[1], 0, 1e-12);

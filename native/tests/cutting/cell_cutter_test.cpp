@@ -51,16 +51,16 @@ public:
         }
         return -1;
     }
-    /// Parts below and above a cap.
-    std::array<std::int32_t, 2> beside_cap(std::size_t cap) const {
-        return {cut.part[refs_.size() + 2 * cap], cut.part[refs_.size() + 2 * cap + 1]};
+    /// Parts below and above a cut face.
+    std::array<std::int32_t, 2> beside_cap(std::size_t cut_face) const {
+        return {cut.part[refs_.size() + 2 * cut_face], cut.part[refs_.size() + 2 * cut_face + 1]};
     }
-    /// The area of all caps, seen from above.
+    /// The area of all cut faces, seen from above.
     double area() const {
         double twice = 0;
-        for (std::size_t c = 0; c < cut.caps.size(); ++c) {
+        for (std::size_t c = 0; c < cut.cut_faces.size(); ++c) {
             std::vector<Position> corners;
-            for (const NodeId node : cut.caps[c])
+            for (const NodeId node : cut.cut_faces[c])
                 corners.push_back(cuts_.contains(node) ? cuts_.position(node)
                                                        : complex_.vertices[index(node)]);
             twice += polygon_normal(corners)[2];
@@ -95,11 +95,11 @@ private:
 TEST(CellCutter, ACubeHasOneBelowItsCapAndOneAbove) {
     const CutAt cut(prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), 0.5);
     EXPECT_TRUE(cut.cut.is_clean);
-    EXPECT_EQ(cut.cut.caps.size(), 1U);
+    EXPECT_EQ(cut.cut.cut_faces.size(), 1U);
     EXPECT_DOUBLE_EQ(cut.area(), 1);
     EXPECT_EQ(cut.count(kBelow), 1);
     EXPECT_EQ(cut.count(kAbove), 1);
-    // of each wall, what is below the cap and what is above
+    // of each wall, what is below the cut face and what is above
     for (const std::int32_t wall : {0, 1, 3, 5})
         EXPECT_EQ((std::array{cut.part_of(wall, kBelow), cut.part_of(wall, kAbove)}),
                   cut.beside_cap(0));
@@ -107,7 +107,7 @@ TEST(CellCutter, ACubeHasOneBelowItsCapAndOneAbove) {
 
 TEST(CellCutter, AUFallsIntoItsFootAndTwoTowers) {
     const CutAt cut(u_shape(), 1.5);
-    EXPECT_EQ(cut.cut.caps.size(), 2U);
+    EXPECT_EQ(cut.cut.cut_faces.size(), 2U);
     EXPECT_DOUBLE_EQ(cut.area(), 2);
     EXPECT_EQ(cut.count(kBelow), 1);
     EXPECT_EQ(cut.count(kAbove), 2);
@@ -133,7 +133,7 @@ TEST(CellCutter, WhereARoofTouchesThePlaneFromWithinWhatIsBelowFallsApart) {
 TEST(CellCutter, ATopThatOnlyTouchesThePlaneHasNoCap) {
     // two peaks, the left one as high as the plane
     const CutAt cut(prism({{0, 0}, {4, 0}, {3, 2}, {2, 0.5}, {1, 1}}), 1);
-    EXPECT_EQ(cut.cut.caps.size(), 1U);
+    EXPECT_EQ(cut.cut.cut_faces.size(), 1U);
     EXPECT_EQ(cut.count(kBelow), 1);
     EXPECT_EQ(cut.count(kAbove), 1);
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "cutting/cutter_surface.hpp"
+#include "cutting/cutter.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
@@ -13,17 +13,17 @@ namespace {
 
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 
-CutterSurface ready(const std::vector<Position>& vertices, const Triangles& triangles) {
+Cutter ready(const std::vector<Position>& vertices, const Triangles& triangles) {
     std::vector<double> coordinates;
     std::vector<std::int32_t> corners;
     for (const Position& p : vertices)
         coordinates.insert(coordinates.end(), p.begin(), p.end());
     for (const auto& t : triangles)
         corners.insert(corners.end(), t.begin(), t.end());
-    return oriented_surface({coordinates, corners});
+    return oriented_cutter({coordinates, corners});
 }
 
-Position normal(const CutterSurface& surface, std::size_t triangle) {
+Position normal(const Cutter& surface, std::size_t triangle) {
     std::vector<Position> corners;
     for (const std::int32_t v : surface.triangles[triangle])
         corners.push_back(surface.vertices[index(v)]);
@@ -31,7 +31,7 @@ Position normal(const CutterSurface& surface, std::size_t triangle) {
 }
 
 /// How many edges have one triangle, and whether none has more than two.
-std::pair<int, bool> border_edges(const CutterSurface& surface) {
+std::pair<int, bool> border_edges(const Cutter& surface) {
     std::map<std::array<NodeId, 2>, int> users;
     for (const auto& t : surface.triangles) {
         for (std::size_t i = 0; i < 3; ++i)
@@ -52,18 +52,18 @@ TEST(CutterInput, AnOpenSurfaceIsTurnedUpward) {
     EXPECT_EQ(normal(ready(kSquare, {{0, 1, 2}}), 0), (Position{0, 0, 1}));
     // as the larger part of its area is, which then looks up: the second hangs over
     const std::vector<Position> overhang{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {3, 1, 1}};
-    const CutterSurface surface = ready(overhang, {{0, 2, 1}, {2, 1, 3}});
+    const Cutter surface = ready(overhang, {{0, 2, 1}, {2, 1, 3}});
     EXPECT_GT(normal(surface, 0)[2], 0);
     EXPECT_LT(normal(surface, 1)[2], 0);
 }
 
 TEST(CutterInput, NeighborsGetOneOrientation) {
-    const CutterSurface surface = ready(kSquare, {{0, 1, 2}, {0, 3, 2}});
+    const Cutter surface = ready(kSquare, {{0, 1, 2}, {0, 3, 2}});
     EXPECT_EQ(normal(surface, 0), normal(surface, 1));
 }
 
 TEST(CutterInput, ASeamWiderThanRoundingGoesRoundTheBorder) {
-    const CutterSurface surface = ready(kSquare, {{0, 1, 2}, {0, 2, 3}});
+    const Cutter surface = ready(kSquare, {{0, 1, 2}, {0, 2, 3}});
     EXPECT_FALSE(surface.is_closed);
     EXPECT_EQ(surface.vertices.size(), 8U);
     EXPECT_EQ(surface.triangles.size(), 2U + 8U);
@@ -83,7 +83,7 @@ TEST(CutterInput, ASeamGoesRoundANeedleTipAndNotIntoASlit) {
         const std::vector<Position> needle{
             {0, 0, 1}, {1, -half, 1}, {1, half, 1}, {1, half / 4, 1}};
         for (const Triangles& triangles : {Triangles{{0, 1, 2}}, Triangles{{0, 1, 3}, {0, 3, 2}}}) {
-            const CutterSurface surface = ready(needle, triangles);
+            const Cutter surface = ready(needle, triangles);
             const bool is_one = triangles.size() == 1;
             const std::size_t corners = is_one ? 3 : 4;
             EXPECT_EQ(surface.vertices.size(), 4 + corners);
@@ -97,8 +97,7 @@ TEST(CutterInput, ASeamGoesRoundANeedleTipAndNotIntoASlit) {
     for (const double half : {0.04, 0x1p-20, 0x1p-40}) {
         const std::vector<Position> slit{{0, 0, 1},  {1, -half, 1}, {1, -1, 1},  {-1, -1, 1},
                                          {-1, 1, 1}, {1, 1, 1},     {1, half, 1}};
-        const CutterSurface surface =
-            ready(slit, {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 5, 4}, {0, 6, 5}});
+        const Cutter surface = ready(slit, {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 5, 4}, {0, 6, 5}});
         EXPECT_EQ(surface.vertices.size(), 7U + 6U);
     }
 }
@@ -106,22 +105,22 @@ TEST(CutterInput, ASeamGoesRoundANeedleTipAndNotIntoASlit) {
 TEST(CutterInput, VerticesInOnePlaceAreOneAndFlatTrianglesAreNone) {
     std::vector<Position> vertices = kSquare;
     vertices.insert(vertices.end(), {{-0.0, 0, 0}, {1, 1, 0}, {0.5, 0.5, 0}});
-    const CutterSurface surface = ready(vertices, {{0, 1, 2}, {4, 5, 3}, {0, 6, 2}});
+    const Cutter surface = ready(vertices, {{0, 1, 2}, {4, 5, 3}, {0, 6, 2}});
     EXPECT_EQ(border_edges(surface).first, 4);
     EXPECT_EQ(surface.triangles.size(), 2U + 8U);
 }
 
 TEST(CutterInput, ABorderIsDividedWhereAnotherOneHasACorner) {
     // below y = 0 one triangle, above it three along the same edge
-    const CutterSurface surface = ready({{0, 0, 0},
-                                         {3, 0, 0},
-                                         {1, -1, 0},
-                                         {1, 0, 0},
-                                         {2, 0, 0},
-                                         {0.5, 1, 0},
-                                         {1.5, 1, 0},
-                                         {2.5, 1, 0}},
-                                        {{2, 1, 0}, {0, 3, 5}, {3, 4, 6}, {4, 1, 7}});
+    const Cutter surface = ready({{0, 0, 0},
+                                  {3, 0, 0},
+                                  {1, -1, 0},
+                                  {1, 0, 0},
+                                  {2, 0, 0},
+                                  {0.5, 1, 0},
+                                  {1.5, 1, 0},
+                                  {2.5, 1, 0}},
+                                 {{2, 1, 0}, {0, 3, 5}, {3, 4, 6}, {4, 1, 7}});
     std::size_t seam = surface.triangles.size();
     while (normal(surface, seam - 1)[2] < 1e-9)
         --seam;
@@ -142,14 +141,14 @@ const std::vector<Position> kTwoTips{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
 
 TEST(CutterInput, AClosedSurfaceIsTakenAsItIs) {
     const Triangles tetrahedron{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 3, 0}};
-    const CutterSurface surface = ready(kTwoTips, tetrahedron);
+    const Cutter surface = ready(kTwoTips, tetrahedron);
     EXPECT_TRUE(surface.is_closed);
     EXPECT_EQ(surface.triangles, tetrahedron);
     EXPECT_EQ(surface.vertices.size(), 5U);
 }
 
 TEST(CutterInput, AWallBetweenTwoClosedSurfacesIsLeftOut) {
-    const CutterSurface surface = ready(
+    const Cutter surface = ready(
         kTwoTips,
         {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 0, 4}});
     EXPECT_TRUE(surface.is_closed);

@@ -12,12 +12,12 @@ namespace {
 
 /// Two unit cubes, one on the other, and a surface.
 struct Sided {
-    explicit Sided(CutterSurface of) : surface(std::move(of)) {}
+    explicit Sided(Cutter of) : surface(std::move(of)) {}
 
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
-    CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, {1, nullptr}};
+    Cutter surface;
+    CutterOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
     CutterSides sides{overlay, winding, nullptr};
 };
@@ -31,8 +31,8 @@ TEST(CutterSides, FacesAwayFromTheSurfaceHaveTheSideOfThoseBesideThem) {
 }
 
 TEST(CutterSides, WhatIsConnectedCountsMoreThanWhatIsNearer) {
-    CutterSurface two = level_cutter(0.5);
-    const CutterSurface beyond = level_cutter(2.125);  // over the model, which is below it
+    Cutter two = level_cutter(0.5);
+    const Cutter beyond = level_cutter(2.125);  // over the model, which is below it
     two.vertices.insert(two.vertices.end(), beyond.vertices.begin(), beyond.vertices.end());
     two.triangles.push_back({3, 4, 5});
     EXPECT_EQ(Sided(two).sides.of_face(2), kAbove);
@@ -70,7 +70,7 @@ TEST(CutterSides, WithinAClosedSurfaceIsBelow) {
     const Sided cut(closed_cutter());
     for (std::size_t f = 0; f < 11; ++f)
         EXPECT_EQ(cut.sides.of_face(f), kAbove);
-    CutterSurface around = closed_cutter();
+    Cutter around = closed_cutter();
     for (Position& p : around.vertices)  // 40 times as large, about (0.3, 0.3, 0.3)
         for (double& x : p)
             x = 0.3 + 40 * (x - 0.3);
@@ -90,7 +90,7 @@ struct RefusalAt {
     std::optional<std::array<double, 3>> place;
 };
 
-RefusalAt refusal(const CutterSurface& surface) {
+RefusalAt refusal(const Cutter& surface) {
     try {
         const Sided cut(surface);
     } catch (const InputError& error) {
@@ -100,7 +100,7 @@ RefusalAt refusal(const CutterSurface& surface) {
 }
 
 TEST(CutterSides, ASurfaceMayNotEndInsideOfTheModel) {
-    CutterSurface half = level_cutter(0.5);
+    Cutter half = level_cutter(0.5);
     for (Position& p : half.vertices)
         p[0] = (p[0] + 8) / 2 + 0.5;  // from x = 0.5 on
     const RefusalAt found = refusal(half);
@@ -110,8 +110,8 @@ TEST(CutterSides, ASurfaceMayNotEndInsideOfTheModel) {
 }
 
 TEST(CutterSides, APlaceMayNotBeAboveOnePartAndBelowAnother) {
-    CutterSurface two = level_cutter(0.25);
-    const CutterSurface upper = level_cutter(0.75);
+    Cutter two = level_cutter(0.25);
+    const Cutter upper = level_cutter(0.75);
     two.vertices.insert(two.vertices.end(), upper.vertices.begin(), upper.vertices.end());
     two.triangles.push_back({3, 4, 5});
     EXPECT_EQ(refusal(two).kind, "two_sides");

@@ -10,7 +10,7 @@ namespace {
 
 /// Two unit cubes, one on the other (cells 0 and 1), and a surface.
 struct Wound {
-    explicit Wound(CutterSurface of) : surface(std::move(of)) {}
+    explicit Wound(Cutter of) : surface(std::move(of)) {}
     /// What is below and above each region of the surface that counts and touches the model.
     std::vector<std::array<Winding, 2>> around() const {
         std::vector<std::array<Winding, 2>> found;
@@ -23,8 +23,8 @@ struct Wound {
 
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
-    CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, {1, nullptr}};
+    Cutter surface;
+    CutterOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
 };
 
@@ -45,8 +45,8 @@ TEST(CutterWinding, CellsOfSeveralModelsShareTheRegionsOfTheirFaces) {
     }
     twice.block.insert(twice.block.end(), {0, 0});
     const ComplexView model = twice.view();
-    const CutterSurface surface = level_cutter(0.5);
-    SurfaceOverlay overlay(model, surface, {1, nullptr}, 0, std::vector<std::int32_t>{0});
+    const Cutter surface = level_cutter(0.5);
+    CutterOverlay overlay(model, surface, {1, nullptr}, 0, std::vector<std::int32_t>{0});
     EXPECT_EQ(overlay.size(), Wound(surface).overlay.size());
     EXPECT_EQ(overlay.active_faces(), (std::vector<std::int32_t>{3, 4, 5, 6}));
     EXPECT_TRUE(overlay.is_active(faces + 3));
@@ -84,7 +84,7 @@ TEST(CutterWinding, WhatCrossesNoFaceIsFoundByARay) {
 }
 
 TEST(CutterWinding, WhatStandsOnAFaceAndCrossesNoneHasTheOtherCellBelow) {
-    CutterSurface upper = closed_cutter();
+    Cutter upper = closed_cutter();
     for (Position& p : upper.vertices)
         p[2] += 0.75;  // on the face between the cells
     int on_face = 0;
@@ -113,7 +113,7 @@ TEST(CutterWinding, AFaceKnowsTheRegionItLiesOnAndHowItFaces) {
 }
 
 TEST(CutterWinding, WhereAnOpenSurfaceIsTwiceOneCountsAndOfAClosedOneNone) {
-    CutterSurface twice = level_cutter(0.5);
+    Cutter twice = level_cutter(0.5);
     twice.triangles.push_back({0, 2, 1});
     EXPECT_EQ(Wound(twice).around().size(), 1U);
     twice.is_closed = true;
@@ -128,7 +128,7 @@ TEST(CutterWinding, AnInsideOutCellGoesRoundMinusOnce) {
     wound.cubes.loops[1] = {7, 6, 5, 4};
     wound.cubes.add_face({7, 6, 5, 4}, 0, -1, 0);
     const ComplexView inside_out = wound.cubes.view();
-    SurfaceOverlay overlay(inside_out, wound.surface, {1, nullptr});
+    CutterOverlay overlay(inside_out, wound.surface, {1, nullptr});
     const CutterWinding winding(overlay, nullptr);
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (!winding.counts(r) || !winding.touches_model(r)) continue;

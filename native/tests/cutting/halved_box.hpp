@@ -7,14 +7,14 @@
 
 #include "../arrangement/small_polygons.hpp"
 #include "cutting/assembly.hpp"
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 
 namespace realmodel::cutting {
 
 /// One cell, a box of 1 x 1 x 2, that a level cutter divides at some height. Nodes 8 to 11 are
 /// where it cuts the upright edges, in the order of x and then y. Pieces 0 and 1 are the bottom and
-/// the top, then come the lower and the upper piece of each side, and the cap (kCap).
+/// the top, then come the lower and the upper piece of each side, and the cut face (kCap).
 class AHalvedBox : public testing::Test {
 protected:
     AHalvedBox() {

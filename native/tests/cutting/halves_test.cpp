@@ -4,7 +4,7 @@
 #include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
 #include "cutting/assembly.hpp"
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 
 namespace realmodel::cutting {
 namespace {

@@ -7,8 +7,7 @@ namespace realmodel::cutting {
 namespace {
 
 /// Two slopes that meet in a ridge along y at x = 0, height 0.
-const CutterSurface kRidge{{{0, -9, 0}, {0, 9, 0}, {3, 0, -9}, {-3, 0, -9}},
-                           {{0, 2, 1}, {0, 1, 3}}};
+const Cutter kRidge{{{0, -9, 0}, {0, 9, 0}, {3, 0, -9}, {-3, 0, -9}}, {{0, 2, 1}, {0, 1, 3}}};
 
 TEST(NearestSide, TheNearestTriangleTellsTheSide) {
     EXPECT_EQ(NearestSide(kRidge)({0.25, 0, 5}), kAbove);
@@ -19,8 +18,8 @@ TEST(NearestSide, TheNearestTriangleTellsTheSide) {
 
 TEST(NearestSide, BeyondItsBorderTheTriangleSeenMostSquarelyTellsTheSide) {
     // nearest is the corner in common; the upright triangle is seen almost along itself
-    const CutterSurface bent{{{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, -1, 1}},
-                             {{0, 3, 2}, {0, 2, 1}, {0, 3, 2}}};
+    const Cutter bent{{{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, -1, 1}},
+                      {{0, 3, 2}, {0, 2, 1}, {0, 3, 2}}};
     EXPECT_EQ(NearestSide(bent)({-1, 0.8, 0.5}), kAbove);
     EXPECT_EQ(NearestSide(bent)({-1, 0.8, -0.5}), kBelow);
     EXPECT_EQ(NearestSide(bent)({-1, 0, 0.5}), kBelow);  // it is that one's turn
@@ -29,8 +28,8 @@ TEST(NearestSide, BeyondItsBorderTheTriangleSeenMostSquarelyTellsTheSide) {
 TEST(NearestSide, OfLimbsThatAreNearlyOneTheNearerTellsTheSide) {
     // a level sheet that turns back under itself, as far away as the last place of 1
     for (const double gap : {1e-3, 1e-10, 1e-15, 0x1p-53}) {
-        const CutterSurface fold{{{0, 0, 0}, {8, -8, 0}, {8, 8, 0}, {8, -8, -gap}, {8, 8, -gap}},
-                                 {{0, 1, 2}, {0, 4, 3}}};
+        const Cutter fold{{{0, 0, 0}, {8, -8, 0}, {8, 8, 0}, {8, -8, -gap}, {8, 8, -gap}},
+                          {{0, 1, 2}, {0, 4, 3}}};
         const NearestSide side(fold);
         for (const double x : {1.0, 2.5, 4.0}) {
             EXPECT_EQ(side({x, 0.25, 1}), kAbove) << gap;
@@ -51,8 +50,7 @@ TEST(NearestSide, ABorderIsNearestWhereItsPointIs) {
     EXPECT_TRUE(is_at_border({0, 9, 1}));    // its end
     EXPECT_TRUE(is_at_border({4, 0, -12}));  // beyond a corner
     // the foot is on a border edge, or beside it by less than a millionth of its length
-    const CutterSurface square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
-                               {{0, 1, 2}, {0, 2, 3}}};
+    const Cutter square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     const NearestSide level(square);
     for (const double y : {0.0, -0x1p-60, 0x1p-60, 1e-9}) {
         bool at_border = false;
@@ -62,7 +60,7 @@ TEST(NearestSide, ABorderIsNearestWhereItsPointIs) {
 }
 
 TEST(NearestSide, OneUnitInTheLastPlaceOffTheTriangleIsTold) {
-    const CutterSurface slope{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0, 1, 2}}};
+    const Cutter slope{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0, 1, 2}}};
     const NearestSide side(slope);
     const double height = 2.0 / 3;  // a little less than the slope at (1, 1)
     EXPECT_EQ(side({1, 1, height}), kBelow);
@@ -82,9 +80,9 @@ TEST(NearestSide, OfABallWhereAllOfItIsOnOneSideAndNoBorderIsNear) {
 }
 
 TEST(NearestSide, WithinATetrahedron) {
-    const CutterSurface body{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}},
-                             {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
-                             true};
+    const Cutter body{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}},
+                      {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
+                      true};
     const NearestSide side(body);
     EXPECT_EQ(side.within({1, 1, 1}), kBelow);
     EXPECT_EQ(side.within({1, 1, 2.5}), kAbove);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "cutting/surface_overlay.hpp"
+#include "cutting/cutter_overlay.hpp"
 
 namespace realmodel::cutting {
 namespace {
 
 /// Whether a triangle is surely apart from that of the first three vertices.
 bool is_apart(const std::vector<Position>& more, const std::array<std::int32_t, 3>& other) {
-    CutterSurface surface;
+    Cutter surface;
     surface.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     surface.vertices.insert(surface.vertices.end(), more.begin(), more.end());
     const bool found = are_surely_apart(surface, {0, 1, 2}, other);

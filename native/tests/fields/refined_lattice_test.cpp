@@ -51,9 +51,9 @@ TEST(RefinedLattice, CornersLieInTheSidesOfTheBox) {
     Linear linear;
     linear.add({0.5, 2, 0.25}, 3);
     const RefinedLattice lattice = linear.lattice();
-    EXPECT_EQ(lattice.sides(lattice.node({0, 2, 1})), 1U << 0 | 1U << 4);
-    EXPECT_EQ(lattice.sides(lattice.node({1, 1, 1})), 0U);
-    EXPECT_EQ(lattice.sides(27), 1U << 4);  // the point
+    EXPECT_EQ(lattice.box_faces(lattice.node({0, 2, 1})), 1U << 0 | 1U << 4);
+    EXPECT_EQ(lattice.box_faces(lattice.node({1, 1, 1})), 0U);
+    EXPECT_EQ(lattice.box_faces(27), 1U << 4);  // the point
     EXPECT_EQ(lattice.beyond(0), (Vec3{-1, 1, 1}));
     EXPECT_EQ(lattice.beyond(5), (Vec3{1, 1, 3}));
 }

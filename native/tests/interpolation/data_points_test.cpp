@@ -24,11 +24,12 @@ std::string refusal(std::span<const std::array<double, 3>> points) {
 TEST(DataPoints, RepeatedPointsAreMergedInTheirOrder) {
     const DataPoints data =
         prepare_points(Points{{100, 7, 1}, {103, 5, 2}, {100, 7, 1}, {99, 7, 3}, {103, 5, 2}});
-    EXPECT_EQ(data.origin, (Position{100, 7}));
-    EXPECT_EQ(data.local, (std::vector<Position>{{0, 0}, {3, -2}, {-1, 0}}));
+    EXPECT_EQ(data.origin, (PlanPosition{100, 7}));
+    EXPECT_EQ(data.local, (std::vector<PlanPosition>{{0, 0}, {3, -2}, {-1, 0}}));
     EXPECT_EQ(data.values, (std::vector<double>{1, 2, 3}));
     EXPECT_EQ(data.number_of, (std::vector<std::int32_t>{0, 1, 0, 2, 1}));
-    EXPECT_EQ(data.for_given(std::vector<double>{4, 5, 6}), (std::vector<double>{4, 5, 4, 6, 5}));
+    EXPECT_EQ(data.for_input_points(std::vector<double>{4, 5, 6}),
+              (std::vector<double>{4, 5, 4, 6, 5}));
 }
 
 TEST(DataPoints, Refuses) {
@@ -52,9 +53,9 @@ TEST(DataPoints, MoreThanCanBeNumberedAreRefusedBeforeTheyAreRead) {
 }
 
 TEST(EvenPart, IsAllOrEvenlySpaced) {
-    EXPECT_EQ(even_part(3, 5), (std::vector<std::int32_t>{0, 1, 2}));
-    EXPECT_EQ(even_part(10, 4), (std::vector<std::int32_t>{0, 2, 5, 7}));
-    EXPECT_TRUE(even_part(0, 4).empty());
+    EXPECT_EQ(even_subset(3, 5), (std::vector<std::int32_t>{0, 1, 2}));
+    EXPECT_EQ(even_subset(10, 4), (std::vector<std::int32_t>{0, 2, 5, 7}));
+    EXPECT_TRUE(even_subset(0, 4).empty());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace realmodel::interpolation {
 namespace {
 
-Eigen::MatrixXd terms_at(const DriftFrame& frame, const std::vector<Position>& positions,
+Eigen::MatrixXd terms_at(const DriftFrame& frame, const std::vector<PlanPosition>& positions,
                          Drift drift) {
     const auto count = static_cast<Eigen::Index>(positions.size());
     Eigen::MatrixXd out(count, drift_terms(drift));
@@ -18,7 +18,7 @@ Eigen::MatrixXd terms_at(const DriftFrame& frame, const std::vector<Position>& p
 }
 
 TEST(DriftFrame, TermsAreCountedFromTheMeanAlongTheGreatestSpread) {
-    const std::vector<Position> along_x{{10, 5}, {14, 5}, {12, 6}, {12, 4}};
+    const std::vector<PlanPosition> along_x{{10, 5}, {14, 5}, {12, 6}, {12, 4}};
     const DriftFrame frame(along_x, Drift::kQuadratic);
     const DriftFrame::Terms at_end = frame.terms({14, 5}), above = frame.terms({12, 7});
     const std::array<double, 6> end{1, 1, 0, 1, 0, 0}, up{1, 0, 1, 0, 0, 1};
@@ -54,10 +54,10 @@ TEST(DriftBasis, IsOrthonormalAndSpansTheTerms) {
 }
 
 TEST(DriftBasis, TermsThatThePointsDoNotDistinguishAreLeftOut) {
-    std::vector<Position> line, two{{0, 0}, {3, 4}}, one{{1, 2}};
+    std::vector<PlanPosition> line, two{{0, 0}, {3, 4}}, one{{1, 2}};
     for (int i = 0; i < 9; ++i)
         line.push_back({3.0 * i, 4.0 * i});
-    const auto kept = [](const std::vector<Position>& positions, Drift drift) {
+    const auto kept = [](const std::vector<PlanPosition>& positions, Drift drift) {
         const Eigen::MatrixXd terms = terms_at(DriftFrame(positions, drift), positions, drift);
         DriftBasis basis;
         basis.make(terms, terms);

@@ -13,8 +13,8 @@ namespace realmodel::interpolation {
 namespace {
 
 const std::vector<std::array<double, 3>> kPoints{{1000, 2000, 5}, {1010, 2000, 7}};
-const std::vector<Position> kPositions{{1004, 2003}, {1006, 1990}};
-const std::vector<Position> kSlopes{{0.5, -0.25}, {0, 0.125}};
+const std::vector<PlanPosition> kPositions{{1004, 2003}, {1006, 1990}};
+const std::vector<PlanPosition> kSlopes{{0.5, -0.25}, {0, 0.125}};
 
 TEST(LinearData, SlopesAreDifferencesOverTheBaseline) {
     const DataPoints points = prepare_points(kPoints);
@@ -25,10 +25,10 @@ TEST(LinearData, SlopesAreDifferencesOverTheBaseline) {
     EXPECT_EQ(data.value(1, 4), 3);
     EXPECT_EQ(data.value(2, 4), 3 * 2 * 0.5);
     EXPECT_EQ(data.value(3, 4), 5 * 2 * -0.25);
-    EXPECT_EQ(data.position(5), (Position{6, -10}));
+    EXPECT_EQ(data.position(5), (PlanPosition{6, -10}));
     // Of a kernel that is a product of polynomials they are products of differences.
-    const auto f = [](const Position& p) { return p[0] * p[0] + 10 * p[1]; };
-    const auto kernel = [&](const Position& a, const Position& b) { return f(a) * f(b); };
+    const auto f = [](const PlanPosition& p) { return p[0] * p[0] + 10 * p[1]; };
+    const auto kernel = [&](const PlanPosition& a, const PlanPosition& b) { return f(a) * f(b); };
     const double along_x = 3 * (25 + 30 - (9 + 30)), along_y = 5 * (16 + 40 - (16 + 20));
     EXPECT_EQ(data.with_height({2, 1}, 2, kernel), 14 * along_x);
     EXPECT_EQ(data.between(2, 3, kernel), along_x * along_y);
@@ -62,7 +62,7 @@ TEST(LinearData, WhatMakesNoSenseIsRefused) {
     EXPECT_THROW(make({kPositions, {}, 1, 0}), InputError);
     EXPECT_THROW(make({kPositions, kSlopes, 0, 0}), InputError);
     EXPECT_THROW(make({kPositions, kSlopes, 1, -1}), InputError);
-    const std::vector<Position> wrong{{0, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
+    const std::vector<PlanPosition> wrong{{0, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
     try {
         make({kPositions, wrong, 1, 0});
         FAIL();

@@ -9,12 +9,12 @@ namespace realmodel::simulation {
 namespace {
 
 /// The side of the unit cube at y = 0.
-const ElementFace kSide = side_face({0, 0}, {1, 0}, {0, 0}, {1, 1});
+const ElementFace kSide = lateral_face({0, 0}, {1, 0}, {0, 0}, {1, 1});
 
 TEST(FaceQualityTest, SidesOfColumns) {
     EXPECT_EQ(kSide.area, (Vec3{0, -1, 0}));
     EXPECT_EQ(kSide.center, (Vec3{0.5, 0, 0.5}));
-    const ElementFace triangle = side_face({0, 0}, {3, 0}, {0, 0}, {0, 3});
+    const ElementFace triangle = lateral_face({0, 0}, {3, 0}, {0, 0}, {0, 3});
     EXPECT_EQ(triangle.area, (Vec3{0, -4.5, 0}));
     EXPECT_EQ(triangle.center, (Vec3{2, 0, 1}));
 }

@@ -15,22 +15,22 @@ namespace {
 TEST(TracesTest, OfATowerTheOutline) {
     const Traces traces = traces_of(Tower({0, 5, 9}).view, nullptr);
     EXPECT_EQ(traces.points, (std::vector<PlanPoint>{{0, 0}, {0, 6}, {10, 0}, {10, 6}}));
-    using Segment = Traces::Segment;
-    EXPECT_EQ(traces.segments, (std::vector<Segment>{{{0, 1}, Traces::kOfTop},
-                                                     {{0, 1}, -1},
-                                                     {{0, 2}, Traces::kOfTop},
-                                                     {{0, 2}, -1},
-                                                     {{1, 3}, Traces::kOfTop},
-                                                     {{1, 3}, -1},
-                                                     {{2, 3}, Traces::kOfTop},
-                                                     {{2, 3}, -1}}));
+    using TraceSegment = Traces::TraceSegment;
+    EXPECT_EQ(traces.segments, (std::vector<TraceSegment>{{{0, 1}, Traces::kOfTop},
+                                                          {{0, 1}, -1},
+                                                          {{0, 2}, Traces::kOfTop},
+                                                          {{0, 2}, -1},
+                                                          {{1, 3}, Traces::kOfTop},
+                                                          {{1, 3}, -1},
+                                                          {{2, 3}, Traces::kOfTop},
+                                                          {{2, 3}, -1}}));
 }
 
 TEST(TracesTest, ABlockEndsWhereItsTopMeetsItsBottom) {
     const Model model({{0, 0}, {4, 4}, {2, 6}});
     const Traces traces = traces_of(model.view, nullptr);
     double ends = 0;
-    for (const Traces::Segment& s : traces.segments) {
+    for (const Traces::TraceSegment& s : traces.segments) {
         if (s.block < 0) continue;
         const PlanPoint &a = traces.points[static_cast<std::size_t>(s.ends[0])],
                         &b = traces.points[static_cast<std::size_t>(s.ends[1])];

@@ -574,10 +574,10 @@ TEST(Stack, WhatIsLocalFollowsFromTheTrianglesNearIt) {
         expect_valid(complex, false);
         return complex;
     };
-    const CellComplex of_all = built(whole, true), of_part = built(part, true);
+    const CellComplex of_all = built(whole, true), of_piece = built(part, true);
     const Faces faces = faces_of_cells_in(of_all, 3, 5);
     EXPECT_GT(faces.size(), 500U);
-    EXPECT_EQ(faces, faces_of_cells_in(of_part, 3, 5));
+    EXPECT_EQ(faces, faces_of_cells_in(of_piece, 3, 5));
     const CellComplex usual = built(whole, false);
     EXPECT_EQ(usual.cell_block.size(), of_all.cell_block.size());
     EXPECT_LT(usual.face_vertices.size(), of_all.face_vertices.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "faulted_cubes.hpp"
 #include "realmodel/base/errors.hpp"
-#include "structures/structure_surface.hpp"
+#include "structures/structure_cutter.hpp"
 
 namespace realmodel::structures {
 namespace {
@@ -18,11 +18,11 @@ strata::OwnedSurface across(double from, double to) {
     return s;
 }
 
-StructureSurface with_branch(const strata::OwnedSurface& branch) {
+StructureCutter with_branch(const strata::OwnedSurface& branch) {
     const std::vector<strata::OwnedSurface> surfaces{FaultedCubes::upright(0.5), branch};
     auto structures = FaultedCubes::structures_of(surfaces, 2);
     structures[1].ends_at = {0};
-    return structure_surface(structures, FaultedCubes::around());
+    return structure_cutter(structures, FaultedCubes::around());
 }
 
 TEST(BranchSides, AreTheAreasOnBothSidesOfTheOther) {
@@ -32,15 +32,15 @@ TEST(BranchSides, AreTheAreasOnBothSidesOfTheOther) {
 }
 
 TEST(BranchSides, TheLargerPartIsKept) {
-    const StructureSurface left = with_branch(across(-2, 1)), right = with_branch(across(0, 3));
-    EXPECT_EQ(kept_side(left, 1, 0), -kept_side(right, 1, 0));
+    const StructureCutter left = with_branch(across(-2, 1)), right = with_branch(across(0, 3));
+    EXPECT_EQ(larger_side(left, 1, 0), -larger_side(right, 1, 0));
     const BranchSides sides = branch_sides(left, 1, 0);
-    EXPECT_EQ(kept_side(left, 1, 0), sides.above > sides.below ? 1 : -1);
+    EXPECT_EQ(larger_side(left, 1, 0), sides.above > sides.below ? 1 : -1);
 }
 
 TEST(BranchSides, ABranchThatDoesNotMeetTheOtherIsRefused) {
     try {
-        kept_side(with_branch(across(2, 3)), 1, 0);
+        larger_side(with_branch(across(2, 3)), 1, 0);
         FAIL();
     } catch (const InputError& e) {
         EXPECT_EQ(e.kind, "does_not_meet");
@@ -51,7 +51,7 @@ TEST(BranchSides, ABranchThatDoesNotMeetTheOtherIsRefused) {
 TEST(BranchSides, ABranchThatIsCutInHalvesIsRefused) {
     for (const double beyond : {0.0, 1e-12}) {
         try {
-            kept_side(with_branch(across(-1.5, 2.5 + beyond)), 1, 0);
+            larger_side(with_branch(across(-1.5, 2.5 + beyond)), 1, 0);
             FAIL();
         } catch (const InputError& e) {
             EXPECT_EQ(e.kind, "equal_halves");

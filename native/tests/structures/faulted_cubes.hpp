@@ -55,11 +55,11 @@ struct FaultedCubes {
     ComplexView model = cubes.view();
     std::vector<strata::OwnedSurface> surfaces;
     std::vector<Structure> structures;
-    StructureSurface surface = structure_surface(structures, around());
-    SurfaceOverlay overlay{model, surface.surface, {1, nullptr}};
+    StructureCutter cutter = structure_cutter(structures, around());
+    CutterOverlay overlay{model, cutter.combined, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
-    std::vector<cutting::NearestSide> nearest{surface.single.begin(), surface.single.end()};
-    StructureSides sides{overlay, winding, surface, structures, nearest, nullptr};
+    std::vector<cutting::NearestSide> nearest{cutter.single.begin(), cutter.single.end()};
+    StructureSides sides{overlay, winding, cutter, structures, nearest, nullptr};
 };
 
 }  // namespace realmodel::structures

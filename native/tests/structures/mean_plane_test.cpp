@@ -4,18 +4,18 @@
 #include <cmath>
 #include <vector>
 
-#include "structures/structure_surface.hpp"
+#include "structures/structure_cutter.hpp"
 
 namespace realmodel::structures {
 namespace {
 
-using cutting::CutterSurface;
+using cutting::Cutter;
 using cutting::NodeId;
 using cutting::Position;
 using Border = std::vector<std::array<NodeId, 2>>;
 
 /// The unit square in the plane z = 0, one corner raised.
-CutterSurface square(double raised) {
+Cutter square(double raised) {
     return {{{0, 0, 0}, {1, 0, 0}, {1, 1, raised}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, false};
 }
 const Border kAround{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
@@ -74,7 +74,7 @@ TEST(MeanPlane, ABorderThatCrossesItselfHasNoContinuation) {
 TEST(MeanPlane, ABorderThatGapesHasNoContinuation) {
     const Border open{{0, 1}, {1, 2}, {2, 3}};
     EXPECT_FALSE(continued_in_mean_plane(square(0), open, std::vector<double>{10}));
-    CutterSurface passed = square(0);  // a side through a vertex of another part
+    Cutter passed = square(0);  // a side through a vertex of another part
     passed.vertices.insert(passed.vertices.end(), {{0.5, 0, 0}, {0.4, -1, 0}, {0.6, -1, 0}});
     passed.triangles.push_back({5, 6, 4});
     Border through = kAround;

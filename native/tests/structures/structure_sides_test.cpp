@@ -9,17 +9,18 @@ namespace {
 
 TEST(StructureSides, FacesAndTheirRegionsAreOnTheSideOfTheirPlace) {
     FaultedCubes cut({FaultedCubes::upright(0.5)}, 1);
-    EXPECT_EQ(cut.sides.parts(), 2U);
+    EXPECT_EQ(cut.sides.compartments(), 2U);
     std::size_t count = 0;
     cut.each_region(false, [&](std::size_t r) {
         ++count;
-        EXPECT_EQ(cut.sides.sides(cut.sides.part_of(r)), Sides{cut.side(cut.inner(r)[0] > 0.5)});
+        EXPECT_EQ(cut.sides.sides(cut.sides.compartment_of(r)),
+                  Sides{cut.side(cut.inner(r)[0] > 0.5)});
     });
     EXPECT_GT(count, 0U);
     for (std::size_t f = 0; f < cut.model.face_count(); ++f) {
         if (cut.overlay.is_active(f)) continue;
         const std::int8_t side = cut.side(cut.model.vertex(cut.model.face(f)[0])[0] > 0.5);
-        EXPECT_EQ(cut.sides.sides(cut.sides.part_of(cut.overlay.size() + f)), Sides{side});
+        EXPECT_EQ(cut.sides.sides(cut.sides.compartment_of(cut.overlay.size() + f)), Sides{side});
     }
 }
 
@@ -28,11 +29,11 @@ TEST(StructureSides, ARegionOfAFaultLiesBetweenItsTwoSides) {
     std::size_t count = 0;
     cut.each_region(true, [&](std::size_t r) {
         ++count;
-        EXPECT_EQ(cut.sides.sides(cut.sides.part_at(r, 0)), Sides{-1});
-        EXPECT_EQ(cut.sides.sides(cut.sides.part_at(r, 1)), Sides{1});
+        EXPECT_EQ(cut.sides.sides(cut.sides.compartment_at(r, 0)), Sides{-1});
+        EXPECT_EQ(cut.sides.sides(cut.sides.compartment_at(r, 1)), Sides{1});
         ASSERT_EQ(cut.sides.structures_at(r).size(), 1U);
         EXPECT_EQ(cut.sides.structures_at(r)[0].structure, 0);
-        EXPECT_TRUE(cut.sides.structures_at(r)[0].is_own);
+        EXPECT_TRUE(cut.sides.structures_at(r)[0].is_structure);
     });
     EXPECT_GT(count, 0U);
 }
@@ -44,11 +45,11 @@ TEST(StructureSides, EachStructureHasASideOfItsOwn) {
     cut.each_region(false, [&](std::size_t r) {
         const Position p = cut.inner(r);
         const bool inside = p[0] < 0.25 && p[2] > 1.5;
-        EXPECT_EQ(cut.sides.sides(cut.sides.part_of(r)),
+        EXPECT_EQ(cut.sides.sides(cut.sides.compartment_of(r)),
                   (Sides{cut.side(p[0] > 0.5), cut.side(!inside)}));
     });
     // those beside the fault outside of the body, and the part within
-    EXPECT_EQ(cut.sides.parts(), 3U);
+    EXPECT_EQ(cut.sides.compartments(), 3U);
 }
 
 TEST(StructureSides, CellsAwayFromAllStructuresAreNotNear) {

@@ -57,18 +57,18 @@ Structure body(const OwnedSurface& s) {
     return {view(s), true, {}, false};
 }
 
-std::vector<Sides> sides_of(const std::vector<Part>& parts) {
+std::vector<Sides> sides_of(const std::vector<Compartment>& parts) {
     std::vector<Sides> sides;
-    for (const Part& part : parts)
+    for (const Compartment& part : parts)
         sides.push_back(part.sides);
     return sides;
 }
 
-std::size_t faces_on(const CellComplex& c, std::int32_t surface) {
-    return static_cast<std::size_t>(std::ranges::count(c.face_surface, surface));
+std::size_t faces_on(const CellComplex& c, std::int32_t cutter) {
+    return static_cast<std::size_t>(std::ranges::count(c.face_surface, cutter));
 }
 
-Joined joined(std::span<const PartModel> models, std::span<const Structure> structures,
+Joined joined(std::span<const CompartmentModel> models, std::span<const Structure> structures,
               std::span<const std::uint8_t> acts) {
     Joined one = join_models(models, structures, acts, {1, nullptr});
     strata::expect_valid(one.complex, false);
@@ -95,7 +95,7 @@ const std::array<std::array<double, 3>, 2> kRock{{{0, 0, 0}, {4, 4, 3}}};
 
 TEST(PartsOf, AFaultLeavesTwoBesideIt) {
     const OwnedSurface upright = sheet(1, 0);
-    const auto parts = parts_of(kRock, std::array{fault(upright)}, {1, nullptr});
+    const auto parts = compartments_of(kRock, std::array{fault(upright)}, {1, nullptr});
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].sides, Sides{-1});
     // the box of either part ends at the fault
@@ -111,7 +111,7 @@ TEST(PartsOf, FaultsThatCrossLeaveFour) {
         other.vertex(x, 2 + z / 8, z);
     other.triangle(0, 1, 2);
     other.triangle(0, 2, 3);
-    const auto parts = parts_of(kRock, std::array{fault(one), fault(other)}, {1, nullptr});
+    const auto parts = compartments_of(kRock, std::array{fault(one), fault(other)}, {1, nullptr});
     EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}));
 }
 
@@ -125,10 +125,12 @@ TEST(PartsOf, ABranchEndsAtTheOtherFault) {
     branch.triangle(0, 2, 3);
     Structure ends = fault(branch);
     ends.ends_at = {0};
-    const auto parts = parts_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
+    const auto parts = compartments_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
     ASSERT_EQ(parts.size(), 3U);
-    EXPECT_EQ(std::ranges::count_if(parts, [](const Part& p) { return p.sides[1] == 0; }), 1);
-    const auto whole = std::ranges::find_if(parts, [](const Part& p) { return p.sides[1] == 0; });
+    EXPECT_EQ(std::ranges::count_if(parts, [](const Compartment& p) { return p.sides[1] == 0; }),
+              1);
+    const auto whole =
+        std::ranges::find_if(parts, [](const Compartment& p) { return p.sides[1] == 0; });
     EXPECT_EQ(whole->low[0], 0);  // what the branch does not reach is on the other side
 }
 
@@ -137,7 +139,7 @@ TEST(PartsOf, OneThatMissesTheFaultThatItIsToEndAtIsRefused) {
     Structure ends = fault(far);
     ends.ends_at = {0};
     EXPECT_EQ(refusal([&] {
-                  parts_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
+                  compartments_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
               }),
               "does_not_meet");
 }
@@ -155,7 +157,7 @@ TEST(PartsOf, ABranchMayMeetItsFaultAwayFromTheRock) {
     }
     Structure ends = fault(branch);
     ends.ends_at = {0};
-    const auto parts = parts_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
+    const auto parts = compartments_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
     const std::int8_t side =
         sides_of_points(std::array{fault(trunk)}, std::array{0.0, 0.0, 0.0}, {1, nullptr})[0];
     EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{side, -1}, {side, 1}}));
@@ -163,7 +165,7 @@ TEST(PartsOf, ABranchMayMeetItsFaultAwayFromTheRock) {
 
 TEST(PartsOf, ABodyHasAnInside) {
     const OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
-    const auto parts = parts_of(kRock, std::array{body(chest)}, {1, nullptr});
+    const auto parts = compartments_of(kRock, std::array{body(chest)}, {1, nullptr});
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].sides, Sides{-1});
     EXPECT_EQ(parts[0].low, (std::array<double, 3>{1, 1, 1}));
@@ -174,7 +176,7 @@ TEST(PartsOf, ABodyThatIsNotClosedIsRefusedWithThePlace) {
     OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
     chest.triangles.resize(chest.triangles.size() - 3);
     try {
-        parts_of(kRock, std::array{body(chest)}, {1, nullptr});
+        compartments_of(kRock, std::array{body(chest)}, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "not_closed");
@@ -191,9 +193,9 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
     const std::int8_t east_side =
         sides_of_points(std::span(structures).first(1), std::array{3.0, 2.0, 1.0}, {1, nullptr})[0];
     const auto west_side = static_cast<std::int8_t>(-east_side);
-    const Joined j = joined(
-        std::array<PartModel, 2>{{{with(west, 1), {west_side}}, {with(east, 1), {east_side}}}},
-        structures, kAllAct);
+    const Joined j = joined(std::array<CompartmentModel, 2>{{{with(west, 1), {west_side}},
+                                                             {with(east, 1), {east_side}}}},
+                            structures, kAllAct);
     EXPECT_DOUBLE_EQ(j.complex.volumes[1], 16);
     EXPECT_DOUBLE_EQ(j.complex.volumes[2], 16);
     EXPECT_GT(faces_on(j.complex, 3), 0U);
@@ -211,7 +213,7 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
     for (std::size_t f = 0; f < j.complex.face_cells.size(); ++f) {  // none leads through the fault
         const auto [a, b] = j.complex.face_cells[f];
         if (b >= 0 && j.complex.face_surface[f] != 3) {
-            EXPECT_EQ(j.cell_part[index(a)], j.cell_part[index(b)]);
+            EXPECT_EQ(j.cell_compartment[index(a)], j.cell_compartment[index(b)]);
         }
     }
 }
@@ -226,7 +228,7 @@ TEST(JoinModels, StructuresMayBeContinuedBefore) {
         return sides_of_points(std::span(structures).subspan(s, 1), std::array{x, 2.0, 1.0},
                                {1, nullptr})[0];
     };
-    std::vector<PartModel> models;
+    std::vector<CompartmentModel> models;
     for (const double x : {0.5, 2.0, 3.8})
         models.push_back({with(x > 3 ? east : west, 2), {side(0, x), side(1, x)}});
     const Joined here = joined(models, structures, kAllAct);
@@ -238,7 +240,7 @@ TEST(JoinModels, StructuresMayBeContinuedBefore) {
     EXPECT_TRUE(std::ranges::equal(here.complex.vertices, there.complex.vertices));
     EXPECT_TRUE(std::ranges::equal(here.complex.face_vertices, there.complex.face_vertices));
     EXPECT_TRUE(std::ranges::equal(here.complex.face_cells, there.complex.face_cells));
-    EXPECT_EQ(here.cell_part, there.cell_part);
+    EXPECT_EQ(here.cell_compartment, there.cell_compartment);
 }
 
 TEST(ContinuedStructures, ABranchHasTheSideOnWhichItRemains) {
@@ -254,18 +256,19 @@ TEST(ContinuedStructures, ABranchHasTheSideOnWhichItRemains) {
     ends.ends_at = {0};
     const std::array structures{fault(main), ends};
     const auto continued = continued_structures(structures, {{{0, 0, 0}, {4, 4, 2}}});
-    EXPECT_TRUE(continued[0].kept_sides.empty());
+    EXPECT_TRUE(continued[0].end_sides.empty());
     const std::int8_t west =
         sides_of_points(std::span(structures).first(1), std::array{0.5, 2.0, 1.0}, {1, nullptr})[0];
-    EXPECT_EQ(continued[1].kept_sides, (std::vector<std::int8_t>{west}));
+    EXPECT_EQ(continued[1].end_sides, (std::vector<std::int8_t>{west}));
 }
 
 TEST(JoinModels, WhatLiesBetweenTwoCellsOnAFaultIsNotDividedFromItsMiddle) {
     const CellComplex west = layers({0, 1, 2}, 1), east = layers({0.5, 1.5, 2.5}, 1);
     const OwnedSurface inclined = sheet(1, 0.25);
     const std::array structures{fault(inclined)};
-    const Joined j = joined(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
-                            structures, kAllAct);
+    const Joined j =
+        joined(std::array<CompartmentModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
+               structures, kAllAct);
     // every corner of such a face is on an edge of one of the two models
     const ComplexView all = j.complex;
     std::set<std::int32_t> on_fault, elsewhere;  // vertices
@@ -284,8 +287,9 @@ TEST(JoinModels, AReverseFaultHasASurfaceTwiceAtOnePlace) {
     const std::int8_t above =
         sides_of_points(std::span(structures).first(1), std::array{0.0, 2.0, 2.0}, {1, nullptr})[0];
     EXPECT_EQ(above, 1);
-    const Joined j = joined(std::array<PartModel, 2>{{{with(high, 1), {1}}, {with(low, 1), {-1}}}},
-                            structures, kAllAct);
+    const Joined j =
+        joined(std::array<CompartmentModel, 2>{{{with(high, 1), {1}}, {with(low, 1), {-1}}}},
+               structures, kAllAct);
     // above the fault, x < 0.5 + z, between 1.5 and 2.5; below it, x > 0.5 + z, between 0 and 1
     EXPECT_NEAR(j.complex.volumes[1], 4 * (2.5 + 3), 1e-12);
 }
@@ -295,8 +299,9 @@ TEST(JoinModels, AFaultLeavesRockThatIsYoungerAlone) {
     const OwnedSurface inclined = sheet(1.3, 0.3);
     const std::array structures{fault(inclined)};
     std::vector<std::uint8_t> acts{1, 1, 0, 0};  // on the two older blocks
-    const Joined j = joined(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
-                            structures, acts);
+    const Joined j =
+        joined(std::array<CompartmentModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
+               structures, acts);
     const ComplexView all = j.complex;
     for (std::size_t f = 0; f < all.face_count(); ++f) {
         if (all.face_surface[f] != 3) continue;
@@ -313,8 +318,9 @@ TEST(JoinModels, AFaultThatEndsInRockThatDiffersIsRefusedWithThePlace) {
         Structure ends = fault(half);
         ends.dies_out = dies_out;
         try {
-            join_models(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
-                        std::array{ends}, kAllAct, {1, nullptr});
+            join_models(
+                std::array<CompartmentModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
+                std::array{ends}, kAllAct, {1, nullptr});
             FAIL();
         } catch (const InputError& error) {
             EXPECT_EQ(error.kind, "ends_inside");
@@ -328,7 +334,7 @@ TEST(JoinModels, AFaultThatEndsInTheRockMustSayThatItDiesOut) {
     const CellComplex rock = layers({0, 1, 3});
     const OwnedSurface half = sheet(1.3, 0.3, -9, 2);
     Structure ends = fault(half);
-    const std::array<PartModel, 2> models{{{with(rock, 1), {1}}, {with(rock, 1), {-1}}}};
+    const std::array<CompartmentModel, 2> models{{{with(rock, 1), {1}}, {with(rock, 1), {-1}}}};
     EXPECT_EQ(refusal([&] {
                   join_models(models, std::array{ends}, kAllAct, {1, nullptr});
               }),
@@ -354,7 +360,7 @@ TEST(PartsOf, AFaultThatIsContinuedAcrossAnotherIsCrossedAllThrough) {
     small.triangle(0, 2, 3);
     Structure dies = fault(small);
     dies.dies_out = true;
-    EXPECT_EQ(parts_of(kRock, std::array{fault(slanted), dies}, {1, nullptr}).size(), 4U);
+    EXPECT_EQ(compartments_of(kRock, std::array{fault(slanted), dies}, {1, nullptr}).size(), 4U);
 }
 
 TEST(JoinModels, AFaultThatDiesOutIsASlit) {
@@ -372,9 +378,9 @@ TEST(JoinModels, AFaultThatDiesOutIsASlit) {
     const OwnedSurface half = sheet(2, 0, -9, 2);
     Structure dies = fault(half);
     dies.dies_out = true;
-    const Joined j =
-        joined(std::array<PartModel, 2>{{{with(models[0], 1), {1}}, {with(models[1], 1), {-1}}}},
-               std::array{dies}, kAllAct);
+    const Joined j = joined(
+        std::array<CompartmentModel, 2>{{{with(models[0], 1), {1}}, {with(models[1], 1), {-1}}}},
+        std::array{dies}, kAllAct);
     const ComplexView all = j.complex;
     EXPECT_GT(faces_on(j.complex, 2), 0U);
     for (std::size_t f = 0; f < all.face_count(); ++f) {
@@ -391,7 +397,7 @@ TEST(JoinModels, ABodyTakesThePlaceOfRock) {
         block = 3;
     const OwnedSurface chest = box({1.25, 1.25, 0.5}, {2.75, 2.75, 1.5});
     const Joined j =
-        joined(std::array<PartModel, 2>{{{with(rock, 1), {1}}, {with(filled, 2), {-1}}}},
+        joined(std::array<CompartmentModel, 2>{{{with(rock, 1), {1}}, {with(filled, 2), {-1}}}},
                std::array{body(chest)}, kAllAct);
     EXPECT_NEAR(j.complex.volumes[3], 2.25, 1e-12);
     EXPECT_NEAR(j.complex.volumes[1], 16 - 1.125, 1e-12);
@@ -401,8 +407,8 @@ TEST(JoinModels, ABodyTakesThePlaceOfRock) {
 TEST(JoinModels, AVoidBodyLeavesNothing) {
     const CellComplex rock = layers({0, 1, 2});
     const OwnedSurface tunnel = box({1.25, -1, 0.5}, {2.75, 5, 1.5});
-    const Joined j =
-        joined(std::array<PartModel, 1>{{{with(rock, 1), {1}}}}, std::array{body(tunnel)}, kAllAct);
+    const Joined j = joined(std::array<CompartmentModel, 1>{{{with(rock, 1), {1}}}},
+                            std::array{body(tunnel)}, kAllAct);
     EXPECT_NEAR(j.complex.volumes[1], 16 - 3, 1e-12);
     EXPECT_NEAR(j.complex.volumes[2], 16 - 3, 1e-12);
     const ComplexView all = j.complex;
@@ -591,7 +597,7 @@ TEST(ContinuationOf, PartsOfAFaultThatDiesOutMayNotLieBesideEachOther) {
     Structure dying = fault(two);
     dying.dies_out = true;
     try {
-        parts_of({{{0, 0, 0}, {4, 4, 4}}}, std::array{dying}, {1, nullptr});
+        compartments_of({{{0, 0, 0}, {4, 4, 4}}}, std::array{dying}, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "folded");

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cutting/surface_parts.hpp"
+#include "cutting/cell_parts.hpp"
 #include "faulted_cubes.hpp"
 #include "structures/wanted_parts.hpp"
 
@@ -23,15 +23,15 @@ struct Made {
 /// @param act  whether the structures divide the cubes
 Made made(const FaultedCubes& of, bool leaves_undivided, std::uint8_t act) {
     const std::vector<std::int32_t> groups =
-        leaves_undivided ? of.surface.structure : std::vector<std::int32_t>{};
-    SurfaceOverlay overlay(of.model, of.surface.surface, {1, nullptr}, 0, groups);
+        leaves_undivided ? of.cutter.structure : std::vector<std::int32_t>{};
+    CutterOverlay overlay(of.model, of.cutter.combined, {1, nullptr}, 0, groups);
     const CutterWinding winding(overlay, nullptr);
-    const StructureSides sides(overlay, winding, of.surface, of.structures, of.nearest, nullptr);
+    const StructureSides sides(overlay, winding, of.cutter, of.structures, of.nearest, nullptr);
     const std::vector<std::int32_t> model_of_cell(of.model.cell_count(), 0);
     const std::vector<Sides> model_sides{Sides(of.structures.size(), 0)};
     const std::vector<std::uint8_t> acts(of.structures.size() * of.model.blocks, act);
     const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
-    const cutting::SurfaceParts parts(overlay, winding, wanted, nullptr);
+    const cutting::CellParts parts(overlay, winding, wanted, nullptr);
     Made found;
     for (std::size_t component = 0; component < overlay.undivided().components(); ++component)
         found.undivided += overlay.undivided().triangles(component).size();

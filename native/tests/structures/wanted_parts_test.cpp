@@ -32,8 +32,8 @@ TEST(WantedParts, OfACellItIsWhatLiesInThePartOfItsModel) {
     });
     cut.each_region(true, [&](std::size_t r) {
         const std::int32_t cell = cut.inner(r)[2] < 1 ? 0 : 1;
-        EXPECT_EQ(cut.wanted.of_cap(r, 0, cell), cell == 0 ? kAbove : kOn);
-        EXPECT_EQ(cut.wanted.of_cap(r, 1, cell), cell == 0 ? kOn : kAbove);
+        EXPECT_EQ(cut.wanted.of_cut_face(r, 0, cell), cell == 0 ? kAbove : kOn);
+        EXPECT_EQ(cut.wanted.of_cut_face(r, 1, cell), cell == 0 ? kOn : kAbove);
         EXPECT_TRUE(cut.wanted.separates(r));
     });
 }
@@ -44,7 +44,7 @@ TEST(WantedParts, ACapIsOnTheStructureThatActs) {
         const std::int32_t cell = cut.inner(r)[2] < 1 ? 0 : 1;
         EXPECT_TRUE(cut.wanted.separates(r));
         EXPECT_FALSE(cut.wanted.ends_at_outer_face(r, cell));
-        EXPECT_EQ(WantedParts::surface_of_cap(cut.wanted.cap_face(r, cell, cell)),
+        EXPECT_EQ(WantedParts::surface_of_cut_face(cut.wanted.cut_face_number(r, cell, cell)),
                   cut.model.surfaces);
     });
 }
@@ -56,7 +56,8 @@ TEST(WantedParts, WhereNothingActsBothSidesAreOneCell) {
         ++count;
         EXPECT_FALSE(cut.wanted.separates(r));
         const std::int32_t cell = cut.inner(r)[2] < 1 ? 0 : 1;
-        EXPECT_EQ(WantedParts::surface_of_cap(cut.wanted.cap_face(r, cell, cell)), kWall);
+        EXPECT_EQ(WantedParts::surface_of_cut_face(cut.wanted.cut_face_number(r, cell, cell)),
+                  kWall);
     });
     EXPECT_GT(count, 0U);
 }

@@ -54,7 +54,7 @@ private:
     double share_ = 0.0;
     std::atomic<double> passed_on_{0.0};  ///< the fraction that the whole knows of
     std::atomic<double> fraction_{0.0};
-    std::atomic<double> part_end_{0.0};
+    std::atomic<double> phase_end_{0.0};
     std::atomic<bool> cancelled_{false};
     mutable std::mutex text_mutex_;
     std::array<char, 128> text_{};  // fixed, so that report() cannot fail for want of memory

@@ -23,7 +23,7 @@ struct History {
 };
 
 /// A face of a complex as one of its two cells sees it.
-struct Polygon {
+struct BedPolygon {
     std::int32_t face;
     bool reversed;         ///< seen from its second cell: the corners go the other way round
     std::int32_t history;  ///< of the cell
@@ -50,7 +50,7 @@ struct Bedding {
 /// @throws InputError kind bad_index (items: the polygon), where numbers are out of range
 /// @throws Cancelled
 Bedding bedding_of(const ComplexView& complex, std::span<const History> histories,
-                   std::span<const Polygon> polygons,
+                   std::span<const BedPolygon> polygons,
                    std::span<const std::int32_t> histories_of_corners,
                    const Execution& execution = {});
 

@@ -28,8 +28,8 @@ struct Section {
     std::vector<std::array<std::int32_t, 2>> cells;
 };
 
-/// Both halves of a model, and what lies between them. Their caps are the section's polygons, the
-/// half above has them turned over. Cells that fall apart become several.
+/// Both halves of a model, and what lies between them. Their cut faces are the section's polygons,
+/// the half above has them turned over. Cells that fall apart become several.
 struct Cut {
     CellComplex below, above;
     /// The model's cell that each cell of a half is, or is part of.

@@ -21,13 +21,13 @@ struct Slits {
     std::span<const double> contacts, dips, bounds;
     std::span<const double> dip_slopes;  ///< by how much they rise there, three for each
     std::span<const std::array<double, 3>> normals;  ///< of the faults, in the mean, of length 1
-    std::size_t sides = 1;                           ///< combinations of sides of them
+    std::size_t combinations = 1;                    ///< combinations of sides of them
     /// Of the lattice's nodes, on one combination of sides after another, each continued as if the
     /// faults were not there.
     std::span<const double> nodes;
     /// Of these nodes the first one that is the same place: beyond tips.
     std::span<const std::int64_t> same;
-    std::span<const std::int32_t> bound_sides;  ///< on which combination of sides a bound is
+    std::span<const std::int32_t> bound_combinations;  ///< on which combination of sides a bound is
 };
 
 /// What is known of a field f whose level sets are surfaces, numbered from the oldest, which has

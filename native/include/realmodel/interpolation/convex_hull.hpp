@@ -14,18 +14,18 @@ namespace realmodel::interpolation {
 /// the greatest (Andrew 1979). Exact.
 class ConvexHull {
 public:
-    using Position = std::array<double, 2>;
+    using PlanPosition = std::array<double, 2>;
 
-    explicit ConvexHull(std::vector<Position> positions);
+    explicit ConvexHull(std::vector<PlanPosition> positions);
 
     /// On the border is inside. A hull of no positions contains none.
-    bool contains(const Position& position) const;
+    bool contains(const PlanPosition& position) const;
 
     /// Each once, the lower chain first; none in the middle of an edge.
-    std::vector<Position> corners() const;
+    std::vector<PlanPosition> corners() const;
 
 private:
-    std::vector<Position> lower_, upper_;
+    std::vector<PlanPosition> lower_, upper_;
 };
 
 /// The numbers of the positions on the border of the convex hull of some, no two of which are

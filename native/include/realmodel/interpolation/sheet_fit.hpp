@@ -23,8 +23,8 @@ struct FittedSheets {
     std::size_t points = 0;              ///< so many counted
 };
 
-/// The most points of all sheets together that fit_sheets takes; of more it takes an even part, as
-/// the time grows with their cube.
+/// The most points of all sheets together that fit_sheets takes; of more it takes an even subset,
+/// as the time grows with their cube.
 inline constexpr std::size_t kMostPointsOfSheets = 150;
 
 /// The variogram of the field that sheets share, the variance of the thicknesses between

@@ -16,7 +16,7 @@ struct ThinPlateOptions {
     /// are met exactly.
     double smoothing = 0;
     Neighborhood neighborhood;  ///< a spline of all points is solved once
-    /// The unit of distances; 0: the points' mean spacing. A part of the points gives heights of
+    /// The unit of distances; 0: the points' mean spacing. A subset of the points gives heights of
     /// the whole with that of the whole.
     double spacing = 0;
     Dips dips{};

@@ -24,8 +24,8 @@ struct ExperimentalVariogram {
 
 /// The experimental semivariogram of points (x, y, z) out to half the diagonal of their extent.
 /// Classes are narrow where points are near each other and widen with distance. Of many points a
-/// fixed part is taken: up to 2000 for far pairs, and of up to 20,000 all near pairs. Distances are
-/// measured with the anisotropy, in units of the longest range.
+/// fixed subset is taken: up to 2000 for far pairs, and of up to 20,000 all near pairs. Distances
+/// are measured with the anisotropy, in units of the longest range.
 ExperimentalVariogram experimental_variogram(std::span<const std::array<double, 3>> points,
                                              const Anisotropy& anisotropy);
 
@@ -72,7 +72,7 @@ struct FittedVariogram {
 /// the errors.
 ///
 /// With a drift all this is done with the residuals of the polynomial that fits best, or that fits
-/// a fixed part of more than 20,000 points best.
+/// a fixed subset of more than 20,000 points best.
 ///
 /// Points that are apart may lie in a file: of many only those that are compared, and their
 /// nearest, are copied.
@@ -103,7 +103,7 @@ struct LikelyVariogram {
 
 /// Of all models, ranges and nuggets on a grid (Bayesian kriging: Kitanidis 1986, "Parameter
 /// uncertainty in estimation of spatial functions", Water Resources Research 22; Handcock and Stein
-/// 1993). Of many points a fixed, even part counts.
+/// 1993). Of many points a fixed, even subset counts.
 /// @return none where the data are too few
 /// @throws InputError as fit_variogram; Cancelled
 std::vector<LikelyVariogram> likely_variograms(std::span<const std::array<double, 3>> points,
@@ -120,7 +120,7 @@ struct SurfaceData {
 /// Variograms of surfaces of which heights vary alike, as conformable ones do, but which are not
 /// estimated together: their model, range, anisotropy and share of nugget are those with which the
 /// data of all are most likely, each surface taken by itself; the sill is each surface's own, where
-/// its data show one. Of many points of a surface an even part counts.
+/// its data show one. Of many points of a surface an even subset counts.
 /// @return none where there are none, or the data are too few
 /// @throws InputError as fit_variogram; Cancelled
 std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,

@@ -26,10 +26,11 @@ struct CellDescriptions {
 };
 
 /// @param begin  where the sides of each of these cells begin, and the last one's end
-/// @param sides  2 face, or 2 face + 1 where the cell sees the face turned (strata::cell_sides)
+/// @param cell_faces  2 face, or 2 face + 1 where the cell sees the face turned
+///                    (strata::faces_of_cell)
 /// @throws InputError kind bad_index
 CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uint32_t> begin,
-                                std::span<const std::uint32_t> sides);
+                                std::span<const std::uint32_t> cell_faces);
 
 /// The faces between two cells, by the lower of their cells and then the higher.
 /// @param cells  how many there are

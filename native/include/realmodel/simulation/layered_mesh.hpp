@@ -8,7 +8,7 @@
 /// - segment: a line between two anchors, in the place of traces. A step has other heights on its
 ///   other side; along other segments blocks end without thickness.
 /// - node: a vertex of the planar mesh. Segments are chains of its edges.
-/// - pillar: one part of the surroundings of a node, between steps; a node on no step has one.
+/// - pillar: one sector of the surroundings of a node, between steps; a node on no step has one.
 /// - rock mass, block, layer: a rock mass has blocks, oldest first; a block is divided into layers.
 /// - level: l of a pillar is the height at which layer l of its rock mass begins; two are equal
 ///   where the layer is absent.

@@ -37,12 +37,12 @@ public:
                                    const Execution& execution = {}) const;
 
 private:
-    struct Found;
-    explicit Joins(std::shared_ptr<const Found> joining) : joining_(std::move(joining)) {}
+    struct State;
+    explicit Joins(std::shared_ptr<const State> joining) : joining_(std::move(joining)) {}
     friend std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
                                            const Execution& execution);
 
-    std::shared_ptr<const Found> joining_;
+    std::shared_ptr<const State> joining_;
 };
 
 /// What build_rock_masses joins before it builds; nothing where that is nothing. Takes the memory

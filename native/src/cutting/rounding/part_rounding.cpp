@@ -160,7 +160,7 @@ void keep_sound(const RoundedParts& parts, Contraction& contraction,
         if (is_sound[i] == 0) open.insert(all[i]);
     }
     if (open.empty()) return;
-    const auto each_contracted = [&](std::int32_t part, const auto& visit) {
+    const auto for_each_contracted = [&](std::int32_t part, const auto& visit) {
         for (const std::int32_t piece : parts.pieces_of[index(part)]) {
             for (const NodeId node : pieces.polygons[index(piece)]) {
                 if (becomes[index(node)] != node) visit(node);
@@ -169,14 +169,14 @@ void keep_sound(const RoundedParts& parts, Contraction& contraction,
     };
     std::map<NodeId, std::set<std::int32_t>> parts_at;
     for (const std::int32_t part : all)
-        each_contracted(part, [&](NodeId node) { parts_at[node].insert(part); });
+        for_each_contracted(part, [&](NodeId node) { parts_at[node].insert(part); });
     Contraction::ShapeScratch scratch;
     while (!open.empty()) {
         const std::int32_t part = *open.begin();
         open.erase(open.begin());
         if (stays_sound(part, scratch)) continue;
         // its nodes stay apart; the parts around these are looked at again
-        each_contracted(part, [&](NodeId node) {
+        for_each_contracted(part, [&](NodeId node) {
             becomes[index(node)] = node;
             open.insert(parts_at[node].begin(), parts_at[node].end());
         });
@@ -219,7 +219,7 @@ namespace {
 template <class IsIt, class Visit>
 void visit_where(const RoundedParts& parts, std::size_t count, const IsIt& is_it,
                  const Visit& visit) {
-    const auto at_first = found_in_each<std::size_t>(
+    const auto at_first = collect_items<std::size_t>(
         count, parts.execution, [&](std::size_t i, std::vector<std::size_t>& list) {
             if (is_it(i)) list.push_back(i);
         });
@@ -464,16 +464,16 @@ std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::si
     const View seen(polygon_normal(corners));
     const PlanePosition rounding = seen.rounding(corners);
     arrangement::Loop loop;
-    std::vector<std::array<NodeId, 2>> sides;
+    std::vector<std::array<NodeId, 2>> edges;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         loop.push_back({nodes[i], seen(corners[i])});
         const NodeId next = nodes[(i + 1) % nodes.size()];
-        sides.push_back(unordered(nodes[i], next));
+        edges.push_back(unordered(nodes[i], next));
     }
     if (middle_sees_all(loop, rounding)) return {nodes};
     arrangement::Polygons convex;  // a loop that crosses itself, but for rounding, has some, too
     arrangement::divide_convex({&loop, 1}, rounding, {}, convex);
-    std::sort(sides.begin(), sides.end());
+    std::sort(edges.begin(), edges.end());
     std::map<std::array<NodeId, 2>, NodeId> between;
     std::vector<std::vector<NodeId>> polygons(convex.size());
     for (std::size_t k = 0; k < convex.size(); ++k) {
@@ -482,7 +482,7 @@ std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::si
             const std::array ends{polygon[i], polygon[(i + 1) % polygon.size()]};
             polygons[k].push_back(ends[0]);
             const auto edge = unordered(ends[0], ends[1]);
-            if (std::binary_search(sides.begin(), sides.end(), edge)) continue;
+            if (std::binary_search(edges.begin(), edges.end(), edge)) continue;
             const auto [at, is_new] = between.try_emplace(edge, NodeId{});
             if (is_new) at->second = add_middle(parts, piece, ends);
             polygons[k].push_back(at->second);

@@ -166,7 +166,7 @@ std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
     // how many have the same hash, up to 2: only of these the nodes are compared
     std::vector<std::uint8_t> count(std::bit_ceil(8 * pieces.size() + 1), 0);
     constexpr std::size_t kFar = SIZE_MAX;
-    Array<std::size_t> slot(pieces.size());
+    Array<std::size_t> bucket(pieces.size());
     parallel_ranges(
         pieces.size(), 1 << 12, parts.execution,
         [&](std::size_t begin, std::size_t end) {
@@ -174,16 +174,16 @@ std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
                 const auto nodes = pieces.polygons[p];
                 const bool is_near = std::ranges::all_of(
                     nodes, [&](NodeId node) { return parts.is_near[index(node)] != 0; });
-                slot[p] = is_near ? arrangement::loop_hash(nodes) & (count.size() - 1) : kFar;
+                bucket[p] = is_near ? arrangement::loop_hash(nodes) & (count.size() - 1) : kFar;
             }
         },
         0.05);
-    for (const std::size_t hash : slot) {
+    for (const std::size_t hash : bucket) {
         if (hash != kFar) count[hash] = static_cast<std::uint8_t>(std::min(count[hash] + 1, 2));
     }
     std::vector<std::pair<std::vector<NodeId>, std::size_t>> order;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
-        if (slot[p] != kFar && count[slot[p]] > 1)
+        if (bucket[p] != kFar && count[bucket[p]] > 1)
             put_first(pieces.polygons[p], order.emplace_back(std::vector<NodeId>(), p).first);
     }
     std::ranges::sort(order);

@@ -8,7 +8,7 @@
 
 #include "base/counting_sort.hpp"
 #include "base/key_table.hpp"
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 #include "cutting/pieces.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
@@ -58,7 +58,7 @@ struct RoundedParts {
         const std::int32_t face = pieces[piece].face;
         return face < 0 ? none : model.face_surface[index(face)];
     }
-    /// Whether a piece is a wall, or may become one: between joined models any cap may.
+    /// Whether a piece is a wall, or may become one: between joined models any cut face may.
     bool may_be_wall(std::size_t piece) const {
         return surface_of(piece, are_joined ? kWall : kCutFace) == kWall;
     }

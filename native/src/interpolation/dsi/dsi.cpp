@@ -82,9 +82,10 @@ void check_bounds(std::span<const std::array<double, 3>> bounds) {
 /// Everything between input and heights.
 class Interpolation {
 public:
-    Interpolation(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
-                  std::span<const Triangle> triangles, const spatial::MeshLocator& locator,
-                  const DsiConstraints& constraints, double weight, const Execution& execution)
+    Interpolation(std::span<const std::array<double, 3>> points,
+                  std::span<const PlanPosition> nodes, std::span<const Triangle> triangles,
+                  const spatial::MeshLocator& locator, const DsiConstraints& constraints,
+                  double weight, const Execution& execution)
         : weight_(weight), progress_(execution.progress), mesh_(ordered_mesh(nodes, triangles)) {
         report(0.01, "triangles and their neighbors");
         check();
@@ -197,7 +198,7 @@ private:
 
     /// The rises of the dips' triangles along x and along y, over about an edge.
     void add_dips(const Dips& dips, const spatial::MeshLocator& locator,
-                  std::span<const Triangle> triangles, std::span<const Position> nodes) {
+                  std::span<const Triangle> triangles, std::span<const PlanPosition> nodes) {
         for (std::size_t i = 0; i < dips.positions.size(); ++i) {
             const auto position = locator.find(dips.positions[i]);
             if (!position) {
@@ -210,7 +211,7 @@ private:
                 ordered[k] = mesh_.new_number[triangle[k]];
             const double strength =
                 (weight_ > 0 ? weight_ : kExactRiseStrength) * system_->stiffness(ordered);
-            const auto area_of = [](std::span<const Position> of, const Triangle& t) {
+            const auto area_of = [](std::span<const PlanPosition> of, const Triangle& t) {
                 return twice_area(of[t[0]], of[t[1]], of[t[2]]);
             };
             const double twice = area_of(mesh_.nodes, ordered);
@@ -224,10 +225,10 @@ private:
                              length_before * dips.slopes[i][axis]};
                 c.along[axis] = length;
                 for (std::size_t k = 0; k < 3; ++k) {
-                    const Position& a = mesh_.nodes[ordered[(k + 1) % 3]];
-                    const Position& b = mesh_.nodes[ordered[(k + 2) % 3]];
-                    const double part = axis == 0 ? a[1] - b[1] : b[0] - a[0];
-                    c.weights[k] = length * part / twice;
+                    const PlanPosition& a = mesh_.nodes[ordered[(k + 1) % 3]];
+                    const PlanPosition& b = mesh_.nodes[ordered[(k + 2) % 3]];
+                    const double component = axis == 0 ? a[1] - b[1] : b[0] - a[0];
+                    c.weights[k] = length * component / twice;
                 }
                 constraints_.push_back(c);
             }
@@ -252,11 +253,11 @@ private:
 
     /// The solution is heights above the plane that fits best: a plane comes out exactly.
     void subtract_plane() {
-        std::vector<Position> positions;
+        std::vector<PlanPosition> positions;
         for (const Constraint& c : constraints_)
             positions.push_back(c.position(mesh_.nodes));
         frame_.emplace(positions, Drift::kLinear);
-        Eigen::MatrixXd terms = frame_->terms(std::span<const Position>(positions));
+        Eigen::MatrixXd terms = frame_->terms(std::span<const PlanPosition>(positions));
         Eigen::VectorXd heights(terms.rows());
         base_ = constraints_[0].height;
         for (Eigen::Index k = 0; k < heights.size(); ++k) {
@@ -280,7 +281,7 @@ private:
     }
 
     /// @return the least and the greatest height before
-    std::pair<double, double> subtract_from_heights(std::span<const Position> positions) {
+    std::pair<double, double> subtract_from_heights(std::span<const PlanPosition> positions) {
         double low = std::numeric_limits<double>::infinity(), high = -low, rise = 0;
         for (std::size_t k = 0; k < positions.size(); ++k) {
             double& height = constraints_[k].height;
@@ -299,7 +300,7 @@ private:
         return {low, std::max(high, low + rise)};
     }
 
-    double plane_at(const Position& position) const {
+    double plane_at(const PlanPosition& position) const {
         return base_ + plane_.solve(frame_->terms(position)).dot(fitted_);
     }
 
@@ -309,10 +310,10 @@ private:
         if (plane_.size() == drift_terms(Drift::kLinear)) return;
         const auto reach = static_cast<double>(std::max(mesh_.grid.columns(), mesh_.grid.rows()));
         for (const auto& [x, y] :
-             {Position{-1, -1}, Position{1, -1}, Position{1, 1}, Position{-1, 1}}) {
+             {PlanPosition{-1, -1}, PlanPosition{1, -1}, PlanPosition{1, 1}, PlanPosition{-1, 1}}) {
             std::size_t far = 0;
             for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
-                const Position &p = mesh_.nodes[i], &q = mesh_.nodes[far];
+                const PlanPosition &p = mesh_.nodes[i], &q = mesh_.nodes[far];
                 if (x * p[0] + y * p[1] > x * q[0] + y * q[1]) far = i;
             }
             const double strength = kTiltStrength * stiffness(far) / (reach * reach);
@@ -352,7 +353,7 @@ private:
         int settling = 0, stalls = 0;
         for (int round = 0; round < (careful ? kMostCarefulRounds : kMostRounds); ++round) {
             if (changed) system_->set_constraints(constraints_);
-            iterations_ += system_->solve(z, right_side(), tolerance, [&](double share) {
+            iterations_ += system_->solve(z, right_hand_side(), tolerance, [&](double share) {
                 const double rounds = exact ? 4 : 1;
                 report(
                     0.15 + 0.85 * std::min(0.99, (round + share) / std::max(rounds, round + 1.0)),
@@ -390,7 +391,7 @@ private:
         return changed;
     }
 
-    Vector right_side() const {
+    Vector right_hand_side() const {
         Vector right(mesh_.nodes.size(), 0.0);
         for (const Constraint& c : constraints_) {
             if (!c.active) continue;
@@ -442,7 +443,7 @@ private:
 
 }  // namespace
 
-DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
+DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const PlanPosition> nodes,
                std::span<const Triangle> triangles, const DsiConstraints& constraints,
                double weight, const Execution& execution) {
     if (!(weight >= 0) || !std::isfinite(weight)) {

@@ -19,7 +19,7 @@ using Triangle = std::array<std::int32_t, 3>;
 constexpr double kFlat = 1e-12;  // of the squared edge: triangles of less area have no slope
 
 /// A side of a triangle, in the group of the lower of its ends.
-struct TriangleSide {
+struct TriangleEdge {
     std::int32_t high_end, opposite, triangle;
 };
 
@@ -27,20 +27,20 @@ struct TriangleSide {
 struct Foot {
     double height, share;
 };
-Foot foot(const Position& a, const Position& b, const Position& p) {
-    const Position u = minus(b, a), v = minus(p, a);
+Foot foot(const PlanPosition& a, const PlanPosition& b, const PlanPosition& p) {
+    const PlanPosition u = minus(b, a), v = minus(p, a);
     return {std::abs(cross(u, v)) / length(u), dot(u, v) / dot(u, u)};
 }
 
-bool has_area(const Position& a, const Position& b, const Position& c) {
-    const Position u = minus(b, a), v = minus(c, a);
+bool has_area(const PlanPosition& a, const PlanPosition& b, const PlanPosition& c) {
+    const PlanPosition u = minus(b, a), v = minus(c, a);
     const double longest = std::max({dot(u, u), dot(v, v), squared_distance(u, v)});
     return std::abs(cross(u, v)) > kFlat * longest;
 }
 
-Hinge hinge(std::span<const Position> nodes, const std::array<std::int32_t, 4>& of) {
+Hinge hinge(std::span<const PlanPosition> nodes, const std::array<std::int32_t, 4>& of) {
     const auto at = [&](int k) { return nodes[of[k]]; };
-    const Position a = at(0), b = at(1), c = at(2), d = at(3);
+    const PlanPosition a = at(0), b = at(1), c = at(2), d = at(3);
     const double length = distance(a, b);
     const Foot left = foot(a, b, c), right = foot(a, b, d);
     // L^2 / (A + B), and the areas are L h / 2.
@@ -62,14 +62,15 @@ Hinge hinge(std::span<const Position> nodes, const std::array<std::int32_t, 4>& 
 
 }  // namespace
 
-std::vector<Hinge> hinges(std::span<const Position> nodes, std::span<const Triangle> triangles) {
-    auto by_low_end = bucketize<TriangleSide>(nodes.size(), [&](const auto& visit) {
+std::vector<Hinge> hinges(std::span<const PlanPosition> nodes,
+                          std::span<const Triangle> triangles) {
+    auto by_low_end = bucketize<TriangleEdge>(nodes.size(), [&](const auto& visit) {
         for (std::size_t number = 0; number < triangles.size(); ++number) {
             const Triangle& t = triangles[number];
             if (!has_area(nodes[t[0]], nodes[t[1]], nodes[t[2]])) continue;
             for (int k = 0; k < 3; ++k) {
                 const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-                visit(low, TriangleSide{high, t[(k + 2) % 3], static_cast<std::int32_t>(number)});
+                visit(low, TriangleEdge{high, t[(k + 2) % 3], static_cast<std::int32_t>(number)});
             }
         }
     });
@@ -77,10 +78,10 @@ std::vector<Hinge> hinges(std::span<const Position> nodes, std::span<const Trian
     out.reserve(by_low_end.values.size() / 2);
     std::vector<char> hinged(triangles.size(), 0);
     for (std::size_t v = 0; v < nodes.size(); ++v) {
-        const std::span<TriangleSide> sides = by_low_end[v];
-        std::ranges::stable_sort(sides, {}, &TriangleSide::high_end);
-        for (std::size_t i = 1; i < sides.size(); ++i) {
-            const TriangleSide &one = sides[i - 1], &other = sides[i];
+        const std::span<TriangleEdge> edges = by_low_end[v];
+        std::ranges::stable_sort(edges, {}, &TriangleEdge::high_end);
+        for (std::size_t i = 1; i < edges.size(); ++i) {
+            const TriangleEdge &one = edges[i - 1], &other = edges[i];
             // Else a border, or one triangle given twice.
             if (one.high_end != other.high_end || one.opposite == other.opposite) continue;
             out.push_back(hinge(
@@ -121,7 +122,7 @@ void SparseRows::find_row(std::size_t row, std::span<const Hinge> hinges, const 
 
 SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int threads)
     : size_(nodes),
-      first_((nodes + kSideBySide - 1) / kSideBySide + 1, 0),
+      first_((nodes + kRowsAtOnce - 1) / kRowsAtOnce + 1, 0),
       diagonal_(nodes),
       rough_diagonal_(nodes) {
     const auto of = bucketize<std::int32_t>(nodes, [&](const auto& visit) {
@@ -135,12 +136,12 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
         std::vector<MatrixEntry> entries;
         for (std::size_t slice = from; slice < to; ++slice) {
             std::size_t longest = 0;
-            const std::size_t end = std::min(kSideBySide * (slice + 1), nodes);
-            for (std::size_t row = kSideBySide * slice; row < end; ++row) {
+            const std::size_t end = std::min(kRowsAtOnce * (slice + 1), nodes);
+            for (std::size_t row = kRowsAtOnce * slice; row < end; ++row) {
                 find_row(row, hinges, of, entries);
                 longest = std::max(longest, entries.size());
             }
-            first_[slice + 1] = kSideBySide * longest;
+            first_[slice + 1] = kRowsAtOnce * longest;
         }
     });
     for (std::size_t slice = 0; slice < slices; ++slice)
@@ -158,10 +159,10 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
 /// Rows that are shorter than the longest of the slice, or beyond the last, end with zeros.
 void SparseRows::fill_slice(std::size_t slice, std::span<const Hinge> hinges,
                             const HingesOfNodes& of, std::vector<MatrixEntry>& entries) {
-    for (std::size_t side = 0; side < kSideBySide; ++side) {
-        const std::size_t row = kSideBySide * slice + side;
+    for (std::size_t lane = 0; lane < kRowsAtOnce; ++lane) {
+        const std::size_t row = kRowsAtOnce * slice + lane;
         const auto padding = static_cast<std::int32_t>(std::min(row, size_ - 1));
-        std::size_t k = first_[slice] + side;
+        std::size_t k = first_[slice] + lane;
         entries.clear();
         if (row < size_) find_row(row, hinges, of, entries);
         for (const MatrixEntry& e : entries) {
@@ -171,9 +172,9 @@ void SparseRows::fill_slice(std::size_t slice, std::span<const Hinge> hinges,
             }
             column_[k] = e.column;
             value_[k] = e.value;
-            k += kSideBySide;
+            k += kRowsAtOnce;
         }
-        for (; k < first_[slice + 1]; k += kSideBySide)
+        for (; k < first_[slice + 1]; k += kRowsAtOnce)
             column_[k] = padding;
     }
 }
@@ -182,10 +183,10 @@ void SparseRows::make_sweep() {
     std::vector<WavefrontSweep::Reach> reach;
     for (std::size_t begin = 0; begin < size(); begin += kMostRows) {
         const auto from =
-            column_.begin() + static_cast<std::ptrdiff_t>(first_[begin / kSideBySide]);
+            column_.begin() + static_cast<std::ptrdiff_t>(first_[begin / kRowsAtOnce]);
         const std::size_t end = std::min(begin + kMostRows, size());
         const auto to = column_.begin() +
-                        static_cast<std::ptrdiff_t>(first_[(end + kSideBySide - 1) / kSideBySide]);
+                        static_cast<std::ptrdiff_t>(first_[(end + kRowsAtOnce - 1) / kRowsAtOnce]);
         const auto [low, high] = std::minmax_element(from, to);
         reach.emplace_back(static_cast<std::size_t>(*low) / kMostRows,
                            static_cast<std::size_t>(*high) / kMostRows);
@@ -194,10 +195,10 @@ void SparseRows::make_sweep() {
 }
 
 void SparseRows::add(std::int32_t row, std::int32_t column, double value) {
-    std::size_t entry = first_[row / kSideBySide] + row % kSideBySide;
+    std::size_t entry = first_[row / kRowsAtOnce] + row % kRowsAtOnce;
     while (column_[entry] != column) {
-        entry += kSideBySide;
-        assert(entry < first_[row / kSideBySide + 1]);
+        entry += kRowsAtOnce;
+        assert(entry < first_[row / kRowsAtOnce + 1]);
     }
     changed_.push_back({entry, value_[entry]});
     value_[entry] += value;

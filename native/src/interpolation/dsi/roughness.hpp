@@ -19,14 +19,14 @@ namespace realmodel::interpolation {
 struct Hinge {
     std::array<std::int32_t, 4> nodes;
     std::array<double, 4> g;
-    Position middle;                ///< of the edge
+    PlanPosition middle;            ///< of the edge
     std::array<double, 3> bending;  ///< g . z for surfaces with the second derivatives xx, xy, yy
 };
 
 /// The hinges of a mesh; triangles may have either orientation, those without area have none. A
 /// triangle with no hinge at all has one of stiffness 0, so that each triangle's corners share a
 /// row.
-std::vector<Hinge> hinges(std::span<const Position> nodes,
+std::vector<Hinge> hinges(std::span<const PlanPosition> nodes,
                           std::span<const std::array<std::int32_t, 3>> triangles);
 
 /// Rows of a symmetric sparse matrix: the roughness of a mesh, and what is added to it. A matrix
@@ -53,9 +53,9 @@ public:
     /// Calls visit(column, value) for the entries of a row; zeros on the diagonal pad it.
     template <class Visit>
     void for_entries(std::size_t row, Visit&& visit) const {
-        const std::size_t slice = row / kSideBySide;
-        for (std::size_t k = first_[slice] + row % kSideBySide; k < first_[slice + 1];
-             k += kSideBySide) {
+        const std::size_t slice = row / kRowsAtOnce;
+        for (std::size_t k = first_[slice] + row % kRowsAtOnce; k < first_[slice + 1];
+             k += kRowsAtOnce) {
             visit(column_[k], value_[k]);
         }
     }
@@ -76,14 +76,14 @@ public:
     }
     void times(std::ptrdiff_t piece, const double* x, double* out) const {
         const auto [begin, end] = rows(piece);
-        for (std::size_t row = begin; row < end; row += kSideBySide, out += kSideBySide) {
-            const std::size_t slice = row / kSideBySide;
-            std::array<double, kSideBySide> sums{};
-            for (std::size_t k = first_[slice]; k < first_[slice + 1]; k += kSideBySide) {
-                for (std::size_t side = 0; side < kSideBySide; ++side)
-                    sums[side] += value_[k + side] * x[column_[k + side]];
+        for (std::size_t row = begin; row < end; row += kRowsAtOnce, out += kRowsAtOnce) {
+            const std::size_t slice = row / kRowsAtOnce;
+            std::array<double, kRowsAtOnce> sums{};
+            for (std::size_t k = first_[slice]; k < first_[slice + 1]; k += kRowsAtOnce) {
+                for (std::size_t lane = 0; lane < kRowsAtOnce; ++lane)
+                    sums[lane] += value_[k + lane] * x[column_[k + lane]];
             }
-            std::copy_n(sums.data(), std::min(kSideBySide, end - row), out);
+            std::copy_n(sums.data(), std::min(kRowsAtOnce, end - row), out);
         }
     }
 
@@ -105,7 +105,7 @@ private:
 
     // Rows lie in slices of a few side by side, padded to the longest, so that the processor does
     // not have to guess where each ends (SELL: Kreutzer and others 2014).
-    static constexpr std::size_t kSideBySide = 4;
+    static constexpr std::size_t kRowsAtOnce = 4;
     std::size_t size_;
     std::vector<std::size_t> first_;     // entry of each slice
     std::vector<std::size_t> diagonal_;  // entry of each row

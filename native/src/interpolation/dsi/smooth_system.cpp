@@ -20,7 +20,7 @@ constexpr double kHeldNode = 1e-13;
 
 }  // namespace
 
-SmoothSystem::SmoothSystem(std::span<const Position> nodes,
+SmoothSystem::SmoothSystem(std::span<const PlanPosition> nodes,
                            std::span<const std::size_t> first_in_cell,
                            std::span<const Hinge> hinges, const SplineGrid& grid, int threads,
                            const std::function<void()>& check)
@@ -93,7 +93,7 @@ void SmoothSystem::correct() {
     for_rows(grid.rows(), threads_, [&](std::size_t row) {
         for (std::size_t column = 0, c = row * grid.columns(); column < grid.columns();
              ++column, ++c) {
-            SplineGrid::Weights sums{};
+            SplineGrid::SplineWeights sums{};
             for (std::size_t i = first_in_cell_[c]; i < first_in_cell_[c + 1]; ++i) {
                 const auto [x, y] = grid.values_along(nodes_[i], column, row);
                 for (std::size_t k = 0; k < SplineGrid::kReach; ++k)
@@ -108,7 +108,7 @@ void SmoothSystem::correct() {
         std::fill(to, to + grid.columns() + 2, 0.0);
         for (std::size_t k = 0; k < SplineGrid::kReach; ++k) {
             if (row < k / 3 || row - k / 3 >= grid.rows()) continue;
-            const SplineGrid::Weights* from = sums_.data() + (row - k / 3) * grid.columns();
+            const SplineGrid::SplineWeights* from = sums_.data() + (row - k / 3) * grid.columns();
             for (std::size_t column = 0; column < grid.columns(); ++column)
                 to[column + k % 3] += from[column][k];
         }

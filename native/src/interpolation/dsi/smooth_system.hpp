@@ -33,9 +33,9 @@ struct Constraint {
     bool of_node = false;   ///< and not of a point
     double multiplier = 0;  ///< of the augmented Lagrangian
     bool active = true;
-    Position along{};  ///< the vector of a rise
+    PlanPosition along{};  ///< the vector of a rise
 
-    bool is_rise() const { return along != Position{}; }
+    bool is_rise() const { return along != PlanPosition{}; }
     bool is_bound() const { return kind == Relation::kLeast || kind == Relation::kMost; }
 
     static Constraint at_node(std::size_t node, double strength, Relation kind, double height) {
@@ -67,8 +67,8 @@ struct Constraint {
         return std::abs(below);
     }
     /// Of a rise the center of its triangle.
-    Position position(std::span<const Position> of) const {
-        Position sum{};
+    PlanPosition position(std::span<const PlanPosition> of) const {
+        PlanPosition sum{};
         if (is_rise()) {
             for (const std::int32_t node : nodes) {
                 for (std::size_t axis = 0; axis < 2; ++axis)
@@ -91,7 +91,7 @@ public:
     /// @param nodes          in the order of the cells of `grid`
     /// @param first_in_cell  the first node of each cell, and their number
     /// @param check          throws to stop; it is called often
-    SmoothSystem(std::span<const Position> nodes, std::span<const std::size_t> first_in_cell,
+    SmoothSystem(std::span<const PlanPosition> nodes, std::span<const std::size_t> first_in_cell,
                  std::span<const Hinge> hinges, const SplineGrid& grid, int threads,
                  const std::function<void()>& check);
 
@@ -119,7 +119,7 @@ private:
                 const std::function<void(double)>& report);
     void factor();
 
-    std::span<const Position> nodes_;
+    std::span<const PlanPosition> nodes_;
     int threads_;
     std::function<void()> check_;
     SparseRows rows_;
@@ -129,8 +129,8 @@ private:
     bool converged_ = true;
     double reference_ = 0;
     std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>
-        factor_;                             // where it is needed
-    std::vector<SplineGrid::Weights> sums_;  // of each cell
+        factor_;                                   // where it is needed
+    std::vector<SplineGrid::SplineWeights> sums_;  // of each cell
 };
 
 }  // namespace realmodel::interpolation

@@ -18,8 +18,8 @@ Weights3 slope(double u) {
 }
 constexpr Weights3 kCurvature{1, -2, 1};
 
-SplineGrid::Weights product(const Weights3& x, const Weights3& y, double scale) {
-    SplineGrid::Weights out{};
+SplineGrid::SplineWeights product(const Weights3& x, const Weights3& y, double scale) {
+    SplineGrid::SplineWeights out{};
     for (std::size_t j = 0; j < 3; ++j) {
         for (std::size_t i = 0; i < 3; ++i)
             out[3 * j + i] = scale * x[i] * y[j];
@@ -29,14 +29,14 @@ SplineGrid::Weights product(const Weights3& x, const Weights3& y, double scale) 
 
 }  // namespace
 
-SplineGrid::SplineGrid(const Position& low, double cell, std::size_t columns, std::size_t rows)
+SplineGrid::SplineGrid(const PlanPosition& low, double cell, std::size_t columns, std::size_t rows)
     : low_(low), cell_(cell), inverse_cell_(1 / cell), columns_(columns), rows_(rows) {}
 
 SplineGrid SplineGrid::coarser() const {
     return {low_, 2 * cell_, (columns_ + 1) / 2, (rows_ + 1) / 2};
 }
 
-std::size_t SplineGrid::cell_of(const Position& position) const {
+std::size_t SplineGrid::cell_of(const PlanPosition& position) const {
     const auto along = [&](int axis, std::size_t count) {
         const double at = (position[axis] - low_[axis]) / cell_;
         return at > 0 ? std::min(static_cast<std::size_t>(at), count - 1) : 0;
@@ -44,38 +44,39 @@ std::size_t SplineGrid::cell_of(const Position& position) const {
     return along(1, rows_) * columns_ + along(0, columns_);
 }
 
-SplineGrid::Weights SplineGrid::values(const Position& position, std::size_t cell) const {
+SplineGrid::SplineWeights SplineGrid::values(const PlanPosition& position, std::size_t cell) const {
     const auto [x, y] = values_along(position, cell % columns_, cell / columns_);
     return product(x, y, 1);
 }
 
-SplineGrid::Weights SplineGrid::rises(const Position& position, std::size_t cell,
-                                      const Position& along_vector) const {
+SplineGrid::SplineWeights SplineGrid::rises(const PlanPosition& position, std::size_t cell,
+                                            const PlanPosition& along_vector) const {
     const double u = (position[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
     const double v = (position[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
-    const Weights x = product(slope(u), along(v), along_vector[0] / cell_);
-    const Weights y = product(along(u), slope(v), along_vector[1] / cell_);
-    Weights out{};
+    const SplineWeights x = product(slope(u), along(v), along_vector[0] / cell_);
+    const SplineWeights y = product(along(u), slope(v), along_vector[1] / cell_);
+    SplineWeights out{};
     for (std::size_t k = 0; k < kReach; ++k)
         out[k] = x[k] + y[k];
     return out;
 }
 
-SplineGrid::Weights SplineGrid::bends(const Position& position, std::size_t cell,
-                                      const std::array<double, 3>& bending) const {
+SplineGrid::SplineWeights SplineGrid::bends(const PlanPosition& position, std::size_t cell,
+                                            const std::array<double, 3>& bending) const {
     const double u = (position[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
     const double v = (position[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
     const double scale = 1 / (cell_ * cell_);
-    const Weights xx = product(kCurvature, along(v), scale * bending[0]);
-    const Weights xy = product(slope(u), slope(v), scale * bending[1]);
-    const Weights yy = product(along(u), kCurvature, scale * bending[2]);
-    Weights out{};
+    const SplineWeights xx = product(kCurvature, along(v), scale * bending[0]);
+    const SplineWeights xy = product(slope(u), slope(v), scale * bending[1]);
+    const SplineWeights yy = product(along(u), kCurvature, scale * bending[2]);
+    SplineWeights out{};
     for (std::size_t k = 0; k < kReach; ++k)
         out[k] = xx[k] + xy[k] + yy[k];
     return out;
 }
 
-void add_square(SplineGrid::Element& element, const SplineGrid::Weights& weights, double strength) {
+void add_square(SplineGrid::Element& element, const SplineGrid::SplineWeights& weights,
+                double strength) {
     for (std::size_t a = 0; a < SplineGrid::kReach; ++a) {
         const double scaled = strength * weights[a];
         for (std::size_t b = 0; b < SplineGrid::kReach; ++b)
@@ -87,28 +88,28 @@ SplineStencils::SplineStencils(const SplineGrid& grid)
     : grid_(grid),
       width_(grid.columns() + 2),
       height_(grid.rows() + 2),
-      parts_((width_ + kMostRows - 1) / kMostRows),
+      ranges_in_row_((width_ + kMostRows - 1) / kMostRows),
       entries_(25 * width_ * height_) {
     // Two rows, and two columns, up and down.
     std::vector<WavefrontSweep::Reach> reach;
-    const auto parts = static_cast<std::ptrdiff_t>(parts_);
-    const auto pieces = static_cast<std::ptrdiff_t>(parts_ * height_);
+    const auto ranges_in_row = static_cast<std::ptrdiff_t>(ranges_in_row_);
+    const auto pieces = static_cast<std::ptrdiff_t>(ranges_in_row_ * height_);
     for (std::ptrdiff_t piece = 0; piece < pieces; ++piece) {
-        reach.emplace_back(std::max<std::ptrdiff_t>(0, piece - 2 * parts - 1),
-                           std::min(pieces - 1, piece + 2 * parts + 1));
+        reach.emplace_back(std::max<std::ptrdiff_t>(0, piece - 2 * ranges_in_row - 1),
+                           std::min(pieces - 1, piece + 2 * ranges_in_row + 1));
     }
     sweep_ = WavefrontSweep(std::move(reach));
 }
 
 std::array<std::size_t, 2> SplineStencils::rows(std::ptrdiff_t piece) const {
     const auto number = static_cast<std::size_t>(piece);
-    const std::size_t column = number % parts_ * kMostRows, row = number / parts_;
+    const std::size_t column = number % ranges_in_row_ * kMostRows, row = number / ranges_in_row_;
     return {grid_.number(column, row), grid_.number(std::min(column + kMostRows, width_), row)};
 }
 
 void SplineStencils::times(std::ptrdiff_t piece, const double* x, double* out) const {
     const auto number = static_cast<std::size_t>(piece);
-    const std::size_t column = number % parts_ * kMostRows, row = number / parts_;
+    const std::size_t column = number % ranges_in_row_ * kMostRows, row = number / ranges_in_row_;
     const std::size_t count = std::min(kMostRows, width_ - column), stride = grid_.stride();
     std::fill(out, out + count, 0.0);
     const double* entries = entries_.data() + 25 * row * width_ + column;
@@ -148,7 +149,7 @@ namespace {
 
 constexpr double kCellInEdges = 2;
 
-double mean_edge(std::span<const Position> nodes,
+double mean_edge(std::span<const PlanPosition> nodes,
                  std::span<const OrderedMesh::Triangle> triangles) {
     double sum = 0;
     for (const auto& t : triangles) {
@@ -162,7 +163,7 @@ double mean_edge(std::span<const Position> nodes,
 
 }  // namespace
 
-OrderedMesh ordered_mesh(std::span<const Position> nodes,
+OrderedMesh ordered_mesh(std::span<const PlanPosition> nodes,
                          std::span<const OrderedMesh::Triangle> triangles) {
     const spatial::PlanBox box = spatial::box_around(nodes);
     const double unit = mean_edge(nodes, triangles);
@@ -175,8 +176,8 @@ OrderedMesh ordered_mesh(std::span<const Position> nodes,
         return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / cell)));
     };
     const SplineGrid grid({0, 0}, cell, cells(width), cells(height));
-    const auto to_mesh = [&](const Position& p) {
-        return Position{(p[0] - box.low_x) / unit, (p[1] - box.low_y) / unit};
+    const auto to_mesh = [&](const PlanPosition& p) {
+        return PlanPosition{(p[0] - box.low_x) / unit, (p[1] - box.low_y) / unit};
     };
     const auto by_cell = bucketize<std::int32_t>(grid.cells(), [&](const auto& visit) {
         for (std::size_t i = 0; i < nodes.size(); ++i)

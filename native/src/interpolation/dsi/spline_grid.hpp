@@ -16,13 +16,13 @@ namespace realmodel::interpolation {
 class SplineGrid {
 public:
     static constexpr int kReach = 9;
-    using Weights = std::array<double, kReach>;
+    using SplineWeights = std::array<double, kReach>;
     using Element = std::array<double, kReach * kReach>;
 
-    SplineGrid(const Position& low, double cell, std::size_t columns, std::size_t rows);
+    SplineGrid(const PlanPosition& low, double cell, std::size_t columns, std::size_t rows);
     SplineGrid coarser() const;
 
-    Position corner() const { return low_; }
+    PlanPosition corner() const { return low_; }
     double cell() const { return cell_; }
     std::size_t columns() const { return columns_; }
     std::size_t rows() const { return rows_; }
@@ -39,32 +39,34 @@ public:
         return (row + 2) * stride() + column + 2;
     }
 
-    std::size_t cell_of(const Position& position) const;
-    Weights values(const Position& position, std::size_t cell) const;
+    std::size_t cell_of(const PlanPosition& position) const;
+    SplineWeights values(const PlanPosition& position, std::size_t cell) const;
     /// The factors of values: the (3 j + i)-th is second[j] * first[i].
-    std::array<std::array<double, 3>, 2> values_along(const Position& position, std::size_t column,
-                                                      std::size_t row) const {
+    std::array<std::array<double, 3>, 2> values_along(const PlanPosition& position,
+                                                      std::size_t column, std::size_t row) const {
         return {along((position[0] - low_[0]) * inverse_cell_ - static_cast<double>(column)),
                 along((position[1] - low_[1]) * inverse_cell_ - static_cast<double>(row))};
     }
     /// Of the rise along a vector, at the slope of the position.
-    Weights rises(const Position& position, std::size_t cell, const Position& along_vector) const;
+    SplineWeights rises(const PlanPosition& position, std::size_t cell,
+                        const PlanPosition& along_vector) const;
     /// Of a surface with these coefficients: bending . (its second derivatives xx, xy, yy).
-    Weights bends(const Position& position, std::size_t cell,
-                  const std::array<double, 3>& bending) const;
+    SplineWeights bends(const PlanPosition& position, std::size_t cell,
+                        const std::array<double, 3>& bending) const;
 
 private:
     static std::array<double, 3> along(double u) {
         return {0.5 * (1 - u) * (1 - u), 0.5 + u * (1 - u), 0.5 * u * u};
     }
 
-    Position low_;
+    PlanPosition low_;
     double cell_, inverse_cell_;
     std::size_t columns_, rows_;
 };
 
 /// Adds the outer product of weights to an element.
-void add_square(SplineGrid::Element& element, const SplineGrid::Weights& weights, double strength);
+void add_square(SplineGrid::Element& element, const SplineGrid::SplineWeights& weights,
+                double strength);
 
 /// The symmetric matrix of a grid's coefficients, 25 entries in each row; a matrix for Smoother.
 class SplineStencils {
@@ -89,8 +91,9 @@ public:
 
 private:
     SplineGrid grid_;
-    std::size_t width_, height_, parts_;  // columns, rows of coefficients; pieces in each row
-    Vector entries_;                      // [row][k][column]
+    std::size_t width_, height_,
+        ranges_in_row_;  // columns, rows of coefficients; pieces in each row
+    Vector entries_;     // [row][k][column]
     WavefrontSweep sweep_;
 };
 
@@ -101,12 +104,12 @@ struct OrderedMesh {
     SplineGrid grid;
     std::vector<std::size_t> first_in_cell;  ///< nodes of each cell of the grid, and their number
     std::vector<std::int32_t> old_number, new_number;
-    std::vector<Position> nodes;
+    std::vector<PlanPosition> nodes;
     std::vector<Triangle> triangles;
 };
 
 /// @param nodes, triangles  at least one of each, of valid indices
-OrderedMesh ordered_mesh(std::span<const Position> nodes,
+OrderedMesh ordered_mesh(std::span<const PlanPosition> nodes,
                          std::span<const OrderedMesh::Triangle> triangles);
 
 }  // namespace realmodel::interpolation

@@ -58,7 +58,7 @@ double trace(const SplineGrid::Element& element) {
 
 }  // namespace
 
-SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Position> nodes,
+SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const PlanPosition> nodes,
                            std::span<const Hinge> hinges, int threads,
                            const std::function<void()>& check)
     : threads_(threads), check_(check), rough_(grid.cells()) {
@@ -92,11 +92,11 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Position> nod
 /// Cells that the border of the mesh cuts get the roughness of a whole one, as if the mesh
 /// continued to their end: splines of which only a tip reaches the mesh would otherwise be nearly
 /// free. (That is harmless: a smooth surface can be continued smoothly.)
-void SplineLevels::fill_border_cells(std::span<const Position> nodes,
+void SplineLevels::fill_border_cells(std::span<const PlanPosition> nodes,
                                      std::span<const Hinge> hinges) {
     const SplineGrid& grid = levels_.front().stencils.grid();
     std::vector<char> touched(grid.cells(), 0);
-    for (const Position& node : nodes)
+    for (const PlanPosition& node : nodes)
         touched[grid.cell_of(node)] = 1;
     std::vector<double> traces;
     for (std::size_t c = 0; c < grid.cells(); ++c) {
@@ -112,11 +112,11 @@ void SplineLevels::fill_border_cells(std::span<const Position> nodes,
         for (std::size_t k = 0; k < 3; ++k)
             size[k] += h.bending[k] * h.bending[k];
     }
-    const Position corner = grid.corner();
+    const PlanPosition corner = grid.corner();
     constexpr std::array<double, 2> at{0.2113248654051871, 0.7886751345948129};  // Gauss
     for (const double u : at) {
         for (const double v : at) {
-            const Position position{corner[0] + u * grid.cell(), corner[1] + v * grid.cell()};
+            const PlanPosition position{corner[0] + u * grid.cell(), corner[1] + v * grid.cell()};
             for (std::size_t k = 0; k < 3; ++k) {
                 std::array<double, 3> bending{};
                 bending[k] = 1;
@@ -143,7 +143,7 @@ void SplineLevels::set_constraints(std::span<const WeightedPosition> constraints
     }
     for (const WeightedPosition& c : constraints) {
         const std::size_t cell = finest.cell_of(c.position);
-        const bool is_rise = c.along != Position{};
+        const bool is_rise = c.along != PlanPosition{};
         add_square(
             elements[cell],
             is_rise ? finest.rises(c.position, cell, c.along) : finest.values(c.position, cell),

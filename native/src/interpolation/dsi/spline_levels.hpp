@@ -18,9 +18,9 @@ namespace realmodel::interpolation {
 /// A constraint of a surface at a position: `strength` times the square of the height there, or of
 /// the rise along a vector, is added.
 struct WeightedPosition {
-    Position position;
+    PlanPosition position;
     double strength;
-    Position along{};  ///< zero: the height
+    PlanPosition along{};  ///< zero: the height
 };
 
 /// Multigrid on grids of quadratic B-splines, the coarse part of a preconditioner: solves roughness
@@ -29,7 +29,7 @@ struct WeightedPosition {
 class SplineLevels {
 public:
     /// @param check  throws to stop; it is called often
-    SplineLevels(const SplineGrid& grid, std::span<const Position> nodes,
+    SplineLevels(const SplineGrid& grid, std::span<const PlanPosition> nodes,
                  std::span<const Hinge> hinges, int threads, const std::function<void()>& check);
 
     /// To be called before solve(), and again when constraints change.
@@ -50,7 +50,7 @@ private:
         Vector right, x;
     };
 
-    void fill_border_cells(std::span<const Position> nodes, std::span<const Hinge> hinges);
+    void fill_border_cells(std::span<const PlanPosition> nodes, std::span<const Hinge> hinges);
     void restrict_elements(std::vector<SplineGrid::Element>& elements,
                            const SplineGrid& fine) const;
     void assemble(SplineLevel& level, const std::vector<SplineGrid::Element>& elements,

@@ -82,21 +82,21 @@ public:
 private:
     /// What one thread does of all stages before the threads meet: of stage s the pieces from[s] to
     /// next[s] - 1.
-    struct Range {
+    struct SweepRange {
         std::ptrdiff_t begin, end;
         std::array<std::ptrdiff_t, kMostStages> from, next;
     };
     template <class Work>
-    Range run_ahead(std::ptrdiff_t begin, std::ptrdiff_t end, std::size_t stages,
-                    const Work& work) const;
+    SweepRange run_ahead(std::ptrdiff_t begin, std::ptrdiff_t end, std::size_t stages,
+                         const Work& work) const;
 
     std::vector<Reach> reach_;
 };
 
 template <class Work>
-WavefrontSweep::Range WavefrontSweep::run_ahead(std::ptrdiff_t begin, std::ptrdiff_t end,
-                                                std::size_t stages, const Work& work) const {
-    Range r{begin, end, {}, {}};
+WavefrontSweep::SweepRange WavefrontSweep::run_ahead(std::ptrdiff_t begin, std::ptrdiff_t end,
+                                                     std::size_t stages, const Work& work) const {
+    SweepRange r{begin, end, {}, {}};
     r.from[0] = r.next[0] = begin;
     for (std::size_t s = 1; s < stages; ++s) {
         r.from[s] = begin;  // pieces that reach beyond the begin wait for the other threads
@@ -120,14 +120,15 @@ void WavefrontSweep::run(std::size_t stages, int threads, const Work& work) cons
     constexpr std::ptrdiff_t kWorthAThread = 16;
     assert(stages >= 1 && stages <= kMostStages);
     const std::ptrdiff_t count = pieces(), team = count >= kWorthAThread ? threads : 1;
-    std::vector<Range> ranges(static_cast<std::size_t>(team));
-    parallel_even(ranges.size(), threads, [&](std::size_t part) {
-        const auto number = static_cast<std::ptrdiff_t>(part);
-        ranges[part] = run_ahead(count * number / team, count * (number + 1) / team, stages, work);
+    std::vector<SweepRange> ranges(static_cast<std::size_t>(team));
+    parallel_even(ranges.size(), threads, [&](std::size_t worker) {
+        const auto number = static_cast<std::ptrdiff_t>(worker);
+        ranges[worker] =
+            run_ahead(count * number / team, count * (number + 1) / team, stages, work);
     });
     for (std::size_t s = 1; s < stages; ++s) {
-        parallel_even(ranges.size(), threads, [&](std::size_t part) {
-            const Range& r = ranges[part];
+        parallel_even(ranges.size(), threads, [&](std::size_t worker) {
+            const SweepRange& r = ranges[worker];
             for (std::ptrdiff_t piece = r.begin; piece < r.from[s]; ++piece)
                 work(s, piece);
             for (std::ptrdiff_t piece = r.next[s]; piece < r.end; ++piece)

@@ -13,8 +13,8 @@ namespace realmodel::interpolation {
 
 namespace {
 
-std::vector<CovariancePart> parts_of(const Variogram& variogram) {
-    std::vector<CovariancePart> parts;
+std::vector<CovarianceStructure> structures_of(const Variogram& variogram) {
+    std::vector<CovarianceStructure> structures;
     for (const auto& [model, range, sill, anisotropy] : variogram.structures()) {
         // Distances across the azimuth count `ratio` times.
         const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
@@ -22,25 +22,26 @@ std::vector<CovariancePart> parts_of(const Variogram& variogram) {
         const double x = elementary::sin(azimuth), y = elementary::cos(azimuth);
         const bool is_wave = model == VariogramModel::kWave;
         const double across = is_wave ? 1 : ratio;
-        parts.push_back({model, x / range, y / range, across * y / range, -across * x / range,
-                         sill / variogram.sill, is_wave ? ratio : 0});
+        structures.push_back({model, x / range, y / range, across * y / range, -across * x / range,
+                              sill / variogram.sill, is_wave ? ratio : 0});
     }
-    return parts;
+    return structures;
 }
 
 }  // namespace
 
 Covariance::Covariance(const Variogram& variogram, const Sheets& sheets)
-    : parts_(parts_of(variogram)), variances_(sheets.variances.begin(), sheets.variances.end()) {
+    : structures_(structures_of(variogram)),
+      variances_(sheets.variances.begin(), sheets.variances.end()) {
     if (variances_.empty()) return;
-    thickness_ = parts_of(sheets.thickness);
+    thickness_ = structures_of(sheets.thickness);
     for (const double variance : variances_)
         units_.push_back(std::sqrt(1 + variance));
 }
 
 std::array<double, 2> Covariance::scales_over(double baseline, std::int32_t sheet) const {
-    const auto scale = [&](const Position& to) {
-        const Position from{};
+    const auto scale = [&](const PlanPosition& to) {
+        const PlanPosition from{};
         const double variance =
             2 * ((*this)(from, sheet, from, sheet) - (*this)(to, sheet, from, sheet));
         return variance > kRedundantVariance ? 1 / std::sqrt(variance) : 0;

@@ -15,7 +15,7 @@ namespace realmodel::interpolation {
 
 /// One structure of a variogram: positions that differ by (dx, dy) are
 /// t = |(xx dx + xy dy, yx dx + yy dy)| ranges apart.
-struct CovariancePart {
+struct CovarianceStructure {
     VariogramModel model;
     double xx, xy, yx, yy;
     double share;  ///< of the sill
@@ -26,31 +26,33 @@ struct CovariancePart {
 /// @tparam Bits  as of decay()
 /// @param root   the square root of a Number
 template <class Bits = std::uint64_t, class Number, class Root>
-__attribute__((always_inline)) inline Number covariance_of(const CovariancePart& part, Number dx,
-                                                           Number dy, const Root& root) {
-    const Number along = part.xx * dx + part.xy * dy;
-    const Number across = part.yx * dx + part.yy * dy;
+__attribute__((always_inline)) inline Number covariance_of(const CovarianceStructure& structure,
+                                                           Number dx, Number dy, const Root& root) {
+    const Number along = structure.xx * dx + structure.xy * dy;
+    const Number across = structure.yx * dx + structure.yy * dy;
     const Number square = along * along + across * across;
-    if (part.model == VariogramModel::kGaussian) return part.share * decay<Bits>(3 * square);
-    if (part.model == VariogramModel::kWave)
-        return part.share * (cosine_of_turns(part.waves * across) * decay<Bits>(3 * square));
+    if (structure.model == VariogramModel::kGaussian)
+        return structure.share * decay<Bits>(3 * square);
+    if (structure.model == VariogramModel::kWave)
+        return structure.share *
+               (cosine_of_turns(structure.waves * across) * decay<Bits>(3 * square));
     const Number t = root(square);
-    switch (part.model) {
+    switch (structure.model) {
         case VariogramModel::kSpherical:
-            return part.share * (t < 1.0 ? 1 - t * (1.5 - 0.5 * square) : Number{});
+            return structure.share * (t < 1.0 ? 1 - t * (1.5 - 0.5 * square) : Number{});
         case VariogramModel::kExponential:
-            return part.share * decay<Bits>(3 * t);
+            return structure.share * decay<Bits>(3 * t);
         case VariogramModel::kCubic:
-            return part.share *
+            return structure.share *
                    (t < 1.0 ? 1 - square * (7 - t * (8.75 - square * (3.5 - 0.75 * square)))
                             : Number{});
         case VariogramModel::kMatern32: {
             const Number s = kMatern32Scale * t;
-            return part.share * ((1 + s) * decay<Bits>(s));
+            return structure.share * ((1 + s) * decay<Bits>(s));
         }
         default: {
             const Number s = kMatern52Scale * t;
-            return part.share * ((1 + s * (1 + s * kThird)) * decay<Bits>(s));
+            return structure.share * ((1 + s * (1 + s * kThird)) * decay<Bits>(s));
         }
     }
 }
@@ -63,10 +65,12 @@ public:
     explicit Covariance(const Variogram& variogram, const Sheets& sheets = {});
 
     /// Between two different positions. (At one position it is 1, whatever the nugget.)
-    double operator()(const Position& a, const Position& b) const { return sum_of(parts_, a, b); }
+    double operator()(const PlanPosition& a, const PlanPosition& b) const {
+        return sum_of(structures_, a, b);
+    }
 
     /// Between different positions, or different sheets.
-    double operator()(const Position& a, std::int32_t on_a, const Position& b,
+    double operator()(const PlanPosition& a, std::int32_t on_a, const PlanPosition& b,
                       std::int32_t on_b) const {
         if (units_.empty()) return (*this)(a, b);
         const double shared = (*this)(a, b);
@@ -84,20 +88,20 @@ public:
     std::array<double, 2> scales_over(double baseline, std::int32_t sheet = 0) const;
 
     /// At least one.
-    const std::vector<CovariancePart>& parts() const { return parts_; }
+    const std::vector<CovarianceStructure>& structures() const { return structures_; }
 
 private:
-    static double sum_of(const std::vector<CovariancePart>& parts, const Position& a,
-                         const Position& b) {
+    static double sum_of(const std::vector<CovarianceStructure>& structures, const PlanPosition& a,
+                         const PlanPosition& b) {
         const auto root = [](double v) { return std::sqrt(v); };
         const double dx = a[0] - b[0], dy = a[1] - b[1];
         double sum = 0;
-        for (const CovariancePart& part : parts)
-            sum += covariance_of(part, dx, dy, root);
+        for (const CovarianceStructure& structure : structures)
+            sum += covariance_of(structure, dx, dy, root);
         return sum;
     }
 
-    std::vector<CovariancePart> parts_, thickness_;
+    std::vector<CovarianceStructure> structures_, thickness_;
     std::vector<double> variances_, units_;
 };
 

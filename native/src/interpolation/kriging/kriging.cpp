@@ -32,7 +32,8 @@ struct KrigingTask {
     const spatial::NearestPoints& tree;
     const Covariance& covariance;
     const KrigingOptions& options;
-    std::span<const Position> nodes;  ///< without any each point is left out and estimated instead
+    std::span<const PlanPosition>
+        nodes;  ///< without any each point is left out and estimated instead
     bool leaves_out;
     double sill;
     const Execution& execution;
@@ -40,7 +41,7 @@ struct KrigingTask {
 
     std::size_t count() const { return leaves_out ? data.point_count() : nodes.size(); }
     /// In local coordinates.
-    Position node(std::size_t i) const {
+    PlanPosition node(std::size_t i) const {
         return leaves_out ? data.position(static_cast<std::int32_t>(i))
                           : data.points().to_local(nodes[i]);
     }
@@ -70,8 +71,8 @@ Estimate unknown(double value) {
     return {value, std::numeric_limits<double>::infinity()};
 }
 
-std::vector<Position> positions_of(const LinearData& data) {
-    std::vector<Position> positions;
+std::vector<PlanPosition> positions_of(const LinearData& data) {
+    std::vector<PlanPosition> positions;
     for (std::size_t i = 0; i < data.size(); ++i)
         positions.push_back(data.position(static_cast<std::int32_t>(i)));
     return positions;
@@ -129,16 +130,16 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
           },
           kRedundantVariance, task.execution, factor_share) {
     const Eigen::Index terms = drift_terms(task.options.drift);
-    Eigen::MatrixXd plain(count_, terms), right_sides(count_, terms + 1);
+    Eigen::MatrixXd plain(count_, terms), right_hand_sides(count_, terms + 1);
     for (Eigen::Index p = 0; p < count_; ++p) {
         plain.row(p) = task.data.terms(number(p), frame_);
-        right_sides.row(p).head(terms) = plain.row(p);
-        right_sides(p, terms) = task.data.value(number(p), base_);
+        right_hand_sides.row(p).head(terms) = plain.row(p);
+        right_hand_sides(p, terms) = task.data.value(number(p), base_);
         if (factor_.left_out(p)) plain.row(p).setZero();
     }
-    factor_.solve(right_sides, task.execution.progress);
-    basis_.make(plain, right_sides.leftCols(terms));
-    t_ = right_sides.col(terms);
+    factor_.solve(right_hand_sides, task.execution.progress);
+    basis_.make(plain, right_hand_sides.leftCols(terms));
+    t_ = right_hand_sides.col(terms);
     qt_ = basis_.project(t_);
 }
 
@@ -148,7 +149,7 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, UniqueScratch
     // whichever nodes are estimated together.
     u.setZero(count_, kNodesAtOnce);
     for (std::size_t i = begin; i < end; ++i) {
-        const Position node = task_.node(i);
+        const PlanPosition node = task_.node(i);
         const auto column = static_cast<Eigen::Index>(i - begin);
         for (Eigen::Index p = 0; p < count_; ++p)
             u(p, column) =
@@ -157,7 +158,7 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, UniqueScratch
     }
     factor_.solve(u, task_.execution.progress);
     for (std::size_t i = begin; i < end && !cancelled(task_.execution.progress); ++i) {
-        const Position node = task_.node(i);
+        const PlanPosition node = task_.node(i);
         const std::int32_t sheet = task_.sheet(i);
         task_.tree.find(node, task_.data.sheet_count(), scratch.near);
         const std::int32_t at_node = task_.point_at_node(scratch.near, sheet);
@@ -228,7 +229,7 @@ void krige_one_by_one(const KrigingTask& task) {
                                  {}};
         },
         [&](SingleScratch& scratch, std::size_t i) {
-            const Position node = task.node(i);
+            const PlanPosition node = task.node(i);
             if (!scratch.search.find(node, scratch.near, task.left_out(i))) ++alone;
             const std::int32_t sheet = task.sheet(i),
                                at_node = task.point_at_node(scratch.near, sheet);
@@ -270,7 +271,7 @@ void krige_in_lanes(const KrigingTask& task) {
                            DataSearch(task.data, task.tree, task.options.neighborhood),
                            {}};
     };
-    std::vector<Position> positions;
+    std::vector<PlanPosition> positions;
     for (std::size_t first = 0; first < count; first += kNodesInOrder) {
         const std::size_t here = std::min(kNodesInOrder, count - first);
         positions.resize(here);
@@ -323,7 +324,7 @@ void krige_from_all(const KrigingTask& task) {
 }
 
 /// @param leaves_out  the points instead of nodes
-Kriged krige_nodes(const DataPoints& points, std::span<const Position> nodes, bool leaves_out,
+Kriged krige_nodes(const DataPoints& points, std::span<const PlanPosition> nodes, bool leaves_out,
                    const Variogram& variogram, const KrigingOptions& options,
                    const Execution& execution) {
     const spatial::NearestPoints tree(points.local);
@@ -378,7 +379,7 @@ Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Vario
     check_sheets(options.sheets, points.size(), options.dips.positions.size());
     const DataPoints data = prepare_points(points, options.sheets.of_points);
     const Kriged kriged = krige_nodes(data, {}, true, variogram, options, execution);
-    return {data.for_given(kriged.z), data.for_given(kriged.variance), kriged.alone};
+    return {data.for_input_points(kriged.z), data.for_input_points(kriged.variance), kriged.alone};
 }
 
 }  // namespace realmodel::interpolation

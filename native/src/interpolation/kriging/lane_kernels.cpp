@@ -27,24 +27,24 @@ namespace realmodel::interpolation::LANES_NAME {
 
 namespace {
 
-using Vector = double __attribute__((vector_size(8 * LANES_WIDTH)));
+using Lanes = double __attribute__((vector_size(8 * LANES_WIDTH)));
 using Bits = std::uint64_t __attribute__((vector_size(8 * LANES_WIDTH)));
 
-inline Vector all(double value) {
-    return Vector{} + value;
+inline Lanes all(double value) {
+    return Lanes{} + value;
 }
 
-inline Vector load(const double* from) {
-    Vector v;
+inline Lanes load(const double* from) {
+    Lanes v;
     __builtin_memcpy(&v, from, sizeof v);
     return v;
 }
 
-inline void store(double* to, Vector v) {
+inline void store(double* to, Lanes v) {
     __builtin_memcpy(to, &v, sizeof v);
 }
 
-inline Vector root(Vector v) {
+inline Lanes root(Lanes v) {
 #if LANES_WIDTH == 8 && defined(__AVX512F__)
     return _mm512_maskz_sqrt_pd(0xff, v);  // g++ 12 warns of what _mm512_sqrt_pd leaves open
 #elif LANES_WIDTH == 4 && defined(__AVX__)
@@ -61,21 +61,22 @@ inline Vector root(Vector v) {
 /// Adds one part to the covariances, or begins with it. Each model has a loop of its own, which
 /// does not ask again for each number what model it is.
 template <VariogramModel model>
-void add_covariances(CovariancePart part, bool is_first, const double* dx, const double* dy,
-                     double* out, std::size_t count) {
-    const auto square_root = [](Vector v) { return root(v); };
-    part.model = model;
+void add_covariances(CovarianceStructure structure, bool is_first, const double* dx,
+                     const double* dy, double* out, std::size_t count) {
+    const auto square_root = [](Lanes v) { return root(v); };
+    structure.model = model;
     for (std::size_t i = 0; i < count; i += LANES_WIDTH) {
-        const Vector addend = covariance_of<Bits>(part, load(dx + i), load(dy + i), square_root);
+        const Lanes addend =
+            covariance_of<Bits>(structure, load(dx + i), load(dy + i), square_root);
         store(out + i, is_first ? addend : load(out + i) + addend);
     }
 }
 
-void covariances(const CovariancePart* parts, std::size_t part_count, const double* dx,
-                 const double* dy, double* out, std::size_t count) {
-    for (std::size_t part = 0; part < part_count; ++part) {
+void covariances(const CovarianceStructure* structures, std::size_t structure_count,
+                 const double* dx, const double* dy, double* out, std::size_t count) {
+    for (std::size_t structure = 0; structure < structure_count; ++structure) {
         const auto add = [&] {
-            switch (parts[part].model) {
+            switch (structures[structure].model) {
                 case VariogramModel::kSpherical:
                     return &add_covariances<VariogramModel::kSpherical>;
                 case VariogramModel::kExponential:
@@ -92,14 +93,14 @@ void covariances(const CovariancePart* parts, std::size_t part_count, const doub
                     return &add_covariances<VariogramModel::kMatern52>;
             }
         }();
-        add(parts[part], part == 0, dx, dy, out, count);
+        add(structures[structure], structure == 0, dx, dy, out, count);
     }
 }
 
 void add_scaled(double share, const double* structure, bool is_first, double* sum,
                 std::size_t count) {
     for (std::size_t i = 0; i < count; i += LANES_WIDTH) {
-        const Vector scaled = share * load(structure + i);
+        const Lanes scaled = share * load(structure + i);
         store(sum + i, is_first ? scaled : load(sum + i) + scaled);
     }
 }
@@ -118,12 +119,12 @@ void differences(const double* coordinates, std::size_t points, double* out) {
 
 /// Column k of the factor in rows first .. first + count - 1, of which row r begins at rows[r].
 template <int count>
-inline void eliminate(double* const* rows, const double* pivot_row, int k, Vector scale) {
-    Vector sum[count];
+inline void eliminate(double* const* rows, const double* pivot_row, int k, Lanes scale) {
+    Lanes sum[count];
     for (int r = 0; r < count; ++r)
         sum[r] = load(rows[r] + k * kLanes);
     for (int j = 0; j < k; ++j) {
-        const Vector factor = load(pivot_row + j * kLanes);
+        const Lanes factor = load(pivot_row + j * kLanes);
         for (int r = 0; r < count; ++r)
             sum[r] -= load(rows[r] + j * kLanes) * factor;
     }
@@ -135,20 +136,20 @@ constexpr int kRowsAtOnce = 4;  // rows whose sums are in registers together
 
 /// Eliminates systems with some rows after those of the points.
 /// @return the least pivot of each lane
-Vector eliminate_all(double** rows, int points, int all_rows) {
-    Vector least = all(1);
+Lanes eliminate_all(double** rows, int points, int all_rows) {
+    Lanes least = all(1);
     for (int k = 0; k < points; ++k) {
         double* const pivot_row = rows[k];
-        Vector pivot = load(pivot_row + k * kLanes);
+        Lanes pivot = load(pivot_row + k * kLanes);
         for (int j = 0; j < k; ++j) {
-            const Vector factor = load(pivot_row + j * kLanes);
+            const Lanes factor = load(pivot_row + j * kLanes);
             pivot -= factor * factor;
         }
         least = pivot < least ? pivot : least;
         // A point that the nearer ones determine is passed over.
-        const Vector scale = pivot < kRedundantVariance
-                                 ? all(0)
-                                 : 1 / root(pivot < kRedundantVariance ? all(1) : pivot);
+        const Lanes scale = pivot < kRedundantVariance
+                                ? all(0)
+                                : 1 / root(pivot < kRedundantVariance ? all(1) : pivot);
         int row = k + 1;
         for (; row + kRowsAtOnce <= all_rows; row += kRowsAtOnce)
             eliminate<kRowsAtOnce>(rows + row, pivot_row, k, scale);
@@ -177,27 +178,27 @@ void find_rows(double** rows, double* numbers, int points, int all_rows) {
         rows[i] = numbers + (points * (points + 1) / 2 + (i - points) * points) * kLanes;
 }
 
-void krige_part(int points, double* numbers, double* estimates, double* variances) {
+void krige_lanes(int points, double* numbers, double* estimates, double* variances) {
     double* rows[kMostLanePoints + 3];
     find_rows(rows, numbers, points, points + 3);
     eliminate_all(rows, points, points + 3);
-    Vector uu = all(0), us = all(0), ut = all(0), ss = all(0), st = all(0);
+    Lanes uu = all(0), us = all(0), ut = all(0), ss = all(0), st = all(0);
     for (int k = 0; k < points; ++k) {
-        const Vector u = load(rows[points] + k * kLanes), s = load(rows[points + 1] + k * kLanes),
-                     t = load(rows[points + 2] + k * kLanes);
+        const Lanes u = load(rows[points] + k * kLanes), s = load(rows[points + 1] + k * kLanes),
+                    t = load(rows[points + 2] + k * kLanes);
         uu += u * u;
         us += u * s;
         ut += u * t;
         ss += s * s;
         st += s * t;
     }
-    const EstimateOf<Vector> estimate = ordinary_kriging(uu, us, ut, ss, st);
+    const EstimateOf<Lanes> estimate = ordinary_kriging(uu, us, ut, ss, st);
     store(estimates, estimate.value);
     store(variances, estimate.variance);
 }
 
-Vector product(const double* a, const double* b, int points) {
-    Vector sum = all(0);
+Lanes product(const double* a, const double* b, int points) {
+    Lanes sum = all(0);
     for (int k = 0; k < points; ++k)
         sum += load(a + k * kLanes) * load(b + k * kLanes);
     return sum;
@@ -206,21 +207,21 @@ Vector product(const double* a, const double* b, int points) {
 /// Makes vectors orthonormal, each against those before it (modified Gram-Schmidt); upper[b][a] is
 /// the part of the a-th along the b-th.
 /// @return the least share of a vector's square that is orthogonal to those before it
-Vector make_orthonormal(double* const* vectors, int terms, int points,
-                        Vector (*upper)[kMostLaneTerms]) {
-    Vector least = all(1);
+Lanes make_orthonormal(double* const* vectors, int terms, int points,
+                       Lanes (*upper)[kMostLaneTerms]) {
+    Lanes least = all(1);
     for (int a = 0; a < terms; ++a) {
-        const Vector whole = product(vectors[a], vectors[a], points);
+        const Lanes whole = product(vectors[a], vectors[a], points);
         for (int b = 0; b < a; ++b) {
-            const Vector part = product(vectors[b], vectors[a], points);
-            upper[b][a] = part;
+            const Lanes projection = product(vectors[b], vectors[a], points);
+            upper[b][a] = projection;
             for (int k = 0; k < points; ++k) {
                 store(vectors[a] + k * kLanes,
-                      load(vectors[a] + k * kLanes) - part * load(vectors[b] + k * kLanes));
+                      load(vectors[a] + k * kLanes) - projection * load(vectors[b] + k * kLanes));
             }
         }
-        const Vector left = product(vectors[a], vectors[a], points);
-        const Vector share = left / (whole > 0.0 ? whole : all(1));
+        const Lanes left = product(vectors[a], vectors[a], points);
+        const Lanes share = left / (whole > 0.0 ? whole : all(1));
         least = share < least ? share : least;
         upper[a][a] = root(left > 0.0 ? left : all(1));
         for (int k = 0; k < points; ++k)
@@ -233,12 +234,12 @@ Vector make_orthonormal(double* const* vectors, int terms, int points,
 constexpr double kWellApart = 1e-6;
 
 /// universal_kriging, with the terms (1, 0, ..) at the node.
-void krige_part_about_drift(int points, int terms, double* numbers, double* estimates,
-                            double* variances, double* well_posed) {
+void krige_lanes_about_drift(int points, int terms, double* numbers, double* estimates,
+                             double* variances, double* well_posed) {
     double* rows[kMostLanePoints + 2 + kMostLaneTerms];
     find_rows(rows, numbers, points, points + 2 + terms);
     double* const* drift = rows + points + 1;
-    Vector upper[kMostLaneTerms][kMostLaneTerms];
+    Lanes upper[kMostLaneTerms][kMostLaneTerms];
 
     // Whether the points distinguish the terms is decided on the terms as they are.
     alignas(64) double plain[kMostLaneTerms * kMostLanePoints * kLanes];
@@ -248,40 +249,40 @@ void krige_part_about_drift(int points, int terms, double* numbers, double* esti
         for (int k = 0; k < points; ++k)
             store(copies[a] + k * kLanes, load(drift[a] + k * kLanes));
     }
-    const Vector apart = make_orthonormal(copies, terms, points, upper);
+    const Lanes apart = make_orthonormal(copies, terms, points, upper);
 
-    const Vector pivot = eliminate_all(rows, points, points + 2 + terms);
-    const Vector apart_then = make_orthonormal(drift, terms, points, upper);
+    const Lanes pivot = eliminate_all(rows, points, points + 2 + terms);
+    const Lanes apart_then = make_orthonormal(drift, terms, points, upper);
     const double* const u = rows[points];
     const double* const t = rows[points + 1 + terms];
-    Vector estimate = product(u, t, points), variance = 1 - product(u, u, points);
-    Vector at_node[kMostLaneTerms];
+    Lanes estimate = product(u, t, points), variance = 1 - product(u, u, points);
+    Lanes at_node[kMostLaneTerms];
     for (int a = 0; a < terms; ++a) {
-        Vector sum = all(a == 0 ? 1 : 0);
+        Lanes sum = all(a == 0 ? 1 : 0);
         for (int b = 0; b < a; ++b)
             sum -= upper[b][a] * at_node[b];
         at_node[a] = sum / upper[a][a];
-        const Vector open = at_node[a] - product(drift[a], u, points);
+        const Lanes open = at_node[a] - product(drift[a], u, points);
         estimate += open * product(drift[a], t, points);
         variance += open * open;
     }
     store(estimates, estimate);
     store(variances, variance > 0.0 ? variance : all(0));
-    const Vector worst = apart < apart_then ? apart : apart_then;
+    const Lanes worst = apart < apart_then ? apart : apart_then;
     store(well_posed, pivot < kRedundantVariance ? all(0) : worst < kWellApart ? all(0) : all(1));
 }
 
 void krige_about_drift(const LaneSystems& systems, double* estimates, double* variances,
                        double* well_posed) {
     for (int lane = 0; lane < kLanes; lane += LANES_WIDTH) {
-        krige_part_about_drift(systems.points, systems.terms, systems.rows + lane, estimates + lane,
-                               variances + lane, well_posed + lane);
+        krige_lanes_about_drift(systems.points, systems.terms, systems.rows + lane,
+                                estimates + lane, variances + lane, well_posed + lane);
     }
 }
 
 void krige(const LaneSystems& systems, double* estimates, double* variances) {
     for (int lane = 0; lane < kLanes; lane += LANES_WIDTH)
-        krige_part(systems.points, systems.rows + lane, estimates + lane, variances + lane);
+        krige_lanes(systems.points, systems.rows + lane, estimates + lane, variances + lane);
 }
 
 }  // namespace

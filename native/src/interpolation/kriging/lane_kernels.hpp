@@ -6,7 +6,7 @@
 
 namespace realmodel::interpolation {
 
-struct CovariancePart;
+struct CovarianceStructure;
 
 /// Kriging systems are solved side by side, each in a lane of vector registers; number k of system
 /// s is element kLanes * k + s of an array.
@@ -37,8 +37,8 @@ struct LaneKernels {
 
     /// out[i]: covariance of positions that differ by dx[i], dy[i]; count a multiple of kLanes,
     /// arrays aligned to 64 bytes.
-    void (*covariances)(const CovariancePart* parts, std::size_t part_count, const double* dx,
-                        const double* dy, double* out, std::size_t count);
+    void (*covariances)(const CovarianceStructure* structures, std::size_t structure_count,
+                        const double* dx, const double* dy, double* out, std::size_t count);
 
     /// sum[i]: share * structure[i], added to what is there unless it is the first.
     void (*add_scaled)(double share, const double* structure, bool is_first, double* sum,

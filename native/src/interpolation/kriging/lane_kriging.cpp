@@ -34,7 +34,7 @@ LaneKriging::LaneKriging(const LinearData& data, const spatial::NearestPoints& t
 }
 
 /// Whether the nodes lie close enough together.
-bool LaneKriging::prepare(std::span<const Position> nodes) {
+bool LaneKriging::prepare(std::span<const PlanPosition> nodes) {
     return block_.prepare(nodes) && (!dip_block_ || dip_block_->prepare(nodes));
 }
 
@@ -67,15 +67,15 @@ void LaneKriging::prepare_covariances() {
     }
     double *x = pair_x_.data(), *y = pair_y_.data();
     for (std::size_t i = 1; i < ends; ++i) {
-        const Position& a = ends_of_candidates_[i];
+        const PlanPosition& a = ends_of_candidates_[i];
         for (std::size_t j = 0; j < i; ++j) {
-            const Position& b = ends_of_candidates_[j];
+            const PlanPosition& b = ends_of_candidates_[j];
             *x++ = a[0] - b[0];
             *y++ = a[1] - b[1];
         }
     }
-    const auto& parts = covariance_.parts();
-    kernels_.covariances(parts.data(), parts.size(), pair_x_.data(), pair_y_.data(),
+    const auto& structures = covariance_.structures();
+    kernels_.covariances(structures.data(), structures.size(), pair_x_.data(), pair_y_.data(),
                          pair_covariance_.data(), pairs);
     table_.resize(count * count);
     const double* covariance = pair_covariance_.data();
@@ -130,7 +130,7 @@ bool LaneKriging::add(const KrigingNode& node) {
     rows += (1 + terms_) * count_ * kLanes;
     base_[lane] = data_.points().values[candidates_[chosen[0]]];
     double *x = node_x_.data() + lane, *y = node_y_.data() + lane;
-    const auto add_end = [&](const Position& end) {
+    const auto add_end = [&](const PlanPosition& end) {
         *x = node.position[0] - end[0];
         *y = node.position[1] - end[1];
         x += kLanes;
@@ -187,10 +187,10 @@ void LaneKriging::set_drift(double* terms) {
 }
 
 void LaneKriging::covariances_with_nodes(double* covariances) {
-    const auto& parts = covariance_.parts();
+    const auto& structures = covariance_.structures();
     double* const with_ends = slopes_ > 0 ? with_ends_.data() : covariances;
-    kernels_.covariances(parts.data(), parts.size(), node_x_.data(), node_y_.data(), with_ends,
-                         ends_ * kLanes);
+    kernels_.covariances(structures.data(), structures.size(), node_x_.data(), node_y_.data(),
+                         with_ends, ends_ * kLanes);
     if (slopes_ == 0) return;
     std::copy_n(with_ends, points_ * kLanes, covariances);
     for (std::size_t s = 0; s < slopes_ * kLanes; ++s) {

@@ -39,7 +39,7 @@ public:
     static constexpr std::size_t kMostNeighbors = kMostLanePoints;
 
     struct KrigingNode {
-        Position position;                                ///< in local coordinates
+        PlanPosition position;                            ///< in local coordinates
         std::uint32_t number;                             ///< given back with the estimate
         std::int32_t left_out = NeighborSearch::kNobody;  ///< a point that is not used
     };
@@ -59,7 +59,7 @@ public:
 private:
     static constexpr std::size_t kMostInBlock = 64;
 
-    bool prepare(std::span<const Position> nodes);
+    bool prepare(std::span<const PlanPosition> nodes);
     void find_candidates();
     void prepare_covariances();
     bool add(const KrigingNode& node);
@@ -77,10 +77,10 @@ private:
     spatial::BlockNeighbors block_;
     std::optional<spatial::BlockNeighbors> dip_block_;
     std::size_t run_ = kMostInBlock;  // nodes tried as a block next
-    std::vector<Position> positions_;
+    std::vector<PlanPosition> positions_;
     std::vector<std::int32_t> candidates_;  // data: points, then slopes
     std::size_t point_candidates_ = 0;
-    std::vector<Position> ends_of_candidates_;
+    std::vector<PlanPosition> ends_of_candidates_;
     std::vector<double> table_;  // covariances of all candidates with each other
     std::size_t pair_count_ = 0;
     AlignedNumbers pair_x_, pair_y_, pair_covariance_;

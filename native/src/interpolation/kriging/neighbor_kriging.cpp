@@ -17,7 +17,7 @@ Estimate universal_kriging(double base, double uu, double ut, const DriftBasis& 
     return {base + ut + open.dot(qt), variance > 0 ? variance : 0};
 }
 
-void NeighborKriging::assemble(const Position& node, std::int32_t sheet,
+void NeighborKriging::assemble(const PlanPosition& node, std::int32_t sheet,
                                std::span<const spatial::Neighbor> neighbors,
                                const DriftFrame& frame) {
     const Eigen::Index terms = drift_terms(drift_);
@@ -64,7 +64,7 @@ bool NeighborKriging::eliminate(Progress* progress) {
     return true;
 }
 
-Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neighbor> neighbors,
+Estimate NeighborKriging::at(const PlanPosition& node, std::span<const spatial::Neighbor> neighbors,
                              std::int32_t sheet, Progress* progress) {
     assert(!neighbors.empty());
     count_ = neighbors.size();

@@ -32,19 +32,19 @@ public:
     ///                   itself on its sheet
     /// @return           means nothing once the caller has cancelled
     /// @param sheet      that the node is on
-    Estimate at(const Position& node, std::span<const spatial::Neighbor> neighbors,
+    Estimate at(const PlanPosition& node, std::span<const spatial::Neighbor> neighbors,
                 std::int32_t sheet = 0, Progress* progress = nullptr);
 
 private:
     double* column(std::size_t k) { return matrix_.data() + k * rows_; }
-    void assemble(const Position& node, std::int32_t sheet,
+    void assemble(const PlanPosition& node, std::int32_t sheet,
                   std::span<const spatial::Neighbor> neighbors, const DriftFrame& frame);
     bool eliminate(Progress* progress);
 
     const LinearData& data_;
     Covariance covariance_;
     Drift drift_;
-    std::vector<Position> positions_;
+    std::vector<PlanPosition> positions_;
     // Columns of the lower triangle of C, and below it the rows c^T, (values - base)^T and F^T, of
     // which elimination makes u^T, t^T and (L^-1 F)^T.
     std::vector<double> matrix_;

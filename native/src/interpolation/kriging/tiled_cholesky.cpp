@@ -9,21 +9,22 @@
 namespace realmodel::interpolation {
 
 double TiledCholesky::bytes(double order) {
-    const double side = std::ceil(order / static_cast<double>(kTile));
-    return side * (side + 1) / 2 * static_cast<double>(kTile * kTile) * sizeof(double);
+    const double tiles_in_row = std::ceil(order / static_cast<double>(kTile));
+    return tiles_in_row * (tiles_in_row + 1) / 2 * static_cast<double>(kTile * kTile) *
+           sizeof(double);
 }
 
 TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redundant,
                              const Execution& execution, double end_share)
     : order_(order),
-      side_((order + kTile - 1) / kTile),
-      tiles_(offset(side_, 0)),
+      tiles_in_row_((order + kTile - 1) / kTile),
+      tiles_(offset(tiles_in_row_, 0)),
       left_out_(static_cast<std::size_t>(order), false) {
     // work(i, j) for the tiles of columns first .. last, until the caller cancels.
     const auto for_tiles = [&](Eigen::Index from_row, Eigen::Index first, Eigen::Index last,
                                const auto& work) {
         parallel_chunks(
-            static_cast<std::size_t>(side_ - from_row), execution,
+            static_cast<std::size_t>(tiles_in_row_ - from_row), execution,
             [&](std::size_t row) {
                 const Eigen::Index i = from_row + static_cast<Eigen::Index>(row);
                 const Eigen::Index end = std::min(i, last);
@@ -32,17 +33,18 @@ TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redu
             },
             0);
     };
-    for_tiles(0, 0, side_, [&](Eigen::Index i, Eigen::Index j) { fill(i, j, entry); });
+    for_tiles(0, 0, tiles_in_row_, [&](Eigen::Index i, Eigen::Index j) { fill(i, j, entry); });
     // The right-looking form: after column k the rest of the matrix is what its factor must give.
-    for (Eigen::Index k = 0; k < side_; ++k) {
+    for (Eigen::Index k = 0; k < tiles_in_row_; ++k) {
         factor_diagonal(k, redundant);
         for_tiles(k + 1, k, k, [&](Eigen::Index i, Eigen::Index) { factor_below(i, k); });
-        for_tiles(k + 1, k + 1, side_, [&](Eigen::Index i, Eigen::Index j) {
+        for_tiles(k + 1, k + 1, tiles_in_row_, [&](Eigen::Index i, Eigen::Index j) {
             block(i, j).noalias() -= block(i, k) * block(j, k).transpose();
         });
         if (execution.progress == nullptr) continue;
         // The work that is left shrinks with the cube of the columns that are left.
-        const double left = static_cast<double>(side_ - k - 1) / static_cast<double>(side_);
+        const double left =
+            static_cast<double>(tiles_in_row_ - k - 1) / static_cast<double>(tiles_in_row_);
         execution.progress->report(end_share * (1 - left * left * left), "factoring all points");
         execution.progress->check();
     }
@@ -82,7 +84,7 @@ void TiledCholesky::factor_below(Eigen::Index i, Eigen::Index k) {
 }
 
 void TiledCholesky::solve(Eigen::MatrixXd& right, Progress* progress) const {
-    for (Eigen::Index i = 0; i < side_; ++i) {
+    for (Eigen::Index i = 0; i < tiles_in_row_; ++i) {
         auto mine = right.middleRows(i * kTile, rows_of(i));
         for (Eigen::Index k = 0; k < i; ++k) {
             if (cancelled(progress)) return;
@@ -96,9 +98,9 @@ void TiledCholesky::solve(Eigen::MatrixXd& right, Progress* progress) const {
 }
 
 void TiledCholesky::solve_transposed(Eigen::MatrixXd& right, Progress* progress) const {
-    for (Eigen::Index i = side_ - 1; i >= 0; --i) {
+    for (Eigen::Index i = tiles_in_row_ - 1; i >= 0; --i) {
         auto mine = right.middleRows(i * kTile, rows_of(i));
-        for (Eigen::Index k = i + 1; k < side_; ++k) {
+        for (Eigen::Index k = i + 1; k < tiles_in_row_; ++k) {
             if (cancelled(progress)) return;
             mine.noalias() -= block(k, i).transpose() * right.middleRows(k * kTile, rows_of(k));
         }
@@ -115,7 +117,7 @@ void TiledCholesky::solve_transposed(Eigen::MatrixXd& right, Progress* progress)
 
 double TiledCholesky::log_determinant() const {
     double sum = 0;
-    for (Eigen::Index i = 0; i < side_; ++i) {
+    for (Eigen::Index i = 0; i < tiles_in_row_; ++i) {
         const ConstBlock a = block(i, i);
         for (Eigen::Index c = 0; c < a.cols(); ++c)
             sum += 2 * elementary::log(a(c, c));

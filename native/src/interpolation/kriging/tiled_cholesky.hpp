@@ -64,7 +64,7 @@ private:
     void factor_below(Eigen::Index i, Eigen::Index k);
 
     Eigen::Index order_;
-    Eigen::Index side_;  // tiles in a row
+    Eigen::Index tiles_in_row_;  // tiles in a row
     std::vector<double> tiles_;
     std::vector<bool> left_out_;
 };

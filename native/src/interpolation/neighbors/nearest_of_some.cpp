@@ -15,13 +15,13 @@ std::vector<spatial::Neighbor> nearest_of_some(const DistinctPoints& positions,
     count = std::min(count, positions.size);
     std::vector<spatial::Neighbor> nearest(asked.size() * count,
                                            {std::numeric_limits<double>::infinity(), 0});
-    std::vector<Position> part;
+    std::vector<PlanPosition> subset;
     for (std::size_t first = 0; first < positions.size; first += most) {
         if (execution.progress != nullptr) execution.progress->check();
-        part.clear();
+        subset.clear();
         for (std::size_t i = first; i < std::min(first + most, positions.size); ++i)
-            part.push_back(positions.at(i));
-        const spatial::NearestPoints tree(part);
+            subset.push_back(positions.at(i));
+        const spatial::NearestPoints tree(subset);
         const NodeLoop loop{asked.size(), 64, {execution.threads, nullptr}};
         loop.over_nodes([] { return std::vector<spatial::Neighbor>(); },
                         [&](std::vector<spatial::Neighbor>& near, std::size_t k) {

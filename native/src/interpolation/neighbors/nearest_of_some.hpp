@@ -16,7 +16,7 @@ namespace realmodel::interpolation {
 /// more than the memory holds.
 struct DistinctPoints {
     std::size_t size;
-    std::function<Position(std::size_t)> at;
+    std::function<PlanPosition(std::size_t)> at;
 };
 
 /// So many points are kept in memory; of more only those that matter.

@@ -60,7 +60,7 @@ NeighborSearch::NeighborSearch(const DataPoints& data, const spatial::NearestPoi
     }
 }
 
-bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbor>& neighbors,
+bool NeighborSearch::find(const PlanPosition& position, std::vector<spatial::Neighbor>& neighbors,
                           std::int32_t left_out) {
     if (plain_ && left_out == kNobody) {
         tree_.find(position, limit_, neighbors);
@@ -86,7 +86,7 @@ bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbo
     return false;
 }
 
-bool DataSearch::find(const Position& position, std::vector<spatial::Neighbor>& neighbors,
+bool DataSearch::find(const PlanPosition& position, std::vector<spatial::Neighbor>& neighbors,
                       std::int32_t left_out) {
     const bool near = points_.find(position, neighbors, left_out);
     if (data_.dip_count() == 0 || neighbors.empty()) return near;

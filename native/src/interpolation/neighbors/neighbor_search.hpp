@@ -32,7 +32,7 @@ public:
     /// Finds the points around a position (local coordinates), nearest first, without `left_out`:
     /// at least one, unless the one left out is the only point.
     /// @return false where none lies within the radius; the nearest alone is found then
-    bool find(const Position& position, std::vector<spatial::Neighbor>& neighbors,
+    bool find(const PlanPosition& position, std::vector<spatial::Neighbor>& neighbors,
               std::int32_t left_out = kNobody);
 
 private:
@@ -57,7 +57,7 @@ public:
 
     /// As NeighborSearch::find; `neighbors` gets the numbers of data. Dips help nothing where there
     /// is no point.
-    bool find(const Position& position, std::vector<spatial::Neighbor>& neighbors,
+    bool find(const PlanPosition& position, std::vector<spatial::Neighbor>& neighbors,
               std::int32_t left_out = NeighborSearch::kNobody);
 
 private:

@@ -27,7 +27,7 @@ std::vector<std::size_t> places_not_zero(std::span<const double> coefficients) {
 
 }  // namespace
 
-KernelSum::KernelSum(std::span<const Position> positions, std::span<const double> sided,
+KernelSum::KernelSum(std::span<const PlanPosition> positions, std::span<const double> sided,
                      std::size_t faults, std::span<const double> coefficients, double radius)
     : sided_(sided),
       coefficients_(coefficients),
@@ -40,7 +40,7 @@ double KernelSum::at(const SheetNode& node) const {
     double sum = 0;
     const auto& [x, y] = node.position;
     bins_.within({x - radius_, y - radius_, x + radius_, y + radius_},
-                 [&](std::size_t number, const Position& position) {
+                 [&](std::size_t number, const PlanPosition& position) {
                      const std::size_t i = numbers_[number];
                      const SheetNode center{position, sided_.subspan(i * faults_, faults_)};
                      sum += coefficients_[i] * tie_kernel(node, center, radius_);
@@ -48,9 +48,9 @@ double KernelSum::at(const SheetNode& node) const {
     return sum;
 }
 
-std::vector<double> tied_heights(std::span<const double> heights, std::span<const Position> nodes,
-                                 std::span<const double> sided, const TieTerms& terms,
-                                 const Execution& execution) {
+std::vector<double> tied_heights(std::span<const double> heights,
+                                 std::span<const PlanPosition> nodes, std::span<const double> sided,
+                                 const TieTerms& terms, const Execution& execution) {
     std::vector<double> z(heights.begin(), heights.end());
     const std::size_t count = terms.positions.size();
     if (count == 0) return z;
@@ -101,7 +101,7 @@ TieRows::TieRows(const TiedSheets& sheets, const TieData& data)
         TieRow& row = rows[i];
         row = {{}, location->weights, data.lower[i], data.upper[i], HUGE_VAL, true};
         for (std::size_t k = 0; k < 3; ++k) {
-            const Position& p = sheets.nodes[corners[k]];
+            const PlanPosition& p = sheets.nodes[corners[k]];
             keys[i][k] = first + corners[k];
             row.is_known =
                 row.is_known && !std::isnan(sheets.heights[static_cast<std::size_t>(keys[i][k])]);
@@ -140,12 +140,12 @@ double TieRows::product(const TieRow& a, const TieRow& b, double radius) const {
     return sum;
 }
 
-std::vector<std::int32_t> nodes_around(std::span<const Position> nodes,
+std::vector<std::int32_t> nodes_around(std::span<const PlanPosition> nodes,
                                        std::span<const std::array<std::int32_t, 3>> triangles,
-                                       std::span<const Position> places) {
+                                       std::span<const PlanPosition> places) {
     const spatial::MeshLocator locator(nodes, triangles);
     std::vector<std::int32_t> near_nodes;
-    for (const Position& place : places) {
+    for (const PlanPosition& place : places) {
         if (const auto at = locator.find(place)) {
             const auto& corners = triangles[static_cast<std::size_t>(at->triangle)];
             near_nodes.insert(near_nodes.end(), corners.begin(), corners.end());
@@ -163,7 +163,7 @@ constexpr double kRidge = 1e-9;  // of the diagonal: no pivot is 0
 
 TieSystem::TieSystem(const TieRows& rows, std::span<const std::int32_t> members, double radius,
                      double ridge) {
-    std::vector<Position> corners;  // three for each member
+    std::vector<PlanPosition> corners;  // three for each member
     for (const std::int32_t member : members)
         for (const std::int32_t corner : rows.rows[member].corners)
             corners.push_back(rows.positions[corner]);
@@ -177,7 +177,7 @@ TieSystem::TieSystem(const TieRows& rows, std::span<const std::int32_t> members,
         for (const std::int32_t corner : row.corners) {
             const auto& [x, y] = rows.positions[corner];
             bins.within({x - radius, y - radius, x + radius, y + radius},
-                        [&](std::size_t number, const Position&) {
+                        [&](std::size_t number, const PlanPosition&) {
                             const auto a = static_cast<std::int32_t>(number / 3);
                             if (a >= b) near.push_back(a);
                         });

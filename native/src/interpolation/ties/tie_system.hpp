@@ -35,7 +35,7 @@ struct DataRange {
 
 /// A node of a sheet. sided: the sheet's side of each fault times the fault's weight at the node.
 struct SheetNode {
-    Position position;
+    PlanPosition position;
     std::span<const double> sided;
 };
 
@@ -55,7 +55,7 @@ inline double tie_kernel(const SheetNode& a, const SheetNode& b, double radius) 
 class KernelSum {
 public:
     /// @param sided  of each center, `faults` numbers
-    KernelSum(std::span<const Position> positions, std::span<const double> sided,
+    KernelSum(std::span<const PlanPosition> positions, std::span<const double> sided,
               std::size_t faults, std::span<const double> coefficients, double radius);
 
     double at(const SheetNode& node) const;
@@ -90,7 +90,7 @@ struct TieRow {
 /// The rows of data, and their corners, the centers of kernels.
 struct TieRows {
     std::vector<TieRow> rows;
-    std::vector<Position> positions;  ///< of centers
+    std::vector<PlanPosition> positions;  ///< of centers
     std::vector<double> sided, heights;
     std::size_t faults = 0;
     double area = 0;  ///< of the mesh

@@ -95,7 +95,7 @@ public:
     /// there are none of these, or where nodes would be moved far for them.
     std::optional<Tying> closer() const {
         const double range = range_of_data();
-        const Members little = given_up_by(kLittle * range);
+        const Members little = abandoned_by(kLittle * range);
         if (little.empty()) return {};
         Tying tying = *this;
         for (const std::int32_t row : little)
@@ -125,7 +125,7 @@ public:
     }
 
 private:
-    enum class TieState : std::uint8_t { kIdle, kActive, kGivenUp };
+    enum class TieState : std::uint8_t { kIdle, kActive, kAbandoned };
 
     /// Meets active rows, and all that do not hold then, but for those that others leave too little
     /// room: less than `least` of the square of a row.
@@ -160,14 +160,15 @@ private:
     }
 
     /// The inequalities that were given up, and that do not hold by so much at most.
-    Members given_up_by(double most) const {
-        Members given_up;
+    Members abandoned_by(double most) const {
+        Members abandoned;
         for (std::size_t i = 0; i < state_.size(); ++i) {
-            const bool is_given_up = state_[i] == TieState::kGivenUp && !rows_.rows[i].is_contact();
-            if (is_given_up && std::abs(missing(i)) <= most)
-                given_up.push_back(static_cast<std::int32_t>(i));
+            const bool is_abandoned =
+                state_[i] == TieState::kAbandoned && !rows_.rows[i].is_contact();
+            if (is_abandoned && std::abs(missing(i)) <= most)
+                abandoned.push_back(static_cast<std::int32_t>(i));
         }
-        return given_up;
+        return abandoned;
     }
 
     /// Makes contacts of inequalities that do not hold, of near ones only the first. Whether there
@@ -325,12 +326,12 @@ private:
             victims.push_back(that_yields(system, members, at));
         sort_unique(victims);
         for (const std::int32_t victim : victims)
-            state_[members[victim]] = TieState::kGivenUp;
-        const auto is_given_up = [&](std::int32_t row) {
-            return state_[row] == TieState::kGivenUp;
+            state_[members[victim]] = TieState::kAbandoned;
+        const auto is_abandoned = [&](std::int32_t row) {
+            return state_[row] == TieState::kAbandoned;
         };
-        std::erase_if(members, is_given_up);
-        std::erase_if(active_, is_given_up);
+        std::erase_if(members, is_abandoned);
+        std::erase_if(active_, is_abandoned);
     }
 
     /// The place in `members` of the row that is left out for one: in the place of a contact the
@@ -419,7 +420,7 @@ bool is_steep(const TieData& data, std::size_t i, std::span<const spatial::Neigh
 
 /// The inequalities that hold beside the data around only if the surface is steep: steeper by
 /// `kSteep` than the data are on the whole.
-std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> nodes) {
+std::vector<bool> steep_bounds(const TieData& data, std::span<const PlanPosition> nodes) {
     std::vector<bool> steep(data.places.size(), false);
     if (data.places.empty()) return steep;
     DataRange range;
@@ -464,7 +465,7 @@ CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data, double le
     const TieRows rows(sheet, data);
     const std::vector<bool> contradicts = steep_bounds(data, sheet.nodes);
     Members members;
-    std::vector<Position> places;
+    std::vector<PlanPosition> places;
     for (std::size_t i = 0; i < rows.rows.size(); ++i) {
         if (!rows.rows[i].is_known || !(rows.rows[i].is_contact() || contradicts[i])) continue;
         members.push_back(static_cast<std::int32_t>(i));

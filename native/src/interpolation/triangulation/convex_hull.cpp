@@ -11,45 +11,46 @@
 
 namespace realmodel::interpolation {
 
-ConvexHull::ConvexHull(std::vector<Position> positions) {
+ConvexHull::ConvexHull(std::vector<PlanPosition> positions) {
     sort_unique(positions);
-    const auto add = [](std::vector<Position>& chain, const Position& position, int outward) {
+    const auto add = [](std::vector<PlanPosition>& chain, const PlanPosition& position,
+                        int outward) {
         while (chain.size() > 1 &&
                exact::orient2d(chain[chain.size() - 2], chain.back(), position) != -outward) {
             chain.pop_back();
         }
         chain.push_back(position);
     };
-    for (const Position& position : positions) {
+    for (const PlanPosition& position : positions) {
         add(lower_, position, -1);
         add(upper_, position, 1);
     }
 }
 
-bool ConvexHull::contains(const Position& position) const {
+bool ConvexHull::contains(const PlanPosition& position) const {
     if (lower_.empty() || position[0] < lower_.front()[0] || position[0] > lower_.back()[0])
         return false;
-    const auto left_of = [](const Position& a, double x) { return a[0] < x; };
-    const auto right_of = [](double x, const Position& a) { return x < a[0]; };
+    const auto left_of = [](const PlanPosition& a, double x) { return a[0] < x; };
+    const auto right_of = [](double x, const PlanPosition& a) { return x < a[0]; };
     const auto low = std::lower_bound(lower_.begin(), lower_.end(), position[0], left_of);
     if ((*low)[0] == position[0] ? position[1] < (*low)[1]
                                  : exact::orient2d(*(low - 1), *low, position) < 0) {
         return false;
     }
     const auto beyond = std::upper_bound(upper_.begin(), upper_.end(), position[0], right_of);
-    const Position& before = *(beyond - 1);
+    const PlanPosition& before = *(beyond - 1);
     return before[0] == position[0] ? position[1] <= before[1]
                                     : exact::orient2d(before, *beyond, position) <= 0;
 }
 
-std::vector<Position> ConvexHull::corners() const {
-    std::vector<Position> out = lower_;
+std::vector<PlanPosition> ConvexHull::corners() const {
+    std::vector<PlanPosition> out = lower_;
     for (std::size_t i = 1; i + 1 < upper_.size(); ++i)
         out.push_back(upper_[i]);
     return out;
 }
 
-std::vector<std::int32_t> hull_border(std::span<const Position> positions) {
+std::vector<std::int32_t> hull_border(std::span<const PlanPosition> positions) {
     std::vector<std::int32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0);
     const auto at = [&](std::int32_t i) { return positions[static_cast<std::size_t>(i)]; };
@@ -82,7 +83,7 @@ std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> po
                                        std::span<const std::array<double, 2>> nodes,
                                        const Execution& execution) {
     require_finite_nodes(nodes);
-    auto positions = transformed(points, [](const auto& p) { return Position{p[0], p[1]}; });
+    auto positions = transformed(points, [](const auto& p) { return PlanPosition{p[0], p[1]}; });
     require_finite_nodes(positions);
     const ConvexHull hull(std::move(positions));
     std::vector<std::uint8_t> outside(nodes.size());

@@ -33,16 +33,16 @@ constexpr double kOfOrigin = 4e-16;  // what coordinates relative to the origin 
 class HullBorder {
 public:
     /// Edges counterclockwise, in any order.
-    void add(const Position& from, double from_value, const Position& to, double to_value) {
+    void add(const PlanPosition& from, double from_value, const PlanPosition& to, double to_value) {
         edges_.push_back({from, to, from_value, to_value});
     }
     /// Value at the nearest place of the border; of places equally near that of the edge that
     /// begins at the lexicographically least position.
-    double nearest_value(const Position& position) const;
+    double nearest_value(const PlanPosition& position) const;
 
 private:
     struct ValuedEdge {
-        Position from, to;
+        PlanPosition from, to;
         double from_value, to_value;
     };
     std::vector<ValuedEdge> edges_;
@@ -53,7 +53,7 @@ private:
 class PointTriangulation {
 public:
     using Delaunay = meshing::Cdt;
-    using Face = Delaunay::Face_handle;
+    using FaceHandle = Delaunay::Face_handle;
 
     PointTriangulation(const DataPoints& data, Progress* progress);
 
@@ -62,14 +62,14 @@ public:
     /// A triangle at the point nearest to a position: where the search for it begins, so that what
     /// is found on ties depends on the position alone. No triangle where the points lie in one
     /// line.
-    Face near(const Position& position, std::vector<spatial::Neighbor>& nearest) const;
+    FaceHandle near(const PlanPosition& position, std::vector<spatial::Neighbor>& nearest) const;
 
     /// The corners of a triangle counterclockwise from the one with the least number: it does not
     /// matter then in which order points were inserted.
-    std::array<std::int32_t, 3> corners(Face face) const;
+    std::array<std::int32_t, 3> corners(FaceHandle face) const;
 
     /// Value at a position inside `face`, linear between its corners.
-    double linear(const Position& position, Face face) const;
+    double linear(const PlanPosition& position, FaceHandle face) const;
 
     const HullBorder& border() const { return border_; }
 
@@ -109,14 +109,14 @@ PointTriangulation::PointTriangulation(const DataPoints& data, Progress* progres
     }
 }
 
-PointTriangulation::Face PointTriangulation::near(const Position& position,
-                                                  std::vector<spatial::Neighbor>& nearest) const {
+PointTriangulation::FaceHandle PointTriangulation::near(
+    const PlanPosition& position, std::vector<spatial::Neighbor>& nearest) const {
     if (delaunay_.dimension() < 2) return {};
     tree_.find(position, 1, nearest);
     return vertices_[nearest[0].point]->face();
 }
 
-std::array<std::int32_t, 3> PointTriangulation::corners(Face face) const {
+std::array<std::int32_t, 3> PointTriangulation::corners(FaceHandle face) const {
     std::array<std::int32_t, 3> out{};
     for (int k = 0; k < 3; ++k)
         out[k] = face->vertex(k)->number;
@@ -124,7 +124,7 @@ std::array<std::int32_t, 3> PointTriangulation::corners(Face face) const {
     return out;
 }
 
-double PointTriangulation::linear(const Position& position, Face face) const {
+double PointTriangulation::linear(const PlanPosition& position, FaceHandle face) const {
     std::array<double, 3> x{}, y{}, z{};
     const std::array<std::int32_t, 3> points = corners(face);
     for (int k = 0; k < 3; ++k) {
@@ -150,13 +150,13 @@ double PointTriangulation::linear(const Position& position, Face face) const {
     return z[0] + wb * (z[1] - z[0]) + wc * (z[2] - z[0]);
 }
 
-double HullBorder::nearest_value(const Position& position) const {
+double HullBorder::nearest_value(const PlanPosition& position) const {
     double least = std::numeric_limits<double>::infinity(), value = 0;
     const ValuedEdge* nearest = nullptr;
     for (const ValuedEdge& edge : edges_) {
-        const Position& from = edge.from;
+        const PlanPosition& from = edge.from;
         const double t = nearest_share(from, edge.to, position);
-        const Position off = moved(minus(position, from), -t, minus(edge.to, from));
+        const PlanPosition off = moved(minus(position, from), -t, minus(edge.to, from));
         const double squared = dot(off, off);
         const bool is_first = squared == least && nearest != nullptr && from < nearest->from;
         if (!(squared < least) && !is_first) continue;
@@ -167,43 +167,44 @@ double HullBorder::nearest_value(const Position& position) const {
     return value;
 }
 
-/// Tells of circles whether a part of some points has all points that may lie in them. Positions
+/// Tells of circles whether a subset of some points has all points that may lie in them. Positions
 /// are local coordinates.
-class PartCheck {
+class SubsetCheck {
 public:
-    PartCheck(const DataPoints& data, const PointsAround& around);
+    SubsetCheck(const DataPoints& data, const PointsAround& around);
 
     /// Whether a node lies in the hull of all points, its border included. Exact.
-    bool in_hull(const Position& node) const { return hull_.contains(node); }
+    bool in_hull(const PlanPosition& node) const { return hull_.contains(node); }
     const HullBorder& border() const { return border_; }
-    /// Whether the part is the whole.
+    /// Whether the subset is the whole.
     bool is_whole() const { return is_whole_; }
 
     /// Whether two points are next to each other on the border of the hull.
-    bool is_hull_edge(const Position& a, const Position& b) const;
+    bool is_hull_edge(const PlanPosition& a, const PlanPosition& b) const;
 
-    /// Whether the part has all points in the circle through p and two points, or, of an edge of
+    /// Whether the subset has all points in the circle through p and two points, or, of an edge of
     /// the hull, on the side of the edge where p is.
-    bool has_all_in_circle(const Position& p, const Position& a, const Position& b) const;
+    bool has_all_in_circle(const PlanPosition& p, const PlanPosition& a,
+                           const PlanPosition& b) const;
 
 private:
     bool has_all_in(const spatial::PlanBox& box) const;
 
     ConvexHull hull_;
     HullBorder border_;
-    std::vector<std::pair<Position, std::size_t>> place_on_border_;  // ascending
+    std::vector<std::pair<PlanPosition, std::size_t>> place_on_border_;  // ascending
     spatial::PlanBox all_, window_;
     bool is_whole_;
 };
 
-std::vector<Position> local_positions(const DataPoints& data,
-                                      std::span<const std::array<double, 3>> points) {
+std::vector<PlanPosition> local_positions(const DataPoints& data,
+                                          std::span<const std::array<double, 3>> points) {
     return transformed(points, [&](const auto& p) { return data.to_local({p[0], p[1]}); });
 }
 
-PartCheck::PartCheck(const DataPoints& data, const PointsAround& around)
+SubsetCheck::SubsetCheck(const DataPoints& data, const PointsAround& around)
     : hull_(local_positions(data, around.border)), is_whole_(around.is_whole) {
-    const std::vector<Position> places = local_positions(data, around.border);
+    const std::vector<PlanPosition> places = local_positions(data, around.border);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const std::size_t next = (i + 1) % places.size();
         border_.add(places[i], around.border[i][2], places[next], around.border[next][2]);
@@ -219,31 +220,32 @@ PartCheck::PartCheck(const DataPoints& data, const PointsAround& around)
     window_ = local_box(around.window).widened(-2 * off);
 }
 
-bool PartCheck::is_hull_edge(const Position& a, const Position& b) const {
-    const auto place = [&](const Position& p) {
+bool SubsetCheck::is_hull_edge(const PlanPosition& a, const PlanPosition& b) const {
+    const auto place = [&](const PlanPosition& p) {
         const auto entry = std::lower_bound(place_on_border_.begin(), place_on_border_.end(),
                                             std::pair(p, std::size_t{0}));
-        const bool is_there = entry != place_on_border_.end() && entry->first == p;
-        return is_there ? entry->second : place_on_border_.size();
+        const bool is_on_border = entry != place_on_border_.end() && entry->first == p;
+        return is_on_border ? entry->second : place_on_border_.size();
     };
     const std::size_t count = place_on_border_.size(), i = place(a), j = place(b);
     if (i == count || j == count) return false;
     return (i + 1) % count == j || (j + 1) % count == i;
 }
 
-bool PartCheck::has_all_in(const spatial::PlanBox& box) const {
+bool SubsetCheck::has_all_in(const spatial::PlanBox& box) const {
     return std::max(box.low_x, all_.low_x) >= window_.low_x &&
            std::max(box.low_y, all_.low_y) >= window_.low_y &&
            std::min(box.high_x, all_.high_x) <= window_.high_x &&
            std::min(box.high_y, all_.high_y) <= window_.high_y;
 }
 
-bool PartCheck::has_all_in_circle(const Position& p, const Position& a, const Position& b) const {
+bool SubsetCheck::has_all_in_circle(const PlanPosition& p, const PlanPosition& a,
+                                    const PlanPosition& b) const {
     if (is_whole_) return true;
     const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1];
     const double cross = ax * by - ay * bx, dot = ax * bx + ay * by;
     const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
-    const double ux = bx - ax, uy = by - ay, side = std::sqrt(ux * ux + uy * uy);
+    const double ux = bx - ax, uy = by - ay, edge_length = std::sqrt(ux * ux + uy * uy);
     if (dot <= 0 && is_hull_edge(a, b)) {
         // Less than half a circle: it reaches from the edge as high as the tangent of half the arc
         // tells, and is nowhere wider.
@@ -252,9 +254,9 @@ bool PartCheck::has_all_in_circle(const Position& p, const Position& a, const Po
         const double off_x = std::abs(uy) * high, off_y = std::abs(ux) * high;
         const spatial::PlanBox box{std::min(a[0], b[0]) - off_x, std::min(a[1], b[1]) - off_y,
                                    std::max(a[0], b[0]) + off_x, std::max(a[1], b[1]) + off_y};
-        return has_all_in(box.widened(kSlack * side));
+        return has_all_in(box.widened(kSlack * edge_length));
     }
-    if (!(std::abs(cross) > kFlat * std::max({aa, bb, side * side}))) return false;
+    if (!(std::abs(cross) > kFlat * std::max({aa, bb, edge_length * edge_length}))) return false;
     const double x = (by * aa - ay * bb) / (2 * cross), y = (ax * bb - bx * aa) / (2 * cross);
     const double radius = std::sqrt(x * x + y * y) * (1 + kSlack);
     const double middle_x = p[0] + x, middle_y = p[1] + y;
@@ -270,31 +272,31 @@ bool PartCheck::has_all_in_circle(const Position& p, const Position& a, const Po
     return has_all_in({middle_x - half_x, middle_y - half_y, middle_x + half_x, middle_y + half_y});
 }
 
-using Face = PointTriangulation::Face;
+using FaceHandle = PointTriangulation::FaceHandle;
 using Delaunay = PointTriangulation::Delaunay;
-using Edge = Delaunay::Edge;
+using DelaunayEdge = Delaunay::Edge;
 using meshing::Kernel;
-using Point = Kernel::Point_2;
+using KernelPoint = Kernel::Point_2;
 
 // Of the distances to the neighbors: where their weighted mean misses the node by more, the areas
 // are rounding.
 constexpr double kAreasAgree = 1e-7;
 
-/// What a value follows from. check: whether a part of the points suffices; null where there are
+/// What a value follows from. check: whether a subset of the points suffices; null where there are
 /// all.
 struct ValueSource {
     const DataPoints& data;
     const PointTriangulation& triangulation;
-    const PartCheck* check;
+    const SubsetCheck* check;
 
     const Delaunay& delaunay() const { return triangulation.delaunay(); }
-    std::int32_t number(const Edge& edge, int turned) const {
+    std::int32_t number(const DelaunayEdge& edge, int turned) const {
         return edge.first->vertex((edge.second + turned) % 3)->number;
     }
-    bool circle_suffices(const Position& p, std::int32_t a, std::int32_t b) const {
+    bool circle_suffices(const PlanPosition& p, std::int32_t a, std::int32_t b) const {
         return check == nullptr || check->has_all_in_circle(p, data.local[a], data.local[b]);
     }
-    bool triangle_suffices(Face face) const {
+    bool triangle_suffices(FaceHandle face) const {
         const auto [a, b, c] = triangulation.corners(face);
         return circle_suffices(data.local[a], b, c) || circle_suffices(data.local[b], c, a) ||
                circle_suffices(data.local[c], a, b);
@@ -305,18 +307,19 @@ struct ValueSource {
 /// the lower number: it does not matter then in which order points were inserted. from, to: the
 /// numbers of the ends of the edge, ascending.
 struct NodeLocation {
-    Face face, other;  ///< other: of an edge
+    FaceHandle face, other;  ///< other: of an edge
     bool is_on_edge = false, is_on_hull = false;
     std::int32_t from = 0, to = 0;
 };
 
-NodeLocation place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face face, int at) {
+NodeLocation place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, FaceHandle face,
+                      int at) {
     NodeLocation place;
     place.face = face;
     if (kind == Delaunay::FACE) return place;
     place.is_on_edge = true;
     place.other = face->neighbor(at);
-    const auto number = [](Face f, int i) { return f->vertex(i)->number; };
+    const auto number = [](FaceHandle f, int i) { return f->vertex(i)->number; };
     place.from = std::min(number(face, Delaunay::cw(at)), number(face, Delaunay::ccw(at)));
     place.to = std::max(number(face, Delaunay::cw(at)), number(face, Delaunay::ccw(at)));
     place.is_on_hull = delaunay.is_infinite(face) || delaunay.is_infinite(place.other);
@@ -339,48 +342,48 @@ bool suffices(const ValueSource& source, const NodeLocation& place) {
 }
 
 /// A value, and whether the points suffice for it.
-struct PartValue {
+struct SubsetValue {
     double value;
     bool is_certain;
 };
 
-PartValue linear(const ValueSource& source, const Position& node, const NodeLocation& place) {
+SubsetValue linear(const ValueSource& source, const PlanPosition& node, const NodeLocation& place) {
     return {source.triangulation.linear(node, place.face), suffices(source, place)};
 }
 
 /// value(source, node, place) for each node in a triangle; the border's value elsewhere. around:
 /// null where there are all points.
 template <class Value>
-PartValues on_triangulation(std::span<const std::array<double, 3>> points,
-                            std::span<const Position> nodes, const PointsAround* around,
-                            const Execution& execution, const char* text, Value&& value) {
+SubsetValues on_triangulation(std::span<const std::array<double, 3>> points,
+                              std::span<const PlanPosition> nodes, const PointsAround* around,
+                              const Execution& execution, const char* text, Value&& value) {
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
     const PointTriangulation triangulation(data, execution.progress);
-    std::optional<PartCheck> check;
+    std::optional<SubsetCheck> check;
     if (around != nullptr) check.emplace(data, *around);
     const ValueSource source{data, triangulation, check ? &*check : nullptr};
-    PartValues out{std::vector<double>(nodes.size()), std::vector<std::uint8_t>(nodes.size(), 1)};
+    SubsetValues out{std::vector<double>(nodes.size()), std::vector<std::uint8_t>(nodes.size(), 1)};
     const NodeLoop loop{nodes.size(), 256, execution, text};
     loop.over_nodes(
         [] { return std::vector<spatial::Neighbor>(); },
         [&](std::vector<spatial::Neighbor>& nearest, std::size_t i) {
-            const Position node = data.to_local(nodes[i]);
+            const PlanPosition node = data.to_local(nodes[i]);
             if (check && !check->in_hull(node)) {
                 out.z[i] = check->border().nearest_value(node);
                 return;
             }
             Delaunay::Locate_type kind = Delaunay::OUTSIDE_AFFINE_HULL;
             int at = 0;
-            Face face = triangulation.near(node, nearest);
-            if (face != Face()) {
+            FaceHandle face = triangulation.near(node, nearest);
+            if (face != FaceHandle()) {
                 face = triangulation.delaunay().locate({node[0], node[1]}, kind, at, face);
             }
             if (kind == Delaunay::VERTEX) {
                 out.z[i] = data.values[face->vertex(at)->number];
             } else if (kind == Delaunay::FACE || kind == Delaunay::EDGE) {
                 const NodeLocation place = place_of(triangulation.delaunay(), kind, face, at);
-                const PartValue here = value(source, node, place);
+                const SubsetValue here = value(source, node, place);
                 out.z[i] = here.value;
                 out.certain[i] = here.is_certain ? 1 : 0;
             } else {
@@ -392,22 +395,22 @@ PartValues on_triangulation(std::span<const std::array<double, 3>> points,
 }
 
 /// Whether a circle through a node and both ends of an edge has its center nowhere, for doubles.
-bool has_no_center(const Point& node, const Edge& edge) {
+bool has_no_center(const KernelPoint& node, const DelaunayEdge& edge) {
     const auto corner = [&](int turned) {
         return edge.first->vertex((edge.second + turned) % 3)->point();
     };
-    const auto is_flat = [&](const Point& p, const Point& q) {
+    const auto is_flat = [&](const KernelPoint& p, const KernelPoint& q) {
         return (q.x() - p.x()) * (node.y() - p.y()) == (q.y() - p.y()) * (node.x() - p.x());
     };
     return is_flat(corner(1), corner(2)) || is_flat(corner(2), corner(1));
 }
 
-using Weights = std::vector<std::pair<std::int32_t, double>>;  // by number of the point
+using PointWeights = std::vector<std::pair<std::int32_t, double>>;  // by number of the point
 
 /// On an edge of the hull only its ends count.
-void add_weights_on_hull(const ValueSource& source, const Position& node, const NodeLocation& place,
-                         Weights& weights) {
-    const Position &from = source.data.local[place.from], &to = source.data.local[place.to];
+void add_weights_on_hull(const ValueSource& source, const PlanPosition& node,
+                         const NodeLocation& place, PointWeights& weights) {
+    const PlanPosition &from = source.data.local[place.from], &to = source.data.local[place.to];
     const std::size_t axis = from[0] != to[0] ? 0 : 1;
     const double share = (node[axis] - to[axis]) / (from[axis] - to[axis]);
     weights.emplace_back(place.from, share);
@@ -419,39 +422,41 @@ void add_weights_on_hull(const ValueSource& source, const Position& node, const 
 /// Their digits depend on the points alone: circles that go are taken from their corners in order,
 /// and the hole begins at its point with the lowest number.
 /// @return false where there are none: the node is as near to the border as rounding
-bool add_weights(const ValueSource& source, const Point& node, std::vector<Edge>& hole,
-                 Weights& weights) {
-    if (std::ranges::any_of(hole, [&](const Edge& edge) { return has_no_center(node, edge); }))
+bool add_weights(const ValueSource& source, const KernelPoint& node,
+                 std::vector<DelaunayEdge>& hole, PointWeights& weights) {
+    if (std::ranges::any_of(hole,
+                            [&](const DelaunayEdge& edge) { return has_no_center(node, edge); }))
         return false;
-    const auto end_of = [&](const Edge& edge) { return source.number(edge, 2); };
-    std::rotate(
-        hole.begin(),
-        std::min_element(hole.begin(), hole.end(),
-                         [&](const Edge& a, const Edge& b) { return end_of(a) < end_of(b); }),
-        hole.end());
+    const auto end_of = [&](const DelaunayEdge& edge) { return source.number(edge, 2); };
+    std::rotate(hole.begin(),
+                std::min_element(hole.begin(), hole.end(),
+                                 [&](const DelaunayEdge& a, const DelaunayEdge& b) {
+                                     return end_of(a) < end_of(b);
+                                 }),
+                hole.end());
     const Kernel kernel;
     const auto center = kernel.construct_circumcenter_2_object();
     const auto area_of = kernel.compute_area_2_object();
     const auto at = [&](std::int32_t number) {
-        const Position& local = source.data.local[number];
-        return Point(local[0], local[1]);
+        const PlanPosition& local = source.data.local[number];
+        return KernelPoint(local[0], local[1]);
     };
-    const auto center_of = [&](Face face) {
+    const auto center_of = [&](FaceHandle face) {
         const auto [a, b, c] = source.triangulation.corners(face);
         return center(at(a), at(b), at(c));
     };
     Delaunay::Vertex_handle before = hole.back().first->vertex(Delaunay::cw(hole.back().second));
-    for (const Edge& edge : hole) {
+    for (const DelaunayEdge& edge : hole) {
         const Delaunay::Vertex_handle current = edge.first->vertex(Delaunay::cw(edge.second));
-        const Point first =
+        const KernelPoint first =
             center(current->point(), edge.first->vertex(Delaunay::ccw(edge.second))->point(), node);
         auto face = source.delaunay().incident_faces(current, edge.first);
         ++face;
-        Point last = center_of(face);
+        KernelPoint last = center_of(face);
         double area = 0;
         while (!face->has_vertex(before)) {
             ++face;
-            const Point next = center_of(face);
+            const KernelPoint next = center_of(face);
             area += area_of(first, last, next);
             last = next;
         }
@@ -463,9 +468,10 @@ bool add_weights(const ValueSource& source, const Point& node, std::vector<Edge>
 }
 
 /// Sibson's coordinates, checked: their weighted mean must give the node back.
-PartValue natural(const ValueSource& source, const Position& node, const NodeLocation& place) {
-    thread_local Weights weights;
-    thread_local std::vector<Edge> hole;
+SubsetValue natural(const ValueSource& source, const PlanPosition& node,
+                    const NodeLocation& place) {
+    thread_local PointWeights weights;
+    thread_local std::vector<DelaunayEdge> hole;
     weights.clear();
     bool is_certain = true;
     if (place.is_on_hull) {
@@ -473,9 +479,9 @@ PartValue natural(const ValueSource& source, const Position& node, const NodeLoc
         is_certain = suffices(source, place);
     } else {
         hole.clear();
-        const Point point(node[0], node[1]);
+        const KernelPoint point(node[0], node[1]);
         source.delaunay().get_boundary_of_conflicts(point, std::back_inserter(hole), place.face);
-        for (const Edge& edge : hole) {
+        for (const DelaunayEdge& edge : hole) {
             is_certain = is_certain && source.circle_suffices(node, source.number(edge, 1),
                                                               source.number(edge, 2));
         }
@@ -493,7 +499,7 @@ PartValue natural(const ValueSource& source, const Position& node, const NodeLoc
         reach += weight * elementary::hypot(dx, dy);
     }
     if (!(sum > 0) || !std::isfinite(sum) || !(elementary::hypot(x, y) <= kAreasAgree * reach)) {
-        const PartValue plain = linear(source, node, place);
+        const SubsetValue plain = linear(source, node, place);
         return {plain.value, plain.is_certain && is_certain};
     }
     return {base + z / sum, is_certain};
@@ -513,15 +519,15 @@ std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> poi
     return on_triangulation(points, nodes, nullptr, execution, "natural neighbors", natural).z;
 }
 
-PartValues linear_on_part(std::span<const std::array<double, 3>> points,
-                          std::span<const std::array<double, 2>> nodes, const PointsAround& around,
-                          const Execution& execution) {
+SubsetValues linear_on_subset(std::span<const std::array<double, 3>> points,
+                              std::span<const std::array<double, 2>> nodes,
+                              const PointsAround& around, const Execution& execution) {
     return on_triangulation(points, nodes, &around, execution, "linear interpolation", linear);
 }
 
-PartValues natural_neighbors_of_part(std::span<const std::array<double, 3>> points,
-                                     std::span<const std::array<double, 2>> nodes,
-                                     const PointsAround& around, const Execution& execution) {
+SubsetValues natural_neighbors_of_subset(std::span<const std::array<double, 3>> points,
+                                         std::span<const std::array<double, 2>> nodes,
+                                         const PointsAround& around, const Execution& execution) {
     return on_triangulation(points, nodes, &around, execution, "natural neighbors", natural);
 }
 

@@ -102,12 +102,12 @@ ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Ani
     const std::size_t count = points.size();
     if (count < 2) return {};
     const IsotropicSpace space(anisotropy);
-    const std::vector<std::int32_t> near_part = even_part(count, kPointsForNearPairs);
+    const std::vector<std::int32_t> near_subset = even_subset(count, kPointsForNearPairs);
     const std::size_t row = std::min(kNearNeighbors, count - 1) + 1;
     const std::vector<spatial::Neighbor> near =
-        points.nearest(space, near_part, row, {1, progress});
+        points.nearest(space, near_subset, row, {1, progress});
     std::vector<double> nearest, farthest;
-    for (std::size_t k = 0; k < near_part.size(); ++k) {
+    for (std::size_t k = 0; k < near_subset.size(); ++k) {
         nearest.push_back(near[k * row + 1].squared_distance);
         farthest.push_back(near[(k + 1) * row - 1].squared_distance);
     }
@@ -121,16 +121,16 @@ ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Ani
         while (near_classes < classes.size() && classes.limit(near_classes) <= near_limit)
             ++near_classes;
     }
-    const std::vector<std::int32_t> numbers = points.part_with(near);
+    const std::vector<std::int32_t> numbers = points.subset_with(near);
     const std::vector<double> values = points.some(numbers).values;
     const auto value = [&](std::int32_t i) { return values[index_among(numbers, count, i)]; };
     // Near pairs: each point with its nearest others, as far as these are surely all.
-    for (std::size_t k = 0; k < near_part.size() && near_classes > 0; ++k) {
-        const std::int32_t i = near_part[k];
+    for (std::size_t k = 0; k < near_subset.size() && near_classes > 0; ++k) {
+        const std::int32_t i = near_subset[k];
         const double value_at_i = value(i);
         for (const spatial::Neighbor& n : std::span(near).subspan(k * row, row)) {
             // itself, or a pair seen from there
-            if (n.point <= i && std::binary_search(near_part.begin(), near_part.end(), n.point))
+            if (n.point <= i && std::binary_search(near_subset.begin(), near_subset.end(), n.point))
                 continue;
             const double distance = std::sqrt(n.squared_distance);
             const std::size_t at = classes.class_of(distance);
@@ -138,10 +138,10 @@ ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Ani
             classes.add(at, distance, value_at_i - value(n.point));
         }
     }
-    const std::vector<std::int32_t> far_part = even_part(count, kPointsForFarPairs);
-    const DataPoints far = points.some(far_part);
-    std::vector<Position> places;
-    for (const Position& local : far.local)
+    const std::vector<std::int32_t> far_subset = even_subset(count, kPointsForFarPairs);
+    const DataPoints far = points.some(far_subset);
+    std::vector<PlanPosition> places;
+    for (const PlanPosition& local : far.local)
         places.push_back(space(local));
     const double farthest_square = (1 + kNearly) * far_limit * far_limit;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -270,8 +270,8 @@ Variogram variogram_of(const CurveFit& fit, const Anisotropy& anisotropy) {
 void multiply_sills(Variogram& variogram, double factor) {
     variogram.sill *= factor;
     variogram.nugget *= factor;
-    for (NestedStructure& part : variogram.further)
-        part.sill *= factor;
+    for (NestedStructure& nested : variogram.further)
+        nested.sill *= factor;
 }
 
 }  // namespace realmodel::interpolation

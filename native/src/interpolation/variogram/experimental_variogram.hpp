@@ -8,14 +8,14 @@
 
 namespace realmodel::interpolation {
 
-/// How semivariance grows with distance, from 0 to 1: as a model does, or with a part that is
+/// How semivariance grows with distance, from 0 to 1: as a model does, or with a structure that is
 /// rougher - a rougher model, or one of a shorter range.
 struct VariogramCurve {
     VariogramModel model = VariogramModel::kSpherical;
     double range = 1;
     VariogramModel rougher = VariogramModel::kExponential;
     double rough_range = 1;  ///< of the range
-    double rough_share = 0;  ///< of the rougher part; 0: there is none
+    double rough_share = 0;  ///< of the rougher structure; 0: there is none
 
     double operator()(double distance) const {
         const double t = distance / range;

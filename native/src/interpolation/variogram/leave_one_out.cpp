@@ -28,13 +28,13 @@ LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::s
                          double buffer, const Execution& execution)
     : neighbors_(std::min({neighbors, points.size() - 1, kMostNeighbors})),
       execution_(execution),
-      left_out_(even_part(points.size(), most)) {
+      left_out_(even_subset(points.size(), most)) {
     const std::size_t wanted = buffer > 0 ? kAskedBeyond * neighbors_ : neighbors_;
     const std::size_t asked = std::min(wanted, points.size() - 1) + 1;
     std::vector<spatial::Neighbor> near =
         points.nearest(IsotropicSpace({}), left_out_, asked, execution);
     near = beyond(near, asked, buffer);
-    const std::vector<std::int32_t> numbers = points.part_with(near);
+    const std::vector<std::int32_t> numbers = points.subset_with(near);
     data_ = points.some(numbers);
     others_.reserve(left_out_.size() * neighbors_);
     for (std::size_t k = 0; k < near.size(); ++k) {
@@ -76,15 +76,15 @@ public:
           points_(points),
           differences_(LaneSystems::row(points) + points),
           rows_(LaneSystems::numbers(points)),
-          own_x_((points + 1) * kLanes),
-          own_y_((points + 1) * kLanes),
+          data_x_((points + 1) * kLanes),
+          data_y_((points + 1) * kLanes),
           x_(differences_ * kLanes),
           y_(differences_ * kLanes),
           estimates_(kLanes),
           variances_(kLanes) {
-        for (CovariancePart part : alike_.front().parts()) {
-            part.share = 1;
-            structures_.push_back(part);
+        for (CovarianceStructure structure : alike_.front().structures()) {
+            structure.share = 1;
+            structures_.push_back(structure);
             of_structures_.emplace_back(differences_ * kLanes);
         }
     }
@@ -116,9 +116,9 @@ private:
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const std::size_t system = std::min(lane, left_out.size() - 1);
             const std::int32_t* of = others + system * points_;
-            const auto put = [&](std::size_t at, const Position& position) {
-                own_x_.data()[at * kLanes + lane] = position[0];
-                own_y_.data()[at * kLanes + lane] = position[1];
+            const auto put = [&](std::size_t at, const PlanPosition& position) {
+                data_x_.data()[at * kLanes + lane] = position[0];
+                data_y_.data()[at * kLanes + lane] = position[1];
             };
             base_[lane] = value(of[0]);
             for (std::size_t i = 0; i < points_; ++i) {
@@ -127,15 +127,15 @@ private:
             }
             put(points_, data_.local[left_out[system]]);
         }
-        kernels_.differences(own_x_.data(), points_, x_.data());
-        kernels_.differences(own_y_.data(), points_, y_.data());
+        kernels_.differences(data_x_.data(), points_, x_.data());
+        kernels_.differences(data_y_.data(), points_, y_.data());
     }
 
     void fill_rows(const Covariance& covariance) {
         double* const rows = rows_.data();
         for (std::size_t k = 0; k < structures_.size(); ++k)
-            kernels_.add_scaled(covariance.parts()[k].share, of_structures_[k].data(), k == 0, rows,
-                                differences_ * kLanes);
+            kernels_.add_scaled(covariance.structures()[k].share, of_structures_[k].data(), k == 0,
+                                rows, differences_ * kLanes);
         for (std::size_t i = 0; i < points_; ++i)  // whatever the nugget
             std::fill_n(rows + (LaneSystems::row(i) + i) * kLanes, kLanes, 1.0);
         std::fill_n(rows + differences_ * kLanes, points_ * kLanes, 1.0);
@@ -148,9 +148,9 @@ private:
     std::span<const Covariance> alike_;
     const LaneKernels& kernels_;
     std::size_t points_, differences_;
-    std::vector<CovariancePart> structures_;  ///< with the share 1
+    std::vector<CovarianceStructure> structures_;  ///< with the share 1
     std::vector<AlignedNumbers> of_structures_;
-    AlignedNumbers rows_, own_x_, own_y_, x_, y_, estimates_, variances_;
+    AlignedNumbers rows_, data_x_, data_y_, x_, y_, estimates_, variances_;
     std::vector<double> values_;  ///< of the points, less those of the nearest
     double base_[kLanes] = {};    ///< the values of the nearest
 };

@@ -18,7 +18,7 @@ struct PredictionErrors {
 };
 
 /// Points that are left out one by one and predicted by kriging from their nearest others: a fixed,
-/// even part of the data. One search for any number of variograms.
+/// even subset of the data. One search for any number of variograms.
 class LeaveOneOut {
 public:
     /// @param neighbors  1 .. 64; fewer where there are not so many others

@@ -27,18 +27,18 @@ namespace {
 constexpr double kLeastVariance = 1e-9, kLeastOfGaussian = 1e-5;
 constexpr double kLeastTerm = 1e-4;  // of a term of the drift that others do not explain
 
-/// Of many points on sheets a fixed part: of each sheet as many, but for those that have fewer, at
-/// positions that are spread evenly and are the same where several sheets have points at one.
+/// Of many points on sheets a fixed subset: of each sheet as many, but for those that have fewer,
+/// at positions that are spread evenly and are the same where several sheets have points at one.
 /// @param sheets  that each is on; empty: there is one
-std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> points,
-                                      std::span<const std::int32_t> sheets, std::size_t most) {
-    std::vector<std::int32_t> part(points.size());
-    std::iota(part.begin(), part.end(), 0);
-    const auto plan = transformed(points, [](const auto& p) { return Position{p[0], p[1]}; });
+std::vector<std::int32_t> spread_subset(std::span<const std::array<double, 3>> points,
+                                        std::span<const std::int32_t> sheets, std::size_t most) {
+    std::vector<std::int32_t> subset(points.size());
+    std::iota(subset.begin(), subset.end(), 0);
+    const auto plan = transformed(points, [](const auto& p) { return PlanPosition{p[0], p[1]}; });
     // Whole numbers with their bits reversed: the first ones are spread evenly, however many.
     std::vector<std::uint32_t> turn(points.size());
     std::uint32_t rank = 0;
-    const Position* before = nullptr;
+    const PlanPosition* before = nullptr;
     for (const std::uint32_t i : spatial::along_hilbert_curve(plan)) {
         if (before != nullptr && *before != plan[i]) ++rank;
         before = &plan[i];
@@ -46,9 +46,9 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
             turn[i] |= (rank >> bit & 1U) << (31 - bit);
     }
     const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
-    std::ranges::sort(part, {}, [&](std::int32_t i) { return std::tuple(sheet(i), turn[i], i); });
+    std::ranges::sort(subset, {}, [&](std::int32_t i) { return std::tuple(sheet(i), turn[i], i); });
     std::vector<std::size_t> sizes;  // of the sheets with points
-    for (const auto of_sheet : groups_of(part, sheet))
+    for (const auto of_sheet : groups_of(subset, sheet))
         sizes.push_back(of_sheet.size());
     std::sort(sizes.begin(), sizes.end());
     std::size_t left = most, quota = 0;
@@ -57,7 +57,7 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
         left -= std::min(left, std::min(quota, sizes[k]));
     }
     std::vector<std::int32_t> numbers;
-    for (const auto of_sheet : groups_of(part, sheet)) {
+    for (const auto of_sheet : groups_of(subset, sheet)) {
         const auto first = of_sheet.first(std::min(of_sheet.size(), quota));
         numbers.insert(numbers.end(), first.begin(), first.end());
     }
@@ -65,17 +65,17 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
     return numbers;
 }
 
-/// A part of points on sheets, as Likelihood takes them.
+/// A subset of points on sheets, as Likelihood takes them.
 DataPoints some_points(std::span<const std::array<double, 3>> points,
                        std::span<const std::int32_t> sheets) {
     DataPoints all = prepare_points(points, sheets);
     if (points.size() <= Likelihood::kMostPoints) return all;
-    const std::vector<std::int32_t> part = spread_part(points, sheets, Likelihood::kMostPoints);
-    std::vector<std::int32_t> sheets_of_part;
+    const std::vector<std::int32_t> subset = spread_subset(points, sheets, Likelihood::kMostPoints);
+    std::vector<std::int32_t> sheets_of_subset;
     if (!sheets.empty())
-        sheets_of_part = transformed(part, [&](std::int32_t i) { return sheets[i]; });
-    return prepare_points(transformed(part, [&](std::int32_t i) { return points[i]; }),
-                          sheets_of_part);
+        sheets_of_subset = transformed(subset, [&](std::int32_t i) { return sheets[i]; });
+    return prepare_points(transformed(subset, [&](std::int32_t i) { return points[i]; }),
+                          sheets_of_subset);
 }
 
 /// Whether all variances of data, given those before them, are as large as `least`.
@@ -98,13 +98,13 @@ Likelihood::Likelihood(std::span<const std::array<double, 3>> points, const Dips
     check_dips(dips);
     const std::size_t count = points_.local.size();
     const std::size_t most = count < kMostData ? (kMostData - count) / 2 : 0;
-    for (const std::int32_t dip : even_part(dips.positions.size(), most)) {
+    for (const std::int32_t dip : even_subset(dips.positions.size(), most)) {
         dips_.push_back(dips.positions[dip]);
         slopes_.push_back(dips.slopes[dip]);
         if (has_sheets()) of_dips_.push_back(sheets.of_dips[dip]);
     }
     spatial::PlanBox box = spatial::box_around(points_.local);
-    for (const Position& dip : dips_) {
+    for (const PlanPosition& dip : dips_) {
         const auto [x, y] = points_.to_local(dip);
         box = box.united({x, y, x, y});
     }
@@ -122,7 +122,7 @@ Likelihood::Likelihood(std::span<const std::array<double, 3>> points, const Dips
 }
 
 Eigen::MatrixXd Likelihood::drift_of(const LinearData& data) const {
-    std::vector<Position> positions;
+    std::vector<PlanPosition> positions;
     const auto count = static_cast<std::int32_t>(data.size());
     for (std::int32_t i = 0; i < count; ++i)
         positions.push_back(data.position(i));

@@ -25,7 +25,7 @@ namespace realmodel::interpolation {
 /// which knows nothing of the drift (Kitanidis 1983, "Statistical estimation of polynomial
 /// generalized covariance functions", Water Resources Research 19; Chiles and Delfiner 2012,
 /// section 2.6.3). Each sheet of several has a constant of its own. Of many points, and of many
-/// dips, a fixed, even part counts.
+/// dips, a fixed, even subset counts.
 class Likelihood {
 public:
     /// Points, and points and both slopes of the dips together, that are taken.
@@ -73,7 +73,7 @@ private:
 
     DataPoints points_;
     double base_;  // of heights: the first point's
-    std::vector<Position> dips_, slopes_;
+    std::vector<PlanPosition> dips_, slopes_;
     std::vector<std::int32_t> of_dips_;
     double spacing_, diagonal_ = 0;
     Drift drift_;

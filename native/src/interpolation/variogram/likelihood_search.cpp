@@ -68,17 +68,17 @@ class LikelihoodSearch {
 public:
     using CovarianceModel = Likelihood::CovarianceModel;
 
-    /// @param parts  data that do not depend on one another; they need not be of one place
+    /// @param likelihoods  data that do not depend on one another; they need not be of one place
     /// @param error  the variance of the errors of their heights: a nugget is no less
-    LikelihoodSearch(std::vector<Likelihood> parts, double error, Progress* progress)
-        : parts_(std::move(parts)),
+    LikelihoodSearch(std::vector<Likelihood> likelihoods, double error, Progress* progress)
+        : likelihoods_(std::move(likelihoods)),
           error_(error),
           progress_(progress),
-          has_sheets_(parts_.front().has_sheets()),
+          has_sheets_(likelihoods_.front().has_sheets()),
           thickness_(has_sheets_ ? kThicknesses[2] : 0) {
-        for (const Likelihood& part : parts_) {
-            diagonal_ = std::max(diagonal_, part.diagonal());
-            free_ += part.free();
+        for (const Likelihood& likelihood : likelihoods_) {
+            diagonal_ = std::max(diagonal_, likelihood.diagonal());
+            free_ += likelihood.free();
         }
     }
 
@@ -111,7 +111,7 @@ public:
     }
 
     void anisotropies(std::span<const VariogramModel> models) {
-        LikelihoodSearch with(parts_, error_, progress_);
+        LikelihoodSearch with(likelihoods_, error_, progress_);
         const double nugget = shape_.variogram.nugget;
         with.thickness_ = thickness_;
         for (const double ratio : kRatios) {
@@ -142,7 +142,7 @@ public:
     /// A wave and what it leaves, in no direction more than in others, where they make the data far
     /// more likely than the best shape: folds that come again and again.
     void waves() {
-        LikelihoodSearch with(parts_, error_, progress_);
+        LikelihoodSearch with(likelihoods_, error_, progress_);
         const double nugget = shape_.variogram.nugget, range = kWaveRange * diagonal_;
         const Variogram rest{VariogramModel::kMatern52, shape_.variogram.range, 1, nugget, {}, {}};
         for (double azimuth = 0; azimuth < 180; azimuth += kAzimuthStep) {
@@ -220,12 +220,12 @@ public:
             attempt({shape, thickness});
     }
 
-    bool has_found() const { return best_.has_value(); }
+    bool has_result() const { return best_.has_value(); }
 
     /// Of some of the data alone, with the shape that was found for all.
-    double sill_of(const Likelihood& part) const {
+    double sill_of(const Likelihood& likelihood) const {
         std::optional<Likelihood::LikelihoodTerms> terms =
-            part.free() < kFewestFree ? std::nullopt : part.of(shape_);
+            likelihood.free() < kFewestFree ? std::nullopt : likelihood.of(shape_);
         if (!terms || !(terms->squares > 0)) return best_->sill();
         terms->least_sill = best_->least_sill;
         return terms->sill();
@@ -248,7 +248,7 @@ public:
     void run(bool has_dips, const Anisotropy& anisotropy, const FitOptions& options) {
         const std::vector<VariogramModel> models = models_for(has_dips, options.has_bounds);
         ranges_of(models, anisotropy);
-        if (!has_found()) return;
+        if (!has_result()) return;
         thicknesses();
         refine(false);
         thickness_ = shape_.thickness;
@@ -262,8 +262,8 @@ public:
 private:
     std::optional<Likelihood::LikelihoodTerms> together(const CovarianceModel& shape) const {
         std::optional<Likelihood::LikelihoodTerms> all;
-        for (const Likelihood& part : parts_) {
-            std::optional<Likelihood::LikelihoodTerms> terms = part.of(shape);
+        for (const Likelihood& likelihood : likelihoods_) {
+            std::optional<Likelihood::LikelihoodTerms> terms = likelihood.of(shape);
             if (!terms) return std::nullopt;
             if (all) {
                 all->add(*terms);
@@ -314,7 +314,7 @@ private:
         return kNone;
     }
 
-    std::vector<Likelihood> parts_;
+    std::vector<Likelihood> likelihoods_;
     double error_;
     Progress* progress_;
     bool has_sheets_;
@@ -353,7 +353,7 @@ std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 
     if (!is_enough(likelihood)) return std::nullopt;
     LikelihoodSearch search({likelihood}, options.error, progress);
     search.run(!options.dips.positions.empty(), anisotropy, options);
-    if (!search.has_found()) return std::nullopt;
+    if (!search.has_result()) return std::nullopt;
     return search.variogram();
 }
 
@@ -397,7 +397,7 @@ std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
     if (enough.empty()) return {};
     LikelihoodSearch search(std::move(enough), options.error, execution.progress);
     search.run(has_dips, anisotropy, options);
-    if (!search.has_found()) return {};
+    if (!search.has_result()) return {};
     const Variogram shared = search.variogram();
     std::vector<FittedVariogram> fits;
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
@@ -423,7 +423,7 @@ std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> po
     } else {
         search.run(!options.dips.positions.empty(), anisotropy, options);
     }
-    if (!search.has_found()) return std::nullopt;
+    if (!search.has_result()) return std::nullopt;
     FittedSheets fit = fixed_variogram ? search.sheets_of(*fixed_variogram) : search.sheets();
     const std::vector<std::array<double, 3>> leveled = one_surface(points, sheets, fit.constants);
     if (!fixed_variogram && fit.thickness <= kThicknesses[0]) {

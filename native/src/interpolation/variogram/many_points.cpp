@@ -48,9 +48,9 @@ double ManyPoints::value(std::size_t i) const {
 }
 
 void ManyPoints::take_drift_out(Drift drift) {
-    const DataPoints data = some(even_part(size(), kPointsOfDrift));
+    const DataPoints data = some(even_subset(size(), kPointsOfDrift));
     DriftFrame frame(data.local, drift);
-    const Eigen::MatrixXd terms = frame.terms(std::span<const Position>(data.local));
+    const Eigen::MatrixXd terms = frame.terms(std::span<const PlanPosition>(data.local));
     DriftBasis basis;
     basis.make(terms, terms);
     Eigen::VectorXd z(terms.rows());
@@ -85,7 +85,7 @@ double ManyPoints::largest_value() const {
     return largest;
 }
 
-std::vector<std::int32_t> ManyPoints::part_with(std::span<const spatial::Neighbor> near) const {
+std::vector<std::int32_t> ManyPoints::subset_with(std::span<const spatial::Neighbor> near) const {
     std::vector<std::int32_t> numbers;
     if (size() <= most_) {
         numbers.resize(size());
@@ -120,18 +120,18 @@ std::int32_t index_among(std::span<const std::int32_t> numbers, std::size_t size
 
 namespace {
 
-constexpr std::size_t kAsked = 4000;  // an even part shows it
+constexpr std::size_t kAsked = 4000;  // an even subset shows it
 constexpr double kClustered = 0.5;    // of the distance that is expected of random points
 
 double area_of_hull(const ManyPoints& points) {
-    std::vector<Position> positions;
-    for (const std::int32_t point : even_part(points.size(), kMostInMemory))
+    std::vector<PlanPosition> positions;
+    for (const std::int32_t point : even_subset(points.size(), kMostInMemory))
         positions.push_back(points.local(static_cast<std::size_t>(point)));
     const std::vector<std::int32_t> border = hull_border(positions);
     double twice = 0;
     for (std::size_t i = 0; i < border.size(); ++i) {
-        const Position& a = positions[border[i]];
-        const Position& b = positions[border[(i + 1) % border.size()]];
+        const PlanPosition& a = positions[border[i]];
+        const PlanPosition& b = positions[border[(i + 1) % border.size()]];
         twice += a[0] * b[1] - a[1] * b[0];
     }
     return twice / 2;
@@ -141,7 +141,7 @@ double area_of_hull(const ManyPoints& points) {
 
 double buffer_of_clusters(const ManyPoints& points, const Execution& execution) {
     if (points.size() < 3) return 0;
-    const std::vector<std::int32_t> asked = even_part(points.size(), kAsked);
+    const std::vector<std::int32_t> asked = even_subset(points.size(), kAsked);
     const std::vector<spatial::Neighbor> near =
         points.nearest(IsotropicSpace({}), asked, 2, execution);
     double sum = 0;

@@ -19,7 +19,7 @@ namespace realmodel::interpolation {
 class IsotropicSpace {
 public:
     explicit IsotropicSpace(const Anisotropy& anisotropy);
-    Position operator()(const Position& local) const {
+    PlanPosition operator()(const PlanPosition& local) const {
         const auto& [x, y] = local;
         return {sin_ * x + cos_ * y, stretch_ * (cos_ * x - sin_ * y)};
     }
@@ -42,11 +42,11 @@ public:
     ManyPoints& operator=(const ManyPoints&) = delete;
 
     std::size_t size() const { return points_.size(); }
-    Position local(std::size_t i) const {
+    PlanPosition local(std::size_t i) const {
         return {points_[i][0] - points_[0][0], points_[i][1] - points_[0][1]};
     }
     double value(std::size_t i) const;
-    /// From now on values are what the polynomial leaves that fits them, or a fixed, even part of
+    /// From now on values are what the polynomial leaves that fits them, or a fixed, even subset of
     /// many of them, best.
     void take_drift_out(Drift drift);
 
@@ -59,7 +59,7 @@ public:
     double largest_value() const;
 
     /// Numbers of points, ascending, each once, among them those of `near`: of few points all.
-    std::vector<std::int32_t> part_with(std::span<const spatial::Neighbor> near) const;
+    std::vector<std::int32_t> subset_with(std::span<const spatial::Neighbor> near) const;
     /// Some points, in the order of their numbers here.
     DataPoints some(std::span<const std::int32_t> numbers) const;
 
@@ -75,7 +75,7 @@ private:
     std::optional<Trend> trend_;
 };
 
-/// Where a number is among numbers that ManyPoints::part_with gave of `size` points.
+/// Where a number is among numbers that ManyPoints::subset_with gave of `size` points.
 std::int32_t index_among(std::span<const std::int32_t> numbers, std::size_t size,
                          std::int32_t number);
 

@@ -105,8 +105,8 @@ private:
         return square_of_->surely_less(with.errors, without.errors);
     }
 
-    /// By all the points, among the best by a part of them. Of equally good ones one without a
-    /// rough part, and of these the one that fits the experimental values best.
+    /// By all the points, among the best by a subset of them. Of equally good ones one without a
+    /// rough structure, and of these the one that fits the experimental values best.
     VariogramCandidate last_choice(std::vector<VariogramCandidate> all,
                                    const Anisotropy& anisotropy) const {
         std::ranges::stable_sort(all, {}, &VariogramCandidate::square);
@@ -182,9 +182,9 @@ private:
         double open = 0, powers = 0;
         for (const NestedStructure& nested : variogram.structures()) {
             const double power = growth(nested.model);
-            const double part = nested.sill * elementary::pow(distance / nested.range, power);
-            open += part;
-            powers += part * power;
+            const double term = nested.sill * elementary::pow(distance / nested.range, power);
+            open += term;
+            powers += term * power;
         }
         return open > 0 && std::isfinite(powers) ? powers / open : growth(variogram.model);
     }
@@ -230,9 +230,9 @@ Variogram plain_variogram(const ManyPoints& all, const ExperimentalVariogram& e,
 }  // namespace
 
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
-                              const Anisotropy& given_anisotropy, const FitOptions& options,
+                              const Anisotropy& fixed_anisotropy, const FitOptions& options,
                               const Execution& execution) {
-    const Anisotropy anisotropy = options.finds_anisotropy ? Anisotropy{} : given_anisotropy;
+    const Anisotropy anisotropy = options.finds_anisotropy ? Anisotropy{} : fixed_anisotropy;
     check_anisotropy(anisotropy);
     if (options.neighbors < 1) {
         throw InputError("option", "a variogram is fitted with at least one neighbor");

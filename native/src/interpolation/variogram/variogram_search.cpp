@@ -28,16 +28,16 @@ constexpr double kRangeFactors[] = {0.25, 0.5, 2, 4};  // times the range that f
 
 /// A part that makes surfaces of a model rougher. A small share of a rough model is much at short
 /// distances; of the same model at a shorter range less so.
-struct RougherPart {
+struct RougherStructure {
     VariogramModel model;
     double range;  // of the model's
     std::array<double, 4> shares;
 };
 
-std::vector<RougherPart> parts_for(VariogramModel model) {
-    const RougherPart exponential{VariogramModel::kExponential, 1, {0.003, 0.015, 0.07, 0.3}};
-    const RougherPart matern32{VariogramModel::kMatern32, 1, {0.01, 0.03, 0.1, 0.3}};
-    const RougherPart shorter{model, 0.25, {0.01, 0.03, 0.08, 0.2}};
+std::vector<RougherStructure> rougher_structures(VariogramModel model) {
+    const RougherStructure exponential{VariogramModel::kExponential, 1, {0.003, 0.015, 0.07, 0.3}};
+    const RougherStructure matern32{VariogramModel::kMatern32, 1, {0.01, 0.03, 0.1, 0.3}};
+    const RougherStructure shorter{model, 0.25, {0.01, 0.03, 0.08, 0.2}};
     switch (model) {
         case VariogramModel::kMatern32:
         case VariogramModel::kCubic:
@@ -73,7 +73,7 @@ constexpr RefinementStep kSteps[] = {{nullptr, &VariogramCurve::rough_share, 1.8
                                      {nullptr, &VariogramCurve::range, 1.4},
                                      {nullptr, &VariogramCurve::rough_range, 1.6},
                                      {&CurveFit::nugget, nullptr, 2}};
-constexpr double kMostRough = 0.6;  // share of the rougher part
+constexpr double kMostRough = 0.6;  // share of the rougher structure
 
 }  // namespace
 
@@ -211,7 +211,7 @@ const VariogramCandidate* VariogramSearch::best_with(VariogramModel model) const
     return best;
 }
 
-/// One curve with some nuggets, and with some shares of its rougher part.
+/// One curve with some nuggets, and with some shares of its rougher structure.
 void VariogramSearch::attempt(const VariogramCurve& curve, std::span<const double> nuggets,
                               std::span<const double> rough_shares, double longest) {
     if (curve.range > longest) return;
@@ -252,19 +252,19 @@ void VariogramSearch::vary(const VariogramCandidate& start) {
     attempt(with_range.curve, around, {&with_range.curve.rough_share, 1}, longest);
 }
 
-/// A rougher part instead of the nugget, then beside it, and other ranges with it.
+/// A rougher structure instead of the nugget, then beside it, and other ranges with it.
 void VariogramSearch::roughen(VariogramModel model) {
-    const std::vector<RougherPart> parts = parts_for(model);
+    const std::vector<RougherStructure> structures = rougher_structures(model);
     const VariogramCandidate* const plain = best_with(model);
-    if (parts.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square)
+    if (structures.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square)
         return;
     const CurveFit start = plain->fit;
     const double longest = std::max(start.curve.range, longest_);
-    for (const RougherPart& part : parts) {
+    for (const RougherStructure& structure : structures) {
         VariogramCurve curve = start.curve;
-        curve.rougher = part.model;
-        curve.rough_range = part.range;
-        attempt(curve, kNone, part.shares, longest);
+        curve.rougher = structure.model;
+        curve.rough_range = structure.range;
+        attempt(curve, kNone, structure.shares, longest);
     }
     for (int round = 0; round < 2; ++round) {
         const CurveFit best = best_with(model)->fit;
@@ -293,9 +293,9 @@ constexpr double kLeastSpread = 0.05;                  // across, of that along
 
 /// The logarithm of the ratio as length, twice the azimuth as direction: continuous, also where the
 /// azimuth passes 180 degrees and where there is no anisotropy.
-using Vector = std::array<double, 2>;
+using PlanVector = std::array<double, 2>;
 
-Anisotropy anisotropy_of(const Vector& v) {
+Anisotropy anisotropy_of(const PlanVector& v) {
     const double length = std::min(elementary::hypot(v[0], v[1]), elementary::log(kLargestRatio));
     double azimuth = elementary::atan2(v[1], v[0]) * 90 / std::numbers::pi;
     if (azimuth < 0) azimuth += 180;
@@ -311,14 +311,14 @@ CurveFit stretched(CurveFit fit, const Anisotropy& anisotropy) {
 
 Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
                            const CappedSquare& square_of) {
-    const auto square = [&](const Vector& v) {
+    const auto square = [&](const PlanVector& v) {
         const Anisotropy anisotropy = anisotropy_of(v);
         const Variogram variogram = variogram_of(stretched(fit, anisotropy), anisotropy);
         return square_of(points.errors(Covariance(variogram)).errors);
     };
-    Vector best{0, 0};
+    PlanVector best{0, 0};
     double least = square(best);
-    const auto attempt = [&](const Vector& v) {
+    const auto attempt = [&](const PlanVector& v) {
         const double mean_square = square(v);
         if (!(mean_square < least)) return false;
         least = mean_square;
@@ -335,8 +335,9 @@ Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
     // Steps along the axes, shorter where none is better (Hooke and Jeeves 1961, the plain part).
     for (double step = kFirstStep; step > kLastStep;) {
         bool better = false;
-        for (const Vector& side : {Vector{1, 0}, Vector{0, 1}, Vector{-1, 0}, Vector{0, -1}}) {
-            const Vector v{best[0] + step * side[0], best[1] + step * side[1]};
+        for (const PlanVector& direction :
+             {PlanVector{1, 0}, PlanVector{0, 1}, PlanVector{-1, 0}, PlanVector{0, -1}}) {
+            const PlanVector v{best[0] + step * direction[0], best[1] + step * direction[1]};
             if (elementary::hypot(v[0], v[1]) <= elementary::log(kLargestRatio))
                 better = attempt(v) || better;
         }

@@ -52,8 +52,8 @@ public:
     std::vector<VariogramCandidate> run(std::span<const VariogramModel> models,
                                         const std::function<void(double)>& report);
 
-    /// Changes the ranges, the rougher part and the nugget of a variogram by steps, as long as the
-    /// prediction improves by more than chance.
+    /// Changes the ranges, the rougher structure and the nugget of a variogram by steps, as long as
+    /// the prediction improves by more than chance.
     /// @param start  its mean square is that of these points
     VariogramCandidate refined(const VariogramCandidate& start) const;
 

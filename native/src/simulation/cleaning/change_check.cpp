@@ -58,7 +58,7 @@ bool ChangeCheck::join_equal_faces(Change& change, std::int32_t vertex) {
     std::sort(removed_.begin(), removed_.end());
     entries_.clear();
     const auto add = [&](std::int32_t face) {
-        const Loop loop = loop_of(change, face);
+        const FaceLoop loop = loop_of(change, face);
         if (!contains(loop, vertex)) return;
         KeyedFace entry{{loop.size(), 0}, face};
         for (const std::int32_t v : loop) {
@@ -100,7 +100,7 @@ bool ChangeCheck::join_pair(Change& change, std::vector<std::int32_t>& equal) co
                 const std::int32_t of_x = surface_of(change, equal[i]),
                                    of_y = surface_of(change, equal[j]);
                 // the loop as the first cell has it is the one that y sees from outside
-                Loop loop = loop_of(change, equal[i]);
+                FaceLoop loop = loop_of(change, equal[i]);
                 std::vector<std::int32_t> ring(loop.begin(), loop.end());
                 if ((s == 1) != (y < 0)) std::reverse(ring.begin(), ring.end());
                 std::int32_t surface = std::max(of_x, of_y);
@@ -217,7 +217,7 @@ void ChangeCheck::take_surroundings(const Change& change, std::int32_t cell,
                                     std::span<const Beside> sides) {
     vertices_.clear();
     for (const Beside& side : sides) {
-        const Loop loop = loop_of(change, side.face);
+        const FaceLoop loop = loop_of(change, side.face);
         vertices_.insert(vertices_.end(), loop.begin(), loop.end());
     }
     sort_unique(vertices_);
@@ -264,7 +264,7 @@ int ChangeCheck::euler_number(const Change& change, std::int32_t cell,
     edges_.clear();
     vertices_.clear();
     for (const std::int32_t f : faces) {
-        const Loop loop = loop_of(change, f);
+        const FaceLoop loop = loop_of(change, f);
         const bool is_reversed = cells_of(change, f)[0] != cell;
         std::int32_t from = loop.back();
         for (const std::int32_t to : loop) {

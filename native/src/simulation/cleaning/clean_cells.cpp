@@ -348,8 +348,8 @@ private:
             most = std::max(most, n.area);
         // of neighbors across its flat sides one of the same block loses nothing
         const auto rank = [&](const NeighborCell& n) {
-            const bool is_own = complex_.block(n.cell) == complex_.block(cell);
-            return std::tuple(!(is_own && n.area > most / 2), -n.area, n.cell);
+            const bool is_same_block = complex_.block(n.cell) == complex_.block(cell);
+            return std::tuple(!(is_same_block && n.area > most / 2), -n.area, n.cell);
         };
         std::ranges::sort(neighbors, {}, rank);
         for (const NeighborCell& n : neighbors) {

@@ -60,9 +60,9 @@ CellShape cell_shape(std::span<const SeenFace> faces) {
     Vec3 moment{};
     for (const SeenFace& face : faces) {
         const Vec3 arm = minus(face.shape.center, middle);
-        const double part = face.sign * dot(face.shape.area, arm) / 3;
-        shape.volume += part;
-        moment = moved(moment, part, times(0.75, arm));
+        const double term = face.sign * dot(face.shape.area, arm) / 3;
+        shape.volume += term;
+        moment = moved(moment, term, times(0.75, arm));
         shape.area += length(face.shape.area);
     }
     const Vec3 center = shape.volume > 0 ? moved(middle, 1 / shape.volume, moment) : middle;
@@ -155,9 +155,9 @@ FaceVectors EditableComplex::shape_of(std::span<const std::int32_t> loop) const 
     Vec3 from = minus(point(loop.back()), middle);
     for (const std::int32_t v : loop) {
         const Vec3 to = minus(point(v), middle);
-        const Vec3 part = times(0.5, cross(from, to));
-        const double weight = length(part);
-        vectors.area = plus(vectors.area, part);
+        const Vec3 term = times(0.5, cross(from, to));
+        const double weight = length(term);
+        vectors.area = plus(vectors.area, term);
         moment = moved(moment, weight, plus(from, to));
         weights += weight;
         from = to;

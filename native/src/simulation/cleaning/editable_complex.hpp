@@ -135,7 +135,7 @@ struct Change {
     std::span<const std::int32_t> loop(const AddedFace& face) const {
         return std::span(corners).subspan(face.begin, face.size);
     }
-    /// Adds the parts of a loop, divided where it meets itself in a vertex; parts of fewer than
+    /// Adds the pieces of a loop, divided where it meets itself in a vertex; pieces of fewer than
     /// three corners vanish.
     void add(std::span<const std::int32_t> loop, std::int32_t origin,
              std::array<std::int32_t, 2> cells, std::int32_t surface);
@@ -143,7 +143,7 @@ struct Change {
 private:
     void add_simple(std::span<const std::int32_t> loop, std::int32_t origin,
                     std::array<std::int32_t, 2> cells, std::int32_t surface);
-    std::vector<std::int32_t> open_;  // of add(): the part that is not divided off yet
+    std::vector<std::int32_t> open_;  // of add(): the piece that is not divided off yet
 };
 
 /// A complex whose faces can be replaced, with the faces of each cell and vertex.
@@ -219,7 +219,7 @@ public:
     }
 
 private:
-    using Loop = std::span<const std::int32_t>;
+    using FaceLoop = std::span<const std::int32_t>;
 
     struct KeyedFace {
         std::array<std::uint64_t, 2> key;  ///< equal for equal corners
@@ -239,7 +239,7 @@ private:
     void for_faces_after(const Change& change, std::int32_t vertex, const Visit& visit) const;
     bool join_equal_faces(Change& change, std::int32_t vertex);
     bool join_pair(Change& change, std::vector<std::int32_t>& equal) const;
-    Loop loop_of(const Change& change, std::int32_t face) const {
+    FaceLoop loop_of(const Change& change, std::int32_t face) const {
         return face >= 0 ? complex_.corners(face) : change.loop(change.added[index(-1 - face)]);
     }
     std::array<std::int32_t, 2> cells_of(const Change& change, std::int32_t face) const {

@@ -121,7 +121,7 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
     complex.face_offsets[face_count] = static_cast<std::int64_t>(complex.face_vertices.size());
     complex.face_cells.resize(face_count);
     complex.face_surface.resize(face_count);
-    // Of a small model, as of a part of space, it is worth less than the time, and others reuse it.
+    // Of a small model, as of a compartment, it is worth less than the time, and others reuse it.
     const bool is_large = face_count > kManyFaces;
     if (is_large) give_back_memory();
     surface_faces.copy(surface_of_plane, complex);

@@ -32,18 +32,18 @@ class MeetingWalls {
 public:
     MeetingWalls(std::span<const WallStretch> stretches, const ConformedFaces& conformed)
         : conformed_(conformed), line_(conformed.vertex_offsets.size(), kNone) {
-        const auto each_end = [&](const auto& visit) {
+        const auto for_each_end = [&](const auto& visit) {
             for (const WallStretch& s : stretches) {
                 for (std::size_t i = 0; i < 2; ++i) {
                     if (s.lower[i] != s.upper[i]) visit(WallEnd{s.lower[i], s.upper[i], s.line});
                 }
             }
         };
-        each_end([&](const WallEnd& end) {
+        for_each_end([&](const WallEnd& end) {
             std::int32_t& line = line_[conformed.plan_vertex_of(end.lower)];
             line = line == kNone || line == end.line ? end.line : kSeveral;
         });
-        each_end([&](const WallEnd& end) {
+        for_each_end([&](const WallEnd& end) {
             if (line_[conformed.plan_vertex_of(end.lower)] == kSeveral) ends_.push_back(end);
         });
         std::ranges::sort(ends_, {}, &WallEnd::lower);
@@ -111,7 +111,7 @@ std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_need
         number[v] = count++;
     }
     conformed.positions.resize(static_cast<std::size_t>(count));
-    parallel_each(conformed.vertices.size(), execution, [&](std::size_t e) {
+    parallel_for_each(conformed.vertices.size(), execution, [&](std::size_t e) {
         conformed.vertices[e] = number[static_cast<std::size_t>(conformed.vertices[e])];
     });
     return number;
@@ -127,7 +127,7 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
         return construction.node_block[static_cast<std::size_t>(node)];
     };
     DisjointSets sets(construction.node_block.size());
-    parallel_each(construction.links.size(), execution, [&](std::size_t i) {
+    parallel_for_each(construction.links.size(), execution, [&](std::size_t i) {
         const auto [a, b] = construction.links[i];
         assert(block(a) == block(b));
         sets.join(a, b);
@@ -135,7 +135,7 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
     const auto join = [&](std::int32_t a, std::int32_t b) {
         if (a >= 0 && b >= 0 && block(a) == block(b)) sets.join(a, b);
     };
-    parallel_each(links.neighbor.size(), execution, [&](std::size_t p) {
+    parallel_for_each(links.neighbor.size(), execution, [&](std::size_t p) {
         const WholeFace& face = wholes.face[p];
         if (!face.is_set()) return;
         for (const PlaneId n : links.neighbor[p]) {
@@ -213,13 +213,14 @@ std::array<std::int32_t, 2> turn_outwards(std::int32_t* first, std::int32_t* las
 void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links,
                            WholeTriangles& wholes, FaceList& faces, const Execution& execution) {
     std::vector<std::uint8_t> is_touched(links.neighbor.size(), 0);
-    parallel_each(is_touched.size(), execution, [&](std::size_t p) {
+    parallel_for_each(is_touched.size(), execution, [&](std::size_t p) {
         if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) return;
         const auto& neighbors = links.neighbor[p];
-        is_touched[p] = wholes.is_exact[p] != 0 ||
-                        std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
-                            return n != kNone && wholes.part_state[index(n)] == PartState::kInParts;
-                        });
+        is_touched[p] =
+            wholes.is_exact[p] != 0 ||
+            std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
+                return n != kNone && wholes.piece_state[index(n)] == PieceState::kInPieces;
+            });
     });
     std::vector<PlaneId> planes;
     for (std::size_t p = 0; p < is_touched.size(); ++p) {
@@ -259,7 +260,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
     const auto set = [](std::int32_t& number, std::int32_t to) {
         std::atomic_ref(number).store(to, std::memory_order_relaxed);
     };
-    parallel_each(faces.size(), execution, [&](std::size_t f) {
+    parallel_for_each(faces.size(), execution, [&](std::size_t f) {
         const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
         for (auto c = faces.polygons.offsets[f]; c < faces.polygons.offsets[f + 1]; ++c) {
             const PointId point = faces.polygons.points[c];
@@ -285,7 +286,7 @@ void UntouchedTriangles::add_to(CellComplex& complex,
 /// Numbers the input vertices that only untouched triangles have, in their order.
 void UntouchedTriangles::number_vertices(CellComplex& complex) {
     auto is_new = zeros<std::uint8_t>(of_space_.size(), execution_);
-    parallel_each(wholes_.face.size(), execution_, [&](std::size_t p) {
+    parallel_for_each(wholes_.face.size(), execution_, [&](std::size_t p) {
         if (!is_face(p)) return;
         for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner)
             atomic_set(is_new[index(s)]);

@@ -25,7 +25,7 @@ namespace {
 struct Conformed {
     PlanVertices plan_vertices;
     ConformedFaces conformed;
-    FoundWalls walls;
+    WallLists walls;
     std::vector<ExtraPoint> crossings;  ///< of columns along lines
     double done = 0;                    ///< of the work
 };

@@ -17,26 +17,26 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
                                           std::span<const std::int32_t> cell_block,
                                           Progress* progress) {
     const auto cells = static_cast<std::int32_t>(cell_block.size());
-    DisjointSets parts(cell_block.size());
+    DisjointSets components(cell_block.size());
     for (std::size_t f = 0; f < face_cells.size(); ++f) {
         poll(progress, f);
         const auto [first, second] = face_cells[f];
         require_cells(f, face_cells[f], cell_block.size());
         if (first < 0 || second < 0) continue;
         if (cell_block[index(first)] == cell_block[index(second)]) {
-            parts.join(first, second);
+            components.join(first, second);
         }
     }
     std::vector<std::int32_t> component(cell_block.size());
     for (std::int32_t c = 0; c < cells; ++c) {
         poll(progress, static_cast<std::size_t>(c));
-        component[index(c)] = parts.find(c);
+        component[index(c)] = components.find(c);
     }
     return component;
 }
 
-CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
-                     Progress* progress) {
+CellFaces faces_of_cells(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
+                         Progress* progress) {
     constexpr std::size_t kFaces = 8192;  // at a time
     check_total(face_cells.size(), UINT32_MAX / 2);
     const auto produce = [&](std::size_t chunk, const auto& put) {
@@ -49,9 +49,9 @@ CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, st
             }
         }
     };
-    auto sides = sorted_in_buckets<std::uint32_t>(cells, (face_cells.size() + kFaces - 1) / kFaces,
+    auto faces = sorted_in_buckets<std::uint32_t>(cells, (face_cells.size() + kFaces - 1) / kFaces,
                                                   produce, {0, progress});
-    return {std::move(sides.offsets), std::move(sides.values)};
+    return {std::move(faces.offsets), std::move(faces.values)};
 }
 
 }  // namespace realmodel::strata

@@ -186,12 +186,12 @@ private:
 
     /// The cells above and below faces that are flat themselves, ascending.
     std::vector<std::int32_t> cells_of_flat_faces() const {
-        auto cells =
-            found_in_each<std::int32_t>(faces_.size(), execution_, [&](std::size_t f, auto& sides) {
+        auto cells = collect_items<std::int32_t>(
+            faces_.size(), execution_, [&](std::size_t f, auto& cells_of_face) {
                 prefetch_face(f);
                 if (!is_flat_in_plan(f)) return;
                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
-                    if (cell != kOutsideCell) sides.push_back(cell);
+                    if (cell != kOutsideCell) cells_of_face.push_back(cell);
                 }
             });
         sort_unique(cells);
@@ -199,7 +199,7 @@ private:
     }
 
     void find_faces() {
-        of_cells_ = found_in_each<std::pair<std::size_t, std::size_t>>(
+        of_cells_ = collect_items<std::pair<std::size_t, std::size_t>>(
             faces_.size(), execution_, [&](std::size_t f, auto& pairs) {
                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
                     const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);

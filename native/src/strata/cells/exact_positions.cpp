@@ -119,7 +119,7 @@ Array<PlanOffset> vertex_offsets(const Array<PlanOffset>& offsets,
     Array<PlanOffset> result;
     if (offsets.empty()) return result;
     result.resize(conformed.positions.size());
-    parallel_each(offsets.size(), execution, [&](std::size_t p) {
+    parallel_for_each(offsets.size(), execution, [&](std::size_t p) {
         const auto [x, y] = plan_vertices.position[p];
         for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1]; ++v) {
             const auto& moved = conformed.positions[static_cast<std::size_t>(v)];
@@ -248,7 +248,7 @@ TileBorder find_tile_border(const PlanArrangement& geometry, const FaceList& fac
             }
         }
     };
-    border.vertices = found_in_ranges<BorderVertex>(planes.size(), kGrain, execution, find);
+    border.vertices = collect_ranges<BorderVertex>(planes.size(), kGrain, execution, find);
     return border;
 }
 

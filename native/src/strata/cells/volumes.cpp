@@ -75,9 +75,9 @@ struct BlockSum {
     void add(const BlockSum& other) {
         if (other.largest < 0) return;
         see_from(other.anchor, other.largest);
-        for (const double part : {other.volume.total, other.volume.correction,
+        for (const double term : {other.volume.total, other.volume.correction,
                                   other.area.value() * (other.anchor - anchor)})
-            volume.add(part);
+            volume.add(term);
         area.add(other.area.value());
     }
 
@@ -151,7 +151,7 @@ std::vector<double> cell_volumes(std::span<const Vec3> vertices,
     }
     // the shares of the faces on several threads; then in order, so that sums do not depend on them
     std::vector<std::array<double, 2>> share(faces);
-    parallel_each(faces, execution, [&](std::size_t f) {
+    parallel_for_each(faces, execution, [&](std::size_t f) {
         const auto loop = loop_of(f);
         const auto at = [&](std::size_t i) -> const Vec3& { return vertices[index(loop[i])]; };
         const Vec3 area = polygon_normal(loop.size(), at);  // twice as long

@@ -174,7 +174,7 @@ private:
     /// plane of its face.
     using Name = exact::EdgeOrPlane;
     /// A pair that bounds a wall between two cells.
-    struct Bound {
+    struct CellBound {
         std::uint64_t cells;        ///< left and right of the line
         std::uint64_t plan_vertex;  ///< whether the wall stands on it, and where it begins
         const LineEdge* edge;       ///< the left one
@@ -285,9 +285,11 @@ private:
     }
     void sort_bounds() {
         bounds_.append(beneath_.begin(), beneath_.end());
-        const auto differs = [&](const Bound& bound) { return bound.cells != bounds_[0].cells; };
+        const auto differs = [&](const CellBound& bound) {
+            return bound.cells != bounds_[0].cells;
+        };
         if (std::none_of(bounds_.begin(), bounds_.end(), differs)) return;  // found along the line
-        std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) {
+        std::sort(bounds_.begin(), bounds_.end(), [](const CellBound& a, const CellBound& b) {
             return a.cells != b.cells ? a.cells < b.cells : a.plan_vertex < b.plan_vertex;
         });
     }
@@ -334,7 +336,7 @@ private:
     std::array<PlaneId, 2> same_{kNone, kNone};
     std::vector<std::pair<Name, const LineEdge*>> left_names_, right_names_;
     std::vector<EdgePair> thin_;
-    Array<Bound> bounds_, beneath_;
+    Array<CellBound> bounds_, beneath_;
     std::vector<WallBounds> walls_;
 };
 

@@ -31,7 +31,7 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
     };
     passing_ = sorted_in_buckets<Passing>(blocks, passed.size(), produce, execution);
     entry_of_block_ = Array<std::uint32_t>(blocks + 1);
-    parallel_each(blocks, execution, [&](std::size_t block) {
+    parallel_for_each(blocks, execution, [&](std::size_t block) {
         std::size_t entries = std::min(kBlock, corners - block * kBlock);
         for (const Passing& passing : passing_[block])
             entries += passing.vertices;
@@ -459,7 +459,7 @@ private:
 /// What follows asks for faces, not for their corners.
 void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execution& execution) {
     conformed.face_offsets = Array<std::uint32_t>(faces.size() + 1);
-    parallel_each(faces.size() + 1, execution, [&](std::size_t f) {
+    parallel_for_each(faces.size() + 1, execution, [&](std::size_t f) {
         conformed.face_offsets[f] = conformed.entries.first(faces.polygons.offsets[f]);
     });
 }
@@ -468,7 +468,7 @@ void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execut
 /// a corner.
 void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed,
                   const Execution& execution) {
-    parallel_each(collinear.edges.size(), execution, [&](std::size_t e) {
+    parallel_for_each(collinear.edges.size(), execution, [&](std::size_t e) {
         collinear.edges[e].begin = conformed.entries.first(collinear.edges[e].begin);
     });
 }
@@ -486,7 +486,7 @@ void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conf
         }
     };
     conformed.inserted =
-        found_in_ranges<InsertedVertex>(collinear.matched.size(), 1, execution, find);
+        collect_ranges<InsertedVertex>(collinear.matched.size(), 1, execution, find);
     std::ranges::stable_sort(conformed.inserted, {}, &InsertedVertex::entry);
 }
 

@@ -67,8 +67,8 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
                              const std::vector<ExtraPoint>& extra, const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), execution);
     const auto& points = faces.polygons.points;
-    parallel_each(points.size(), execution,
-                  [&](std::size_t c) { atomic_set(used[index(points[c])]); });
+    parallel_for_each(points.size(), execution,
+                      [&](std::size_t c) { atomic_set(used[index(points[c])]); });
     for (const ExtraPoint& e : extra)
         used[index(e.point)] = 1;
     const XRange range = range_of_vertices(geometry, used, execution);
@@ -228,7 +228,7 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
 void set_plan_positions(const PlanArrangement& geometry, PlanVertices& plan_vertices,
                         const Execution& execution) {
     plan_vertices.position = Array<PlanPosition>(plan_vertices.size());
-    parallel_each(plan_vertices.size(), execution, [&](std::size_t p) {
+    parallel_for_each(plan_vertices.size(), execution, [&](std::size_t p) {
         const auto& point = geometry.point(plan_vertices.representative[p]);
         plan_vertices.position[p] = {point.x, point.y};
     });
@@ -252,8 +252,8 @@ struct Follower {
 
 std::uint64_t mixed(const std::array<double, 3>& key) {
     std::uint64_t h = 0;
-    for (const double part : key) {
-        h = (h ^ std::bit_cast<std::uint64_t>(part + 0.0)) * 0x9E3779B97F4A7C15u;  // -0 is 0
+    for (const double coordinate : key) {
+        h = (h ^ std::bit_cast<std::uint64_t>(coordinate + 0.0)) * 0x9E3779B97F4A7C15u;  // -0 is 0
         h ^= h >> 29;
     }
     return h * 0xBF58476D1CE4E5B9u;
@@ -263,8 +263,8 @@ Array<KeyedLine> lines_in_use(const PlanArrangement& geometry, const FaceList& f
                               const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
     const auto& of_edges = faces.polygons.lines;
-    parallel_each(of_edges.size(), execution,
-                  [&](std::size_t c) { atomic_set(used[index(of_edges[c].id())]); });
+    parallel_for_each(of_edges.size(), execution,
+                      [&](std::size_t c) { atomic_set(used[index(of_edges[c].id())]); });
     Array<KeyedLine> lines;
     number_in_order(
         used.size(), execution, [&](std::size_t l) { return used[l] != 0; },
@@ -319,7 +319,7 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
             }
         }
     };
-    return found_in_ranges<Follower>(lines.size(), kLinesAtOnce, execution, find);
+    return collect_ranges<Follower>(lines.size(), kLinesAtOnce, execution, find);
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ struct Batch {
     explicit Batch(const PlanArrangement& geometry) : scope(geometry) {}
     LocalArrangement scope;
     WallBatch walls;
-    FoundWalls line_walls;
+    WallLists line_walls;
 };
 
 /// The walls of one line after another.
@@ -251,7 +251,7 @@ public:
         for (const MatchedEdges::Wall& wall : matched.walls) {
             next = collect(next, wall.above, upper_);
             next = collect(next, wall.beneath, lower_);
-            add_parts(wall.cells);
+            add_pieces(wall.cells);
         }
         assert(next == last_ + 1);
     }
@@ -283,7 +283,7 @@ private:
     }
 
     /// Adds the wall between upper_ and lower_, divided where these touch on the way.
-    void add_parts(const std::array<std::int32_t, 2>& cells) {
+    void add_pieces(const std::array<std::int32_t, 2>& cells) {
         std::size_t u = 0, l = 0;
         while (u + 1 < upper_.size() && l + 1 < lower_.size()) {
             const auto [next_u, next_l] = next_contact(u, l);
@@ -316,11 +316,11 @@ private:
 
 }  // namespace
 
-FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& collinear,
-                      const ConformedFaces& conformed, const BlockLines* blocks,
-                      const Execution& execution) {
+WallLists find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& collinear,
+                     const ConformedFaces& conformed, const BlockLines* blocks,
+                     const Execution& execution) {
     const std::size_t chunks = (collinear.size() + kLines - 1) / kLines;
-    FoundWalls walls;
+    WallLists walls;
     walls.walls.resize(chunks);
     std::vector<std::unique_ptr<Batch>> batches(chunks);  // of which more is asked below
     parallel_ranges(collinear.size(), kLines, execution, [&](std::size_t begin, std::size_t end) {
@@ -337,9 +337,10 @@ FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, Collinea
         if (!batch->line_walls.missing.empty()) batch->scope.commit(geometry);
         for (const ExtraPoint& e : batch->line_walls.missing)
             walls.missing.push_back({e.line, batch->scope.shared_point(e.point)});
-        const FoundWalls& part = batch->line_walls;
-        walls.links.insert(walls.links.end(), part.links.begin(), part.links.end());
-        walls.stretches.insert(walls.stretches.end(), part.stretches.begin(), part.stretches.end());
+        const WallLists& batch_walls = batch->line_walls;
+        walls.links.insert(walls.links.end(), batch_walls.links.begin(), batch_walls.links.end());
+        walls.stretches.insert(walls.stretches.end(), batch_walls.stretches.begin(),
+                               batch_walls.stretches.end());
     }
     if (!walls.missing.empty()) return {std::move(walls.missing), {}, {}, {}};
     walls.walls.resize(chunks + collinear.matched.size());

@@ -93,10 +93,10 @@ struct WallBatch {
     /// and down the near vertical, through every vertex on them that is to be kept.
     template <class Keep>
     void add(std::span<const std::int32_t> lower, std::span<const std::int32_t> upper,
-             const std::array<std::int32_t, 2>& beside, const Keep& is_kept) {
+             const std::array<std::int32_t, 2>& beside, const Keep& holds) {
         const std::size_t before = vertices.size();
         const auto pass = [&](std::int32_t v) {
-            if (is_kept(v)) vertices.push_back(v);
+            if (holds(v)) vertices.push_back(v);
         };
         for (const std::int32_t v : lower)
             pass(v);
@@ -196,7 +196,7 @@ struct BlockLines {
 };
 
 /// What was found on lines.
-struct FoundWalls {
+struct WallLists {
     /// Points that lines must pass first, where columns left and right of one cross in height;
     /// then there is nothing else.
     std::vector<ExtraPoint> missing;
@@ -210,8 +210,8 @@ struct FoundWalls {
 /// its sides are there, and what is between them is compared; elsewhere a face goes on beyond
 /// the line as it is, and so do the nodes above and below it. If nothing is missing, the
 /// matched edges are given back on the way.
-FoundWalls find_walls(exact::PlanArrangement& geometry, const FaceList& faces,
-                      CollinearEdges& collinear, const ConformedFaces& conformed,
-                      const BlockLines* blocks, const Execution& execution);
+WallLists find_walls(exact::PlanArrangement& geometry, const FaceList& faces,
+                     CollinearEdges& collinear, const ConformedFaces& conformed,
+                     const BlockLines* blocks, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -21,13 +21,13 @@ namespace {
 class SheetLinks {
 public:
     SheetLinks(PlanArrangement& geometry, const WholeTriangleFilter& filter,
-               const BlockTiling& tiling, const CoveredFacets& covered, const Envelope& parts,
+               const BlockTiling& tiling, const CoveredFacets& covered, const Envelope& pieces,
                const Execution& execution)
         : geometry_(geometry),
           filter_(filter),
           tiling_(tiling),
           covered_(covered),
-          parts_(parts),
+          pieces_(pieces),
           execution_(execution),
           scope_(geometry),
           clipper_(scope_) {}
@@ -41,7 +41,7 @@ public:
         const auto middle =
             i < covered_.wholes.size()
                 ? middle_of(geometry_, covered_.wholes[i])
-                : middle_of(parts_.outlines[covered_.parts[i - covered_.wholes.size()]], point);
+                : middle_of(pieces_.outlines[covered_.pieces[i - covered_.wholes.size()]], point);
         searched_.push_back({middle, node, kNothing});
     }
 
@@ -52,7 +52,7 @@ public:
         const spatial::PointBins middles(transformed(searched_, &Searched::middle));
         // The middle of a convex outline is inside it, so a triangle that it is in for certain
         // shares an area with the outline. The exact test is for the few middles near an edge.
-        const auto near = found_in_each<std::pair<std::size_t, std::int32_t>>(
+        const auto near = collect_items<std::pair<std::size_t, std::int32_t>>(
             tiling_.whole.size(), execution_, [&](std::size_t t, auto& pairs) {
                 if (filter_.surface[t] != HeightRelation::kBelow) return;
                 const PlanTriangle& triangle = geometry_.plane(tiling_.whole[t]).plan;
@@ -94,7 +94,7 @@ private:
         const auto i = static_cast<std::size_t>(s.node - covered_.first_node);
         const PlaneId plane = i < covered_.wholes.size()
                                   ? covered_.wholes[i]
-                                  : parts_.plane[covered_.parts[i - covered_.wholes.size()]];
+                                  : pieces_.plane[covered_.pieces[i - covered_.wholes.size()]];
         throw InternalError(
             "a triangle of the surface lies beneath each facet that it is sorted below",
             std::array{s.middle[0], s.middle[1], heights_of(geometry_, plane).low});
@@ -107,14 +107,14 @@ private:
         clipper_.begin(below);
         const auto i = static_cast<std::size_t>(node - covered_.first_node);
         if (i < covered_.wholes.size()) return clipper_.overlaps(outline_of(covered_.wholes[i]));
-        return clipper_.overlaps(parts_.outlines[covered_.parts[i - covered_.wholes.size()]]);
+        return clipper_.overlaps(pieces_.outlines[covered_.pieces[i - covered_.wholes.size()]]);
     }
 
     PlanArrangement& geometry_;
     const WholeTriangleFilter& filter_;
     const BlockTiling& tiling_;
     const CoveredFacets& covered_;
-    const Envelope& parts_;
+    const Envelope& pieces_;
     Execution execution_;
     LocalArrangement scope_;
     Clipper clipper_;
@@ -129,7 +129,7 @@ void join_neighbors(const TriangleLinks& links, const CoveredFacets& covered,
     const auto block = [&](std::int32_t node) {
         return construction.node_block[static_cast<std::size_t>(node)];
     };
-    parallel_each(covered.wholes.size(), execution, [&](std::size_t i) {
+    parallel_for_each(covered.wholes.size(), execution, [&](std::size_t i) {
         const PlaneId plane = covered.wholes[i];
         const std::int32_t node = covered.first_node + static_cast<std::int32_t>(i);
         for (const PlaneId other : links.of(plane)) {
@@ -144,19 +144,19 @@ void join_neighbors(const TriangleLinks& links, const CoveredFacets& covered,
 
 /// Links covered facets with the surface beneath them, which they were never overlaid with.
 /// Neighboring triangles of facets are connected, and so are the triangles beneath them: one link
-/// for each connected part of them is enough.
+/// for each connected component of them is enough.
 /// @param filter  which compared `tiling` with the facets
 /// @param node_above  of each triangle of the tiling that is below
 void link_sheets(PlanArrangement& geometry, const TriangleLinks& links,
                  const WholeTriangleFilter& filter, const BlockTiling& tiling,
                  const std::vector<std::int32_t>& node_above, const CoveredFacets& covered,
-                 const Envelope& parts, const WholeTriangles& wholes, Construction& construction,
+                 const Envelope& pieces, const WholeTriangles& wholes, Construction& construction,
                  const Execution& execution) {
     const std::size_t count = covered.wholes.size();
     DisjointSets sets(count);
     join_neighbors(links, covered, wholes, construction, sets, execution);
-    SheetLinks sheets(geometry, filter, tiling, covered, parts, execution);
-    for (std::size_t i = 0; i < count + covered.parts.size(); ++i) {
+    SheetLinks sheets(geometry, filter, tiling, covered, pieces, execution);
+    for (std::size_t i = 0; i < count + covered.pieces.size(); ++i) {
         const auto k = static_cast<std::int32_t>(i);
         if (i >= count || sets.find(k) == k) sheets.add(covered.first_node + k);
     }
@@ -181,7 +181,7 @@ BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& lin
       cover_(tiles().size(), Cover::kFacets) {}
 
 void BlockEnvelope::add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover) {
-    parts_.add_facet(triangle_outline(geometry_, triangle), plane, -1, kSkyBlock);
+    pieces_.add_facet(triangle_outline(geometry_, triangle), plane, -1, kSkyBlock);
     cover_tiles(triangle, cover);
 }
 
@@ -202,9 +202,9 @@ void BlockEnvelope::start_region(const FrameTriangles& filling) {
 }
 
 void BlockEnvelope::start_window(const FrameTriangles& region, const FrameTriangles& window,
-                                 Envelope parts) {
+                                 Envelope pieces) {
     is_started_ = true;
-    parts_ = std::move(parts);
+    pieces_ = std::move(pieces);
     std::fill(cover_.begin(), cover_.end(), Cover::kSkyOnly);
     for (const FrameTriangles* filling : {&region, &window}) {
         for (std::size_t t = 0; t < filling->triangles.size(); ++t) {
@@ -224,11 +224,11 @@ void BlockEnvelope::start(const BlockTiling& tiling, std::int32_t number) {
     }
     std::swap(whole_, next_whole_);
     std::swap(whole_block_, next_whole_block_);
-    for (std::size_t p = 0; p < tiling.part_plane.size(); ++p) {
-        const PlaneId plane = tiling.part_plane[p];
-        wholes_.part_state[index(plane)] = PartState::kInParts;
-        parts_.add_facet(tiling.parts[p], plane, number, number);
-        parts_.add_face(tiling.parts[p], kOutsideCell);
+    for (std::size_t p = 0; p < tiling.piece_plane.size(); ++p) {
+        const PlaneId plane = tiling.piece_plane[p];
+        wholes_.piece_state[index(plane)] = PieceState::kInPieces;
+        pieces_.add_facet(tiling.pieces[p], plane, number, number);
+        pieces_.add_face(tiling.pieces[p], kOutsideCell);
     }
 }
 
@@ -242,14 +242,14 @@ void BlockEnvelope::enter(PlaneId plane, std::int32_t number, std::int32_t node_
     next_whole_block_.push_back(number);
 }
 
-Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTiling& part,
+Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTiling& exact_tiling,
                                         std::int32_t number) {
     const std::vector<std::size_t> exact = filter_.exact_facets();
-    const auto first_part = static_cast<std::size_t>(
+    const auto first_piece = static_cast<std::size_t>(
         std::lower_bound(exact.begin(), exact.end(), whole_.size()) - exact.begin());
     PolygonPool outlines;
     add_outlines(
-        geometry_, first_part,
+        geometry_, first_piece,
         [&](std::size_t i) { return geometry_.plane(whole_[exact[i]]).plan; }, outlines,
         execution_.progress);
     Envelope envelope;
@@ -257,16 +257,16 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
     for (std::size_t i = 0; i < exact.size(); ++i) {
         const std::size_t f = exact[i];
         blocks.span.push_back(filter_.facet_at[f].span);
-        if (i < first_part) {
+        if (i < first_piece) {
             const WholeFace& face = wholes_.of(whole_[f]);
             wholes_.is_exact[index(whole_[f])] = 1;
             // until it turns out to be kept or sealed as it is
-            wholes_.part_state[index(whole_[f])] = PartState::kMayStayWhole;
+            wholes_.piece_state[index(whole_[f])] = PieceState::kMayStayWhole;
             envelope.add_facet(outlines[i], whole_[f], face.surface, whole_block_[f]);
             envelope.add_face(outlines[i], face.above);
             continue;
         }
-        envelope.add_facet_of(parts_, f - whole_.size(), facets.block(f));
+        envelope.add_facet_of(pieces_, f - whole_.size(), facets.block(f));
         if (!facets.plane(f).has_value()) {
             blocks.is_complete[i] = !tiles().any(filter_.facet_at[f].span, [&](std::size_t tile) {
                 return !borders_.in_tile(tile) && filter_.is_empty[tile] == 0;
@@ -274,12 +274,12 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
         }
     }
     const std::size_t first_face = construction_.faces.size();
-    Overlaid overlaid = overlay_facets(geometry_, envelope, {part, number}, &blocks, nullptr,
-                                       construction_, execution_);
+    Overlaid overlaid = overlay_facets(geometry_, envelope, {exact_tiling, number}, &blocks,
+                                       nullptr, construction_, execution_);
     sort_overlaid(overlaid.remaining, first_face);
-    for (std::size_t i = 0; i < first_part; ++i) {
-        PartState& state = wholes_.part_state[index(whole_[exact[i]])];
-        state = state == PartState::kMayStayWhole ? PartState::kInParts : PartState::kWhole;
+    for (std::size_t i = 0; i < first_piece; ++i) {
+        PieceState& state = wholes_.piece_state[index(whole_[exact[i]])];
+        state = state == PieceState::kMayStayWhole ? PieceState::kInPieces : PieceState::kWhole;
     }
     return overlaid;
 }
@@ -295,14 +295,14 @@ bool BlockEnvelope::is_triangle(PolygonView polygon, PlaneId plane) const {
 void BlockEnvelope::sort_overlaid(const Envelope& remaining, std::size_t first_face) {
     const auto stays_whole = [&](PolygonView polygon, PlaneId plane) {
         if (!plane.has_value()) return false;
-        PartState& state = wholes_.part_state[index(plane)];
-        if (state != PartState::kMayStayWhole || !is_triangle(polygon, plane)) return false;
-        state = PartState::kStaysWhole;
+        PieceState& state = wholes_.piece_state[index(plane)];
+        if (state != PieceState::kMayStayWhole || !is_triangle(polygon, plane)) return false;
+        state = PieceState::kStaysWhole;
         return true;
     };
     const FaceList& faces = construction_.faces;
     for (std::size_t f = first_face; f < faces.size(); ++f) {
-        // where a border or a touch divides what is beneath, the triangle is in parts all the same
+        // where a border or a touch divides what is beneath, the triangle is in pieces all the same
         if (construction_.node_is_thick[static_cast<std::size_t>(faces.below[f])] == 0 ||
             !stays_whole(faces.polygons[f], faces.plane[f]))
             continue;
@@ -314,7 +314,7 @@ void BlockEnvelope::sort_overlaid(const Envelope& remaining, std::size_t first_f
             next_whole_.push_back(remaining.plane[f]);
             next_whole_block_.push_back(remaining.block_beneath[f]);
         } else {
-            next_parts_.add_facet_of(remaining, f, remaining.block_beneath[f]);
+            next_pieces_.add_facet_of(remaining, f, remaining.block_beneath[f]);
         }
     }
 }
@@ -334,22 +334,22 @@ CoveredFacets BlockEnvelope::sort_facets(std::int32_t number) {
                                                                            : whole_block_[f]);
         }
     }
-    for (std::size_t f = 0; f < parts_.size(); ++f) {
+    for (std::size_t f = 0; f < pieces_.size(); ++f) {
         const HeightRelation relation = filter_.facet[whole_.size() + f];
         if (relation == HeightRelation::kAbove) {
-            construction_.seal(parts_, f, construction_.add_node(parts_.block_beneath[f], true));
-            covered.parts.push_back(f);
+            construction_.seal(pieces_, f, construction_.add_node(pieces_.block_beneath[f], true));
+            covered.pieces.push_back(f);
         } else if (relation != HeightRelation::kExact) {
-            next_parts_.add_facet_of(
-                parts_, f, relation == HeightRelation::kBelow ? number : parts_.block_beneath[f]);
+            next_pieces_.add_facet_of(
+                pieces_, f, relation == HeightRelation::kBelow ? number : pieces_.block_beneath[f]);
         }
     }
     return covered;
 }
 
-/// Of each triangle in the exact part, whether it stays whole: it touches the facets nowhere, has
+/// Of each triangle in the exact tiling, whether it stays whole: it touches the facets nowhere, has
 /// one block above it, and no border divides it. Walls end on divided ones.
-std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
+std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& exact_tiling,
                                                     const PiecesOfPolygons& pieces,
                                                     const Overlaid& overlaid,
                                                     std::size_t triangles) const {
@@ -358,7 +358,7 @@ std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
         const std::int32_t node = overlaid.below.node_above[piece];
         return node < 0 ? kSkyBlock : construction_.node_block[static_cast<std::size_t>(node)];
     };
-    std::vector<std::uint8_t> is_whole(part.plane.size(), 0);
+    std::vector<std::uint8_t> is_whole(exact_tiling.plane.size(), 0);
     parallel_ranges(triangles, kPolygons, execution_, [&](std::size_t begin, std::size_t end) {
         LocalArrangement scope(geometry_);
         for (std::size_t t = begin; t < end; ++t) {
@@ -370,19 +370,20 @@ std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
             const bool alike = std::all_of(below.begin(), below.end(), [&](std::uint32_t i) {
                 return block_above(i) == block_above(below.front());
             });
-            is_whole[p] =
-                alike && !borders_.divide(scope, part.polygons[p], filter_.surface_at[t].span);
+            is_whole[p] = alike && !borders_.divide(scope, exact_tiling.polygons[p],
+                                                    filter_.surface_at[t].span);
         }
     });
     return is_whole;
 }
 
 /// The surface's own facets.
-void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& part,
+void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& exact_tiling,
                                 std::int32_t number, Overlaid& overlaid) {
     const std::size_t triangles = tiling.whole.size();
-    const PiecesOfPolygons pieces = sort_by_polygon(overlaid.below, part.plane.size(), execution_);
-    const auto is_whole = find_whole(part, pieces, overlaid, triangles);
+    const PiecesOfPolygons pieces =
+        sort_by_polygon(overlaid.below, exact_tiling.plane.size(), execution_);
+    const auto is_whole = find_whole(exact_tiling, pieces, overlaid, triangles);
     const auto node_of = [&](std::uint32_t piece) { return overlaid.below.node_above[piece]; };
     const auto link = [&](std::int32_t a, std::int32_t b) {
         if (a >= 0 && b >= 0 && a != b) construction_.links.emplace_back(a, b);
@@ -409,7 +410,7 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
         }
         wholes_.is_exact[index(plane)] = 1;
         if (is_whole[p] == 0) {
-            wholes_.part_state[index(plane)] = PartState::kInParts;
+            wholes_.piece_state[index(plane)] = PieceState::kInPieces;
             continue;
         }
         use[p] = kElsewhere;
@@ -417,7 +418,8 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
             link(node_of(below.front()), node_of(piece));
         enter(plane, number, node_of(below.front()), filter_.surface_at[t].span);
     }
-    add_surface_facets({part, number}, use, overlaid.below, pieces, next_parts_, execution_);
+    add_surface_facets({exact_tiling, number}, use, overlaid.below, pieces, next_pieces_,
+                       execution_);
 }
 
 void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
@@ -430,12 +432,12 @@ void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
     filter_.compare(facets);
     next_whole_.clear();
     next_whole_block_.clear();
-    next_parts_ = {};
-    const SurfaceTiling part = filter_.exact_part(geometry_, facets);
-    Overlaid overlaid = overlay_exactly(facets, part, number);
+    next_pieces_ = {};
+    const SurfaceTiling exact_tiling = filter_.make_exact_tiling(geometry_, facets);
+    Overlaid overlaid = overlay_exactly(facets, exact_tiling, number);
     const CoveredFacets covered = sort_facets(number);
-    add_surface(tiling, part, number, overlaid);
-    link_sheets(geometry_, links_, filter_, tiling, node_above_, covered, parts_, wholes_,
+    add_surface(tiling, exact_tiling, number, overlaid);
+    link_sheets(geometry_, links_, filter_, tiling, node_above_, covered, pieces_, wholes_,
                 construction_, execution_);
     for (std::size_t tile = 0; tile < cover_.size(); ++tile) {
         if (cover_[tile] == Cover::kSkyOnly && filter_.is_empty[tile] == 0)
@@ -443,7 +445,7 @@ void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
     }
     std::swap(whole_, next_whole_);
     std::swap(whole_block_, next_whole_block_);
-    std::swap(parts_, next_parts_);
+    std::swap(pieces_, next_pieces_);
 }
 
 void BlockEnvelope::finish(std::optional<PlaneId> base) {
@@ -455,13 +457,13 @@ void BlockEnvelope::finish(std::optional<PlaneId> base) {
         }
         wholes_.of(whole_[f]).below = node;
     }
-    strata::finish(parts_, base, true, construction_);
+    strata::finish(pieces_, base, true, construction_);
     whole_ = next_whole_ = {};
-    parts_ = next_parts_ = {};
+    pieces_ = next_pieces_ = {};
 }
 
 std::array<double, 3> BlockEnvelope::lowest() const {
-    std::array<double, 3> lowest = lowest_position(geometry_, parts_);
+    std::array<double, 3> lowest = lowest_position(geometry_, pieces_);
     for (const PlaneId plane : whole_) {
         for (const exact::SpaceId s : geometry_.plane(plane).corner) {
             const auto& vertex = geometry_.space(s);

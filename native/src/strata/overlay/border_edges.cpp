@@ -10,7 +10,8 @@ namespace realmodel::strata {
 
 using exact::PlanArrangement;
 
-BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles, std::vector<Edge> edges)
+BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles,
+                         std::vector<VertexPair> edges)
     : tiles_(tiles) {
     for (auto& [from, to] : edges) {
         if (from > to) std::swap(from, to);

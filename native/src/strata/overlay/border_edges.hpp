@@ -20,10 +20,11 @@ using spatial::TileSpan;
 /// jumps, by the tiles that they run through.
 class BorderEdges {
 public:
-    using Edge = std::pair<exact::VertexId, exact::VertexId>;
+    using VertexPair = std::pair<exact::VertexId, exact::VertexId>;
 
     /// Edges may come several times and either way around; their lines are made where they are new.
-    BorderEdges(exact::PlanArrangement& geometry, const PlanTiles& tiles, std::vector<Edge> edges);
+    BorderEdges(exact::PlanArrangement& geometry, const PlanTiles& tiles,
+                std::vector<VertexPair> edges);
 
     const PlanTiles& tiles() const { return tiles_; }
     bool in_tile(std::size_t tile) const { return !in_tiles_[tile].empty(); }

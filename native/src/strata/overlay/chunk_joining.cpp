@@ -200,19 +200,19 @@ void ChunkJoining::put_faces(const ChunkResult& chunk, const ChunkStart& at) {
         to.polygons.offsets[++next.polygon] = static_cast<std::uint32_t>(next.corner);
     };
     std::size_t face = 0;
-    const auto put_own_up_to = [&](std::size_t end) {
+    const auto put_faces_up_to = [&](std::size_t end) {
         for (const auto& faces = chunk.faces; face < end; ++face)
             put_face(faces.polygons[face], faces.plane[face], faces.surface[face],
                      faces.above[face], faces.below[face]);
     };
     for (const ClosedFacet& closed : chunk.closed) {
-        put_own_up_to(closed.before);
+        put_faces_up_to(closed.before);
         const auto [begin, end] = envelope_.faces_of(closed.facet);
         for (std::size_t f = begin; f < end; ++f)
             put_face(envelope_.face_polygons[f], envelope_.plane[closed.facet],
                      envelope_.surface[closed.facet], envelope_.face_above[f], closed.node);
     }
-    put_own_up_to(chunk.faces.size());
+    put_faces_up_to(chunk.faces.size());
 }
 
 void ChunkJoining::put(std::size_t c) {

@@ -181,13 +181,13 @@ private:
             const bool only_one = end - begin == 1;  // then it is the facet
             if (!only_one) clipper_.begin(outline);
             for (std::size_t f = begin; f < end; ++f) {
-                const PolygonView part =
+                const PolygonView clipped =
                     only_one ? outline : clipper_.intersect(envelope_.face_polygons[f]);
-                if (part.empty()) continue;
+                if (clipped.empty()) continue;
                 if (below) {
-                    seal(facet, f, part, node);
+                    seal(facet, f, clipped, node);
                 } else {
-                    result_.remaining.add_face(part, envelope_.face_above[f]);
+                    result_.remaining.add_face(clipped, envelope_.face_above[f]);
                 }
             }
         }

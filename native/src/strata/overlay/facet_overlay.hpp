@@ -23,13 +23,13 @@ struct BlockFacets {
 struct Overlaid {
     Envelope remaining;  ///< what is left of the facets
     PiecesBelow below;   ///< what of the surface lies beneath them
-    /// Of each polygon of the surface: 1 where a part of it does not lie below.
+    /// Of each polygon of the surface: 1 where a piece of it does not lie below.
     std::vector<std::uint8_t> is_divided;
     /// Of each polygon, for blocks: 1 where one of its pieces is somewhere as high as the facet.
     std::vector<std::uint8_t> is_touched;
 };
 
-/// Overlays facets with a surface: beneath those parts that lie above it nodes are closed.
+/// Overlays facets with a surface: beneath those pieces that lie above it nodes are closed.
 /// Pieces are grouped to columns, or as `blocks` says.
 /// @param wanted  as overlay_columns has it; not with `blocks`
 Overlaid overlay_facets(exact::PlanArrangement& geometry, const Envelope& envelope,

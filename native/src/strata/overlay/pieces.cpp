@@ -144,7 +144,7 @@ void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Env
     } else if (!facet.plane.has_value()) {
         add(polygon, facet.plane == kSky ? PieceSide::kBelow : PieceSide::kNotBelow, common);
     } else {
-        // both are parts of triangles, so most are sorted by the heights of the corners
+        // both are pieces of triangles, so most are sorted by the heights of the corners
         const HeightRange heights = tiling_.heights[static_cast<std::size_t>(polygon)];
         if (heights.high < facet.heights.low) {
             add(polygon, PieceSide::kBelow, common);
@@ -230,8 +230,8 @@ bool PieceGrouping::joined(const Pieces& pieces, const PieceEdge& a, const Piece
 }
 
 bool PieceGrouping::on_border(PolygonView facet, const PieceEdge& edge) {
-    return std::any_of(facet.begin(), facet.end(), [&](const Corner& side) {
-        return scope_.side(side.line, edge.from) == 0 && scope_.side(side.line, edge.to) == 0;
+    return std::any_of(facet.begin(), facet.end(), [&](const Corner& corner) {
+        return scope_.side(corner.line, edge.from) == 0 && scope_.side(corner.line, edge.to) == 0;
     });
 }
 

@@ -18,7 +18,7 @@ enum class PieceSide : std::int8_t {
     kAbsent     ///< there is no surface
 };
 
-/// The common part of a facet and one polygon of the tiling.
+/// The intersection of a facet and one polygon of the tiling.
 struct Piece {
     std::int32_t polygon;  ///< of the tiling
     PieceSide side;
@@ -81,7 +81,7 @@ private:
     TilingWalk walk_;
     const SurfaceTiling& tiling_;
     Pieces pieces_;
-    /// Of surface less facet at the corners of a common part, and of facet less surface.
+    /// Of surface less facet at the corners of a intersection, and of facet less surface.
     std::vector<std::int8_t> signs_, opposite_;
     Polygon half_;
     Array<std::int32_t> candidates_, overlapping_;

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kFacetsAtOnce = 256;
 
 /// Convex facets found by one chunk, in its own ids or shared ones.
-struct FoundFacets {
-    explicit FoundFacets(const PlanArrangement& geometry) : scope(geometry) {}
+struct ChunkFacets {
+    explicit ChunkFacets(const PlanArrangement& geometry) : scope(geometry) {}
 
     void add(PolygonView outline, PlaneId in_plane, std::int32_t of_polygon = -1) {
         outlines.add(outline);
@@ -34,17 +34,18 @@ struct FoundFacets {
         polygon;  ///< of the surface that was laid over, -1 for the older tiling
 };
 
-using AllFound = std::vector<std::unique_ptr<FoundFacets>>;
+using FacetChunks = std::vector<std::unique_ptr<ChunkFacets>>;
 
 /// Calls work(facet of `older`, finder, found) for every facet, in parallel; results in order.
 template <class Work>
-AllFound over_facets(PlanArrangement& geometry, const SurfaceTiling& older,
-                     const SurfaceTiling& surface, const Execution& execution, const Work& work) {
+FacetChunks over_facets(PlanArrangement& geometry, const SurfaceTiling& older,
+                        const SurfaceTiling& surface, const Execution& execution,
+                        const Work& work) {
     const std::size_t count = older.plane.size(),
                       chunks = (count + kFacetsAtOnce - 1) / kFacetsAtOnce;
-    AllFound facets(chunks);
+    FacetChunks facets(chunks);
     parallel_chunks(chunks, execution, [&](std::size_t c) {
-        facets[c] = std::make_unique<FoundFacets>(geometry);
+        facets[c] = std::make_unique<ChunkFacets>(geometry);
         PieceFinder finder(facets[c]->scope, surface);
         for (std::size_t f = c * kFacetsAtOnce; f < std::min(count, (c + 1) * kFacetsAtOnce); ++f) {
             work(f, finder, *facets[c]);
@@ -57,7 +58,7 @@ AllFound over_facets(PlanArrangement& geometry, const SurfaceTiling& older,
 
 /// Adds those facets found of which is_wanted(polygon) holds, in shared ids.
 template <class IsWanted>
-void append(const AllFound& facets, SurfaceTiling& tiling, const IsWanted& is_wanted) {
+void append(const FacetChunks& facets, SurfaceTiling& tiling, const IsWanted& is_wanted) {
     for (const auto& chunk : facets) {
         for (std::size_t i = 0; i < chunk->plane.size(); ++i) {
             if (!is_wanted(chunk->polygon[i])) continue;
@@ -70,7 +71,7 @@ void append(const AllFound& facets, SurfaceTiling& tiling, const IsWanted& is_wa
         }
     }
 }
-SurfaceTiling tiling_of(const AllFound& facets) {
+SurfaceTiling tiling_of(const FacetChunks& facets) {
     SurfaceTiling tiling;
     append(facets, tiling, [](std::int32_t) { return true; });
     return tiling;
@@ -86,7 +87,7 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
     std::vector<std::uint8_t> is_covered(surface.plane.size(), 0);  // somewhere, by the bound
     const auto facets = over_facets(
         geometry, bound, surface, execution,
-        [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+        [&](std::size_t f, PieceFinder& finder, ChunkFacets& out) {
             const PlaneId plane = bound.plane[f];
             const Pieces& pieces = finder.find(bound.polygons[f], plane);
             const bool all_below =
@@ -116,10 +117,10 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
     return raised;
 }
 
-SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& older,
-                             const SurfaceTiling& surface, const Execution& execution) {
+SurfaceTiling uncovered_tiling(PlanArrangement& geometry, const SurfaceTiling& older,
+                               const SurfaceTiling& surface, const Execution& execution) {
     const auto is_absent = [](const Piece& piece) { return piece.side == PieceSide::kAbsent; };
-    const auto look = [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+    const auto look = [&](std::size_t f, PieceFinder& finder, ChunkFacets& out) {
         // as a void, so that heights are not asked for
         const Pieces& pieces = finder.find(older.polygons[f], kVoid);
         if (std::ranges::all_of(pieces.list, is_absent)) {
@@ -137,7 +138,7 @@ SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, 
                            const Execution& execution) {
     other.index(geometry, execution);
     return tiling_of(over_facets(
-        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, ChunkFacets& out) {
             const PlaneId plane = one.plane[f];
             if (!plane.has_value()) {
                 out.add(one.polygons[f], kVoid);
@@ -154,7 +155,7 @@ SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, 
 SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
                             const SurfaceTiling& other, bool fills, const Execution& execution) {
     return tiling_of(over_facets(
-        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, ChunkFacets& out) {
             const PlaneId plane = one.plane[f];
             if (plane == kSky || (plane.has_value() && fills)) {
                 out.add(one.polygons[f], plane);
@@ -185,13 +186,13 @@ SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTi
 
 SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTiling& newer,
                                    const SurfaceTiling& surface) const {
-    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, execution_);
+    const SurfaceTiling rest = uncovered_tiling(geometry_, older, surface, execution_);
     SurfaceTiling covered;
-    for (const SurfaceTiling* part : {&newer, &rest}) {
-        for (std::size_t p = 0; p < part->plane.size(); ++p) {
-            if (part == &newer && !part->plane[p].has_value()) continue;
-            covered.polygons.add(part->polygons[p]);
-            covered.plane.push_back(part->plane[p]);
+    for (const SurfaceTiling* tiling : {&newer, &rest}) {
+        for (std::size_t p = 0; p < tiling->plane.size(); ++p) {
+            if (tiling == &newer && !tiling->plane[p].has_value()) continue;
+            covered.polygons.add(tiling->polygons[p]);
+            covered.plane.push_back(tiling->plane[p]);
         }
     }
     return covered;
@@ -221,7 +222,7 @@ void add_facets_that_are(const BlockTiling& bound, const std::vector<HeightRelat
         if (bound.is_whole(f)) {
             to.whole.push_back(bound.whole[f]);
         } else {
-            to.add_part(bound.parts[f - bound.whole.size()], bound.plane(f));
+            to.add_piece(bound.pieces[f - bound.whole.size()], bound.plane(f));
         }
     }
 }
@@ -240,18 +241,18 @@ SurfaceTiling BlockRaising::exact_facets(const BlockTiling& bound) {
         geometry_, wholes, [&](std::size_t i) { return geometry_.plane(exact.plane[i]).plan; },
         exact.polygons, execution_.progress);
     for (std::size_t i = wholes; i < numbers.size(); ++i)
-        exact.polygons.add(bound.parts[numbers[i] - bound.whole.size()]);
+        exact.polygons.add(bound.pieces[numbers[i] - bound.whole.size()]);
     return exact;
 }
 
 BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bound) {
     const FacetView facets = view(bound);
     filter_.compare(facets);
-    const SurfaceTiling part = filter_.exact_part(geometry_, facets);
+    const SurfaceTiling exact_tiling = filter_.make_exact_tiling(geometry_, facets);
     BlockTiling raised;
     raised.is_raised = true;
     raised.empty = surface.empty;
-    std::vector<std::uint8_t> excluded(part.plane.size(), 0);
+    std::vector<std::uint8_t> excluded(exact_tiling.plane.size(), 0);
     for (std::size_t t = 0; t < surface.whole.size(); ++t) {
         if (filter_.surface[t] == HeightRelation::kAbove) raised.whole.push_back(surface.whole[t]);
         if (filter_.surface[t] != HeightRelation::kExact && filter_.polygon[t] >= 0)
@@ -259,9 +260,9 @@ BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bo
     }
     add_facets_that_are(bound.tiling, filter_.facet, HeightRelation::kAbove, raised);
     const SurfaceTiling exact =
-        raise_tiling(geometry_, part, exact_facets(bound.tiling), excluded, execution_);
+        raise_tiling(geometry_, exact_tiling, exact_facets(bound.tiling), excluded, execution_);
     for (std::size_t p = 0; p < exact.plane.size(); ++p) {
-        if (exact.plane[p].has_value()) raised.add_part(exact.polygons[p], exact.plane[p]);
+        if (exact.plane[p].has_value()) raised.add_piece(exact.polygons[p], exact.plane[p]);
     }
     return raised;
 }
@@ -269,7 +270,7 @@ BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bo
 BlockBound BlockRaising::first(const BlockTiling& e) {
     BlockBound bound{e, std::vector<Cover>(filter_.tiles().size(), Cover::kFacets)};
     for (const PlanTriangle& t : e.empty)
-        bound.tiling.add_part(triangle_outline(geometry_, t), kVoid);
+        bound.tiling.add_piece(triangle_outline(geometry_, t), kVoid);
     bound.tiling.empty.clear();
     filter_.cover(view(bound));
     for (std::size_t tile = 0; tile < bound.cover.size(); ++tile) {
@@ -282,14 +283,14 @@ BlockBound BlockRaising::cover(const BlockBound& older, const BlockTiling& newer
                                const BlockTiling& /* the one begun with */) {
     const FacetView facets = view(older);
     filter_.cover(facets);
-    const SurfaceTiling part = filter_.exact_part(geometry_, facets, true);
+    const SurfaceTiling exact_tiling = filter_.make_exact_tiling(geometry_, facets, true);
     BlockBound covered{newer, older.cover};
     covered.tiling.empty.clear();
     add_facets_that_are(older.tiling, filter_.facet, HeightRelation::kUncovered, covered.tiling);
     const SurfaceTiling rest =
-        uncovered_part(geometry_, exact_facets(older.tiling), part, execution_);
+        uncovered_tiling(geometry_, exact_facets(older.tiling), exact_tiling, execution_);
     for (std::size_t p = 0; p < rest.plane.size(); ++p)
-        covered.tiling.add_part(rest.polygons[p], rest.plane[p]);
+        covered.tiling.add_piece(rest.polygons[p], rest.plane[p]);
     for (std::size_t tile = 0; tile < covered.cover.size(); ++tile) {
         if (filter_.is_empty[tile] == 0) covered.cover[tile] = Cover::kFacets;
     }

@@ -122,8 +122,8 @@ SurfaceTiling raise_tiling(exact::PlanArrangement& geometry, const SurfaceTiling
 
 /// What of an older tiling the surface does not cover; facets that it covers nowhere are not
 /// divided.
-SurfaceTiling uncovered_part(exact::PlanArrangement& geometry, const SurfaceTiling& older,
-                             const SurfaceTiling& surface, const Execution& execution);
+SurfaceTiling uncovered_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& older,
+                               const SurfaceTiling& surface, const Execution& execution);
 
 /// The lower one of two bounds where there are both.
 SurfaceTiling lower_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& one,
@@ -164,7 +164,7 @@ private:
 };
 
 /// What is carried along while rules are replayed for blocks: the top so far, or the floor. Where
-/// there is none its parts are void.
+/// there is none its pieces are void.
 struct BlockBound {
     BlockTiling tiling;
     std::vector<Cover> cover;  ///< of each tile without a border
@@ -189,8 +189,8 @@ public:
 
 private:
     static FacetView view(const BlockBound& bound) {
-        return {bound.tiling.whole,      {}, bound.tiling.parts,
-                bound.tiling.part_plane, {}, bound.cover};
+        return {bound.tiling.whole,       {}, bound.tiling.pieces,
+                bound.tiling.piece_plane, {}, bound.cover};
     }
     SurfaceTiling exact_facets(const BlockTiling& bound);
 

@@ -70,8 +70,8 @@ private:
         PointId point = kNone;
         std::int32_t triangle = kUnknown;
     };
-    /// A part of the facet's border in one triangle: where it comes in, corners, where it goes out.
-    /// The border begins and ends at corner 0.
+    /// A piece of the facet's border in one triangle: where it comes in, corners, where it goes
+    /// out. The border begins and ends at corner 0.
     struct Stretch {
         TilingEdge in, out;
         std::uint32_t crossing_in = 0, crossing_out = 0;

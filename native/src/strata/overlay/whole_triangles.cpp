@@ -64,7 +64,7 @@ Comparison compare_over(const PlanArrangement& geometry, PlaneId lower, PlaneId 
     const double low_y = std::max(a.low_y, b.low_y) - d.y0;
     const double high_y = std::min(a.high_y, b.high_y) - d.y0;
     const double x = 0.5 * (low_x + high_x), y = 0.5 * (low_y + high_y);
-    // boxes of parts are those of rounded corners
+    // boxes of pieces are those of rounded corners
     const exact::PlanReach& reach = geometry.reach();
     const double half_x = 0.5 * (high_x - low_x) + reach.point_error;
     const double half_y = 0.5 * (high_y - low_y) + reach.point_error;
@@ -148,7 +148,7 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
                             if (list.is_whole(i)) return located(bounds_of(geometry_, plane));
                             TriangleBounds bounds{};
                             if (plane.has_value()) bounds = bounds_of(geometry_, plane);
-                            bounds.box = box_of(scope, list.parts[i - list.whole.size()]);
+                            bounds.box = box_of(scope, list.pieces[i - list.whole.size()]);
                             return located(bounds);
                         };
                         for (std::size_t i = begin; i < end; ++i) {
@@ -256,7 +256,7 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
         }
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    parallel_each(tiling_->whole.size(), execution_, [&](std::size_t t) {
+    parallel_for_each(tiling_->whole.size(), execution_, [&](std::size_t t) {
         classify(t);
         if (is_to_compare(t)) mark_tiles(surface_at[t].span, is_wanted);
     });
@@ -271,7 +271,7 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
         [&](std::size_t f) { return !facets.plane(f).has_value() ? nullptr : &facet_at[f].span; },
         execution_);
     is_unclear_.assign(tiles().size(), 0);
-    parallel_each(tiling_->size(), execution_, [&](std::size_t t) {
+    parallel_for_each(tiling_->size(), execution_, [&](std::size_t t) {
         if (is_to_compare(t)) compare_triangle(facets, bins, t);
         if (surface[t] == HeightRelation::kExact) mark_tiles(surface_at[t].span, is_unclear_);
     });
@@ -345,7 +345,7 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
         return is_exact ? HeightRelation::kExact : HeightRelation::kToCompare;
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    parallel_each(facets.size(), execution_, [&](std::size_t f) {
+    parallel_for_each(facets.size(), execution_, [&](std::size_t f) {
         facet[f] = classify(f);
         if (facet[f] == HeightRelation::kToCompare) mark_tiles(facet_at[f].span, is_wanted);
     });
@@ -353,13 +353,13 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
 }
 
 /// Compares facets that heights alone do not sort with the triangles near them. A facet has to be
-/// exact where a triangle is, for the triangle's parts to be complete.
+/// exact where a triangle is, for the triangle's pieces to be complete.
 void WholeTriangleFilter::compare_facets(const FacetView& facets,
                                          const std::vector<std::uint8_t>& is_wanted) {
     const spatial::TileBins bins(
         tiles(), is_wanted, tiling_->size(), [&](std::size_t t) { return &surface_at[t].span; },
         execution_);
-    parallel_each(facets.size(), execution_, [&](std::size_t f) {
+    parallel_for_each(facets.size(), execution_, [&](std::size_t f) {
         if (facet[f] == HeightRelation::kToCompare)
             facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
     });
@@ -394,7 +394,7 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
     locate(facets, false);
     surface.assign(tiling_->size(), HeightRelation::kBelow);
     facet.assign(facets.size(), HeightRelation::kExact);
-    parallel_each(facets.size(), execution_, [&](std::size_t f) {
+    parallel_for_each(facets.size(), execution_, [&](std::size_t f) {
         const TileSpan& span = facet_at[f].span;
         if (!facets.plane(f).has_value() || borders_.near(span)) return;
         bool any_empty = false, any_surface = false;
@@ -406,8 +406,8 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
     });
 }
 
-SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const FacetView& facets,
-                                              bool with_void) {
+SurfaceTiling WholeTriangleFilter::make_exact_tiling(PlanArrangement& geometry,
+                                                     const FacetView& facets, bool with_void) {
     const BlockTiling& tiling = *tiling_;
     const std::size_t triangles = tiling.whole.size();
     std::vector<std::uint8_t> is_needed(tiles().size(), 0);
@@ -423,33 +423,33 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const F
         }
     }
     polygon.assign(tiling.size(), -1);
-    parallel_each(triangles, execution_, [&](std::size_t t) {
+    parallel_for_each(triangles, execution_, [&](std::size_t t) {
         if (surface[t] == HeightRelation::kExact ||
             tiles().any(surface_at[t].span, [&](std::size_t tile) { return is_needed[tile] != 0; }))
             polygon[t] = 0;
     });
-    SurfaceTiling part;
+    SurfaceTiling exact_tiling;
     for (std::size_t t = 0; t < triangles; ++t) {
         poll(execution_.progress, t);
         if (polygon[t] < 0) continue;
-        polygon[t] = static_cast<std::int32_t>(part.plane.size());
-        part.plane.push_back(tiling.whole[t]);
+        polygon[t] = static_cast<std::int32_t>(exact_tiling.plane.size());
+        exact_tiling.plane.push_back(tiling.whole[t]);
     }
     add_outlines(
-        geometry, part.plane.size(),
-        [&](std::size_t i) { return geometry.plane(part.plane[i]).plan; }, part.polygons,
-        execution_.progress);
-    for (std::size_t i = 0; i < tiling.part_plane.size(); ++i) {
-        polygon[triangles + i] = static_cast<std::int32_t>(part.plane.size());
-        part.polygons.add(tiling.parts[i]);
-        part.plane.push_back(tiling.part_plane[i]);
+        geometry, exact_tiling.plane.size(),
+        [&](std::size_t i) { return geometry.plane(exact_tiling.plane[i]).plan; },
+        exact_tiling.polygons, execution_.progress);
+    for (std::size_t i = 0; i < tiling.piece_plane.size(); ++i) {
+        polygon[triangles + i] = static_cast<std::int32_t>(exact_tiling.plane.size());
+        exact_tiling.polygons.add(tiling.pieces[i]);
+        exact_tiling.plane.push_back(tiling.piece_plane[i]);
     }
     for (const PlanTriangle& t : tiling.empty) {
-        part.polygons.add(triangle_outline(geometry, t));
-        part.plane.push_back(kVoid);
+        exact_tiling.polygons.add(triangle_outline(geometry, t));
+        exact_tiling.plane.push_back(kVoid);
     }
-    part.index(geometry, execution_, std::max(tiles().size(), part.plane.size()));
-    return part;
+    exact_tiling.index(geometry, execution_, std::max(tiles().size(), exact_tiling.plane.size()));
+    return exact_tiling;
 }
 
 std::vector<std::size_t> WholeTriangleFilter::exact_facets() const {

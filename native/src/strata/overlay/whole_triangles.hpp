@@ -25,7 +25,7 @@ TriangleBounds bounds_of(const exact::PlanArrangement& geometry, PlaneId plane);
 enum class Comparison { kBelow, kAbove, kApart, kUnclear };
 
 /// Compares triangle `lower` with triangle `upper`, of which at least what lies in two boxes
-/// counts: their difference over the common part of the boxes decides, or over either triangle.
+/// counts: their difference over the intersection of the boxes decides, or over either triangle.
 Comparison compare_over(const exact::PlanArrangement& geometry, PlaneId lower, PlaneId upper,
                         const PlanBox& lower_box, const PlanBox& upper_box, double margin);
 
@@ -84,23 +84,23 @@ struct TileContent {
     }
 };
 
-/// What the filter compares a surface with: facets that are whole triangles, then parts.
+/// What the filter compares a surface with: facets that are whole triangles, then pieces.
 struct FacetView {
     std::span<const PlaneId> whole;
     std::span<const std::int32_t> whole_block;  ///< beneath each; none at all: one block
-    const PolygonPool& parts;
-    std::span<const PlaneId> part_plane;
-    std::span<const std::int32_t> part_block;
+    const PolygonPool& pieces;
+    std::span<const PlaneId> piece_plane;
+    std::span<const std::int32_t> piece_block;
     const std::vector<Cover>& cover;  ///< of each tile
 
-    std::size_t size() const { return whole.size() + part_plane.size(); }
+    std::size_t size() const { return whole.size() + piece_plane.size(); }
     bool is_whole(std::size_t i) const { return i < whole.size(); }
     PlaneId plane(std::size_t i) const {
-        return is_whole(i) ? whole[i] : part_plane[i - whole.size()];
+        return is_whole(i) ? whole[i] : piece_plane[i - whole.size()];
     }
     std::int32_t block(std::size_t i) const {
-        if (whole_block.empty() && part_block.empty()) return 0;
-        return is_whole(i) ? whole_block[i] : part_block[i - whole.size()];
+        if (whole_block.empty() && piece_block.empty()) return 0;
+        return is_whole(i) ? whole_block[i] : piece_block[i - whole.size()];
     }
 };
 
@@ -136,10 +136,10 @@ public:
     /// The same, but only asks whether the surface covers facets: those it does are kBelow it.
     void cover(const FacetView& facets);
     /// The part of the surface that meets exact facets, or is exact: triangles in outlines of their
-    /// own, then parts, then where there is no surface at all.
+    /// own, then pieces, then where there is no surface at all.
     /// @param with_void  whether facets without a plane count as others do
-    SurfaceTiling exact_part(exact::PlanArrangement& geometry, const FacetView& facets,
-                             bool with_void = false);
+    SurfaceTiling make_exact_tiling(exact::PlanArrangement& geometry, const FacetView& facets,
+                                    bool with_void = false);
     /// The numbers of exact facets, in order.
     std::vector<std::size_t> exact_facets() const;
 
@@ -148,11 +148,11 @@ public:
         return {bounds, tiles().span(bounds.box)};
     }
 
-    // Of the triangles and parts of the surface:
+    // Of the triangles and pieces of the surface:
     Array<TileBounds> surface_at;
     std::vector<HeightRelation> surface;
     std::vector<std::int32_t> block;     ///< above, of each that is below
-    std::vector<std::int32_t> polygon;   ///< in the exact part, or -1
+    std::vector<std::int32_t> polygon;   ///< in the exact tiling, or -1
     std::vector<std::uint8_t> is_empty;  ///< of each tile without a border: no surface there
     // Of the facets:
     Array<TileBounds> facet_at;
@@ -181,7 +181,7 @@ private:
     Execution execution_;
     const BlockTiling* tiling_ = nullptr;
     std::vector<TileContent> surface_tiles_, facet_tiles_;
-    std::vector<std::uint8_t> is_unclear_;  ///< of each tile: exact triangles or parts meet it
+    std::vector<std::uint8_t> is_unclear_;  ///< of each tile: exact triangles or pieces meet it
     std::vector<std::uint8_t>
         is_same_;  ///< of each plane, for raised surfaces: a facet, a triangle
 };
@@ -197,9 +197,9 @@ struct WholeFace {
 };
 
 /// Whether a triangle is divided into several faces.
-enum class PartState : std::uint8_t {
+enum class PieceState : std::uint8_t {
     kWhole,
-    kInParts,
+    kInPieces,
     kMayStayWhole,  ///< while it is overlaid
     kStaysWhole     ///< as that has shown
 };
@@ -209,8 +209,8 @@ struct WholeTriangles {
     std::vector<WholeFace> face;  ///< of each plane
     /// Of each plane: looked at more closely than by bounds, or beside a border.
     std::vector<std::uint8_t> is_exact;
-    std::vector<PartState> part_state;   ///< of each plane
-    std::vector<std::uint8_t> is_added;  ///< of each plane: among the conforming faces
+    std::vector<PieceState> piece_state;  ///< of each plane
+    std::vector<std::uint8_t> is_added;   ///< of each plane: among the conforming faces
     struct BaseFace {
         PlaneId plane, base;
         std::int32_t node;
@@ -218,7 +218,7 @@ struct WholeTriangles {
     std::vector<BaseFace> on_base;  ///< beneath whole triangles
 
     explicit WholeTriangles(std::size_t planes)
-        : face(planes), is_exact(planes), part_state(planes), is_added(planes) {}
+        : face(planes), is_exact(planes), piece_state(planes), is_added(planes) {}
     WholeFace& of(PlaneId plane) { return face[index(plane)]; }
     const WholeFace& of(PlaneId plane) const { return face[index(plane)]; }
 };

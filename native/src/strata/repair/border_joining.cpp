@@ -126,7 +126,7 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
     return chain;
 }
 
-/// A mesh with the divided triangles' parts.
+/// A mesh with the divided triangles' pieces.
 class DividedMesh {
 public:
     DividedMesh(const SnappedMesh& snapped, const BorderChains& chains, Progress* progress)
@@ -149,7 +149,7 @@ public:
 
 private:
     using Corners = std::array<std::int32_t, 3>;
-    /// Vertices still to be inserted into the edges 0-1, 1-2 and 2-0 of a part, in that direction.
+    /// Vertices still to be inserted into the edges 0-1, 1-2 and 2-0 of a piece, in that direction.
     using Waiting = std::array<std::vector<std::int32_t>, 3>;
 
     /// A triangle and what divides its edges, or null.
@@ -194,28 +194,28 @@ private:
         return division.chains != std::array<const BorderChains::value_type*, 3>{};
     }
 
-    /// Whether all parts turn as the triangle does.
+    /// Whether all pieces turn as the triangle does.
     bool keeps_turn(const Division& division) {
         const std::size_t vertices_before = vertices.size();
-        const std::vector<Corners> parts = parts_of(division);
+        const std::vector<Corners> pieces = pieces_of(division);
         const int turn = turn_of(division.corners);
         const bool keeps =
-            std::ranges::all_of(parts, [&](const Corners& p) { return turn_of(p) == turn; });
+            std::ranges::all_of(pieces, [&](const Corners& p) { return turn_of(p) == turn; });
         vertices.resize(vertices_before);
         return keeps;
     }
 
     void divide(const Division& division) {
         if (!has_chain(division)) return;
-        const std::vector<Corners> parts = parts_of(division);
-        std::copy(parts[0].begin(), parts[0].end(),
+        const std::vector<Corners> pieces = pieces_of(division);
+        std::copy(pieces[0].begin(), pieces[0].end(),
                   triangles.begin() + static_cast<std::ptrdiff_t>(3 * division.triangle));
-        for (std::size_t i = 1; i < parts.size(); ++i)
-            triangles.insert(triangles.end(), parts[i].begin(), parts[i].end());
+        for (std::size_t i = 1; i < pieces.size(); ++i)
+            triangles.insert(triangles.end(), pieces[i].begin(), pieces[i].end());
     }
 
-    /// The parts of a triangle, whose new vertices are added.
-    std::vector<Corners> parts_of(const Division& division) {
+    /// The pieces of a triangle, whose new vertices are added.
+    std::vector<Corners> pieces_of(const Division& division) {
         Waiting waiting;
         for (std::size_t i = 0; i < 3; ++i) {
             const auto* chain = division.chains[i];
@@ -226,18 +226,18 @@ private:
                 waiting[i].push_back(insert(p, ahead ? a : b, ahead ? b : a));
             if (!ahead) std::reverse(waiting[i].begin(), waiting[i].end());
         }
-        std::vector<Corners> parts;
-        part(division.corners, waiting, parts);
-        return parts;
+        std::vector<Corners> pieces;
+        divide(division.corners, waiting, pieces);
+        return pieces;
     }
 
     /// Splits along a fan from the corner opposite of the first edge that has vertices waiting.
-    void part(const Corners& c, const Waiting& waiting, std::vector<Corners>& parts) const {
+    void divide(const Corners& c, const Waiting& waiting, std::vector<Corners>& pieces) const {
         std::size_t k = 0;
         while (k < 3 && waiting[k].empty())
             ++k;
         if (k == 3) {
-            parts.push_back(c);
+            pieces.push_back(c);
             return;
         }
         std::vector<std::int32_t> along{c[k]};
@@ -247,7 +247,7 @@ private:
             Waiting rest;
             if (i + 2 == along.size()) rest[1] = waiting[(k + 1) % 3];
             if (i == 0) rest[2] = waiting[(k + 2) % 3];
-            part({along[i], along[i + 1], c[(k + 2) % 3]}, rest, parts);
+            divide({along[i], along[i + 1], c[(k + 2) % 3]}, rest, pieces);
         }
     }
 
@@ -313,8 +313,8 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
 
 JoinedMesh joined_mesh(const PlanMesh& mesh, const PlanSnapping& snapping,
                        const BorderChains& chains, Progress* progress) {
-    DividedMesh parts({mesh, snapping}, chains, progress);
-    return {std::move(parts.vertices), std::move(parts.triangles)};
+    DividedMesh pieces({mesh, snapping}, chains, progress);
+    return {std::move(pieces.vertices), std::move(pieces.triangles)};
 }
 
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,

@@ -35,7 +35,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
                          const Execution& execution = {});
 
 /// A mesh with snapped coordinates, its edges divided, but for those of a triangle of which a part
-/// would turn over. The numbers of triangles that were not divided stay; the first part of a
+/// would turn over. The numbers of triangles that were not divided stay; the first piece of a
 /// divided one has its number, the others come after all. Passes over what the builder refuses
 /// later.
 /// @throws Cancelled

@@ -8,7 +8,7 @@
 
 namespace realmodel::strata {
 
-struct Joins::Found {
+struct Joins::State {
     PlanSnapping snapping;
     BorderChains chains;
     Warning warning;
@@ -54,7 +54,7 @@ std::optional<JoinedMesh> Joins::mesh(const TriangleView& mesh, std::size_t colu
 std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
                                 const Execution& execution) {
     begin_step(execution.progress, 0.0, 1.0, "comparing the borders");
-    const auto joining = std::make_shared<Joins::Found>();
+    const auto joining = std::make_shared<Joins::State>();
     joining->snapping = find_snapping(rocks, execution);
     if (borders) joining->chains = find_chains(rocks, joining->snapping, {1, execution.progress});
     if (joining->snapping.empty() && joining->chains.empty()) return {};

@@ -34,7 +34,7 @@ std::array<double, 3> vertex_of(const TriangleView& surface, std::int64_t v) {
 
 /// Looks at the coordinates of vertices.
 void check_vertices(const TriangleView& surface, int index, const Execution& execution) {
-    parallel_each(surface.vertices.size() / 3, execution, [&](std::size_t i) {
+    parallel_for_each(surface.vertices.size() / 3, execution, [&](std::size_t i) {
         const auto v = static_cast<std::int64_t>(i);
         if (std::ranges::all_of(vertex_of(surface, v), is_within_limits)) return;
         throw InputError("not_finite",
@@ -46,7 +46,7 @@ void check_vertices(const TriangleView& surface, int index, const Execution& exe
 
 /// Looks at the corners of triangles.
 void check_corners(const TriangleView& surface, int index, const Execution& execution) {
-    parallel_each(surface.triangle_count(), execution, [&](std::size_t t) {
+    parallel_for_each(surface.triangle_count(), execution, [&](std::size_t t) {
         require_vertices("triangle", t, surface.triangles.subspan(3 * t, 3),
                          surface.vertices.size() / 3, index);
     });
@@ -57,7 +57,7 @@ void check_corners(const TriangleView& surface, int index, const Execution& exec
 Array<std::int8_t> turns_of(const TriangleView& surface, int index, const PlanSnapping& snapping,
                             std::vector<std::uint8_t>& is_used, const Execution& execution) {
     Array<std::int8_t> turns(surface.triangle_count());
-    parallel_each(turns.size(), execution, [&](std::size_t t) {
+    parallel_for_each(turns.size(), execution, [&](std::size_t t) {
         const auto v = surface.triangles.subspan(3 * t, 3);
         std::array<std::array<double, 3>, 3> p;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -195,9 +195,9 @@ Frame add_frame(PlanArrangement& geometry) {
     // What fills the frame around long borders would all run to its corners and be near everything
     // there, were there not more vertices along its sides. Halves of halves are exact.
     const double wanted = std::sqrt(static_cast<double>(geometry.point_count())) / 8;
-    const double parts = std::ldexp(1.0, std::ilogb(std::clamp(wanted, 1.0, 256.0)));
-    for (double i = 1; i < parts; ++i) {
-        const double x = x0 + (x1 - x0) * (i / parts), y = y0 + (y1 - y0) * (i / parts);
+    const double divisions = std::ldexp(1.0, std::ilogb(std::clamp(wanted, 1.0, 256.0)));
+    for (double i = 1; i < divisions; ++i) {
+        const double x = x0 + (x1 - x0) * (i / divisions), y = y0 + (y1 - y0) * (i / divisions);
         for (const auto& p : {std::array{x, y0}, {x1, y}, {x, y1}, {x0, y}})
             frame.push_back(geometry.add_vertex(p[0], p[1]));
     }

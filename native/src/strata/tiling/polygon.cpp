@@ -29,7 +29,7 @@ void Clipper::begin(PolygonView subject) {
 /// share an area where that is so both ways.
 template <class FilterOf>
 bool Clipper::reaches_inside(PolygonView polygon, PolygonView window,
-                             const FilterOf& filter_of_edge, Sides& sides) {
+                             const FilterOf& filter_of_edge, SidesOfCorners& sides) {
     sides.clear();
     for (std::size_t j = 0; j < window.size(); ++j) {
         const exact::ReachFilter filter = filter_of_edge(j);
@@ -71,7 +71,8 @@ PolygonView Clipper::intersect(PolygonView window) {
 void Clipper::follow(PolygonView window) {
     const std::size_t m = subject_.size(), n = window.size();
     const auto after = [](std::size_t i, std::size_t count) { return i + 1 < count ? i + 1 : 0; };
-    const auto is_inside = [](const Sides& sides, std::size_t corner, std::size_t corners) {
+    const auto is_inside = [](const SidesOfCorners& sides, std::size_t corner,
+                              std::size_t corners) {
         for (; corner < sides.size(); corner += corners) {
             if (sides[corner] < 0) return false;
         }

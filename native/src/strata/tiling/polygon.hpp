@@ -88,13 +88,13 @@ public:
     bool overlaps(PolygonView window);
 
 private:
-    using Sides = std::vector<std::int8_t>;
+    using SidesOfCorners = std::vector<std::int8_t>;
     exact::ReachFilter filter_of(PolygonView polygon, std::size_t edge) const {
         return exact::reach_filter(scope_, edge_of(polygon, edge));
     }
     template <class FilterOf>
     bool reaches_inside(PolygonView polygon, PolygonView window, const FilterOf& filter_of_edge,
-                        Sides& sides);
+                        SidesOfCorners& sides);
     void follow(PolygonView window);
     void cut_by_lines(PolygonView window);
     void rotate(PolygonView window);
@@ -102,8 +102,9 @@ private:
     LocalArrangement& scope_;
     PolygonView subject_;
     std::vector<exact::ReachFilter> filters_;  ///< of its edges
-    Sides subject_sides_, window_sides_;  ///< of the corners, for each line of the other polygon
-    Sides sides_;                         ///< of what is left
+    SidesOfCorners subject_sides_,
+        window_sides_;      ///< of the corners, for each line of the other polygon
+    SidesOfCorners sides_;  ///< of what is left
     Polygon result_, next_;
 };
 

@@ -140,7 +140,7 @@ void SurfaceTiling::index(const PlanArrangement& geometry, const Execution& exec
     runs_on.assign(plane.size(), 0);
     grid = PlanGrid(geometry, polygons, is_surface, cells, execution);
     heights = Array<HeightRange>(plane.size());
-    parallel_each(plane.size(), execution, [&](std::size_t p) {
+    parallel_for_each(plane.size(), execution, [&](std::size_t p) {
         heights[p] = !plane[p].has_value() ? HeightRange{} : heights_of(geometry, plane[p]);
     });
 }
@@ -192,8 +192,8 @@ SurfacePlan plan_surface(const PlanArrangement& geometry,
 PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                     const Execution& execution) {
     const PlaneId first = geometry.make_planes(triangles.size());
-    parallel_each(triangles.size(), execution,
-                  [&](std::size_t t) { geometry.set_plane(first + t, triangles[t].corner); });
+    parallel_for_each(triangles.size(), execution,
+                      [&](std::size_t t) { geometry.set_plane(first + t, triangles[t].corner); });
     return first;
 }
 
@@ -219,7 +219,7 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
     tiling.neighbor = std::move(plan.links.neighbor);
     tiling.index(geometry, execution);
     tiling.link(geometry, execution.progress);
-    parallel_each(triangles.size(), execution, [&](std::size_t t) {
+    parallel_for_each(triangles.size(), execution, [&](std::size_t t) {
         bool runs_on = true;
         for (std::size_t i = 0; i < 3 && runs_on; ++i) {
             const std::int32_t n = tiling.neighbor[t][i];
@@ -256,7 +256,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
     BlockTiling tiling;
     tiling.whole.resize(triangles.size());
     std::iota(tiling.whole.begin(), tiling.whole.end(), first);
-    const auto border = found_in_each<std::pair<exact::VertexId, exact::VertexId>>(
+    const auto border = collect_items<std::pair<exact::VertexId, exact::VertexId>>(
         triangles.size(), execution, [&](std::size_t t, auto& edges) {
             const PlaneId plane = tiling.whole[t];
             const PlanTriangle& corner = geometry.plane(plane).plan;

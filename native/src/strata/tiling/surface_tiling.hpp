@@ -153,24 +153,24 @@ SurfaceTiling make_region_tiling(exact::PlanArrangement& geometry,
                                  const std::vector<PlanTriangle>& triangles,
                                  const FrameTriangles& filling);
 
-/// A surface while blocks are built, or what rules raised it to: triangles as a whole, and parts of
-/// triangles, which overlays always cut exactly.
+/// A surface while blocks are built, or what rules raised it to: triangles as a whole, and pieces
+/// of triangles, which overlays always cut exactly.
 struct BlockTiling {
     std::vector<PlaneId> whole;
-    PolygonPool parts;
-    std::vector<PlaneId> part_plane;  ///< kVoid where there is no surface
-    std::vector<PlanTriangle> empty;  ///< where in the frame the surface is not
-    bool is_raised = false;           ///< triangles of older surfaces may be among these
+    PolygonPool pieces;
+    std::vector<PlaneId> piece_plane;  ///< kVoid where there is no surface
+    std::vector<PlanTriangle> empty;   ///< where in the frame the surface is not
+    bool is_raised = false;            ///< triangles of older surfaces may be among these
 
-    /// Number of whole triangles and parts, counted in this order.
-    std::size_t size() const { return whole.size() + part_plane.size(); }
+    /// Number of whole triangles and pieces, counted in this order.
+    std::size_t size() const { return whole.size() + piece_plane.size(); }
     bool is_whole(std::size_t i) const { return i < whole.size(); }
     PlaneId plane(std::size_t i) const {
-        return is_whole(i) ? whole[i] : part_plane[i - whole.size()];
+        return is_whole(i) ? whole[i] : piece_plane[i - whole.size()];
     }
-    void add_part(PolygonView outline, PlaneId in_plane) {
-        parts.add(outline);
-        part_plane.push_back(in_plane);
+    void add_piece(PolygonView outline, PlaneId in_plane) {
+        pieces.add(outline);
+        piece_plane.push_back(in_plane);
     }
 };
 

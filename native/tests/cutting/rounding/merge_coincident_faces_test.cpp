@@ -6,7 +6,7 @@ namespace {
 
 TEST_F(AHalvedBox, PolygonsOfAHalfThatFaceEachOtherBecomeOne) {
     cut_at(0.5);
-    parts_[1].side = kBelow;  // both parts in one half, and a cap of each
+    parts_[1].side = kBelow;  // both parts in one half, and a cut face of each
     for (CutPiece& piece : pieces_.origins) {
         if (piece.sides[0] == kAbove) piece.sides[0] = kBelow;
     }

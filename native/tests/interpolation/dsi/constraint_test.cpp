@@ -15,14 +15,14 @@ TEST(Constraint, ValuesAndViolations) {
     EXPECT_EQ(inside.violation(z), 1);
     EXPECT_EQ(inside.next_multiplier(z), 2);
     EXPECT_EQ(inside.corners(), 3U);
-    const std::vector<Position> nodes{{0, 0}, {4, 0}, {0, 8}};
-    EXPECT_EQ(inside.position(nodes), (Position{1, 2}));
+    const std::vector<PlanPosition> nodes{{0, 0}, {4, 0}, {0, 8}};
+    EXPECT_EQ(inside.position(nodes), (PlanPosition{1, 2}));
 
     const Constraint low = Constraint::at_node(1, 2, Relation::kLeast, 1.5);
     EXPECT_EQ(low.value(z), 2);
     EXPECT_EQ(low.violation(z), 0);
     EXPECT_EQ(low.next_multiplier(z), 0);
-    EXPECT_EQ(low.position(nodes), (Position{4, 0}));
+    EXPECT_EQ(low.position(nodes), (PlanPosition{4, 0}));
     EXPECT_TRUE(low.of_node);
     const Constraint high = Constraint::at_node(2, 2, Relation::kMost, 3);
     EXPECT_EQ(high.violation(z), 1);
@@ -41,7 +41,8 @@ TEST(Constraint, ARiseIsTheDifferenceAlongAVector) {
     EXPECT_TRUE(rise.is_rise());
     EXPECT_EQ(rise.value(z), 0.25);
     EXPECT_EQ(rise.violation(z), 0.75);
-    EXPECT_EQ(rise.position(std::vector<Position>{{0, 0}, {6, 0}, {0, 9}}), (Position{2, 3}));
+    EXPECT_EQ(rise.position(std::vector<PlanPosition>{{0, 0}, {6, 0}, {0, 9}}),
+              (PlanPosition{2, 3}));
     rise.weights = {1, -1, 0};
     EXPECT_EQ(rise.corners(), 3U);
     EXPECT_EQ(rise.value(z), -1);

@@ -95,7 +95,7 @@ TEST(Dsi, EqualNodesAndBoundsAreMetToTheLastDigit) {
 }
 
 /// Height at a position, of heights of a lattice's nodes.
-double height_at(const Lattice& mesh, const std::vector<double>& z, const Position& at) {
+double height_at(const Lattice& mesh, const std::vector<double>& z, const PlanPosition& at) {
     const auto found = spatial::MeshLocator(mesh.nodes, mesh.triangles).find(at);
     double sum = 0;
     for (std::size_t k = 0; found && k < 3; ++k)
@@ -116,7 +116,7 @@ TEST(Dsi, TrianglesHaveTheirDips) {
     EXPECT_EQ(found.missed, 0);
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            Position to = positions[i], from = to;
+            PlanPosition to = positions[i], from = to;
             to[axis] += 1e-3;
             from[axis] -= 1e-3;
             const double rise = height_at(mesh, found.z, to) - height_at(mesh, found.z, from);
@@ -151,7 +151,7 @@ TEST(Dsi, BoundsHoldWithinTriangles) {
     const Points points = on(mesh, 12, [](double x, double y) { return std::sin(x / 3) + y / 5; });
     const DsiHeights free = dsi(points, mesh.nodes, mesh.triangles, {}, 0, {1});
     Points lower, upper;
-    for (const Position& p : {Position{4.3, 5.6}, {22.7, 11.2}, {15.1, 3.4}, {8.8, 17.3}}) {
+    for (const PlanPosition& p : {PlanPosition{4.3, 5.6}, {22.7, 11.2}, {15.1, 3.4}, {8.8, 17.3}}) {
         const double z = height_at(mesh, free.z, p);
         lower.push_back({p[0], p[1], z + 0.5});
         upper.push_back({p[0] + 1, p[1] + 1, height_at(mesh, free.z, {p[0] + 1, p[1] + 1}) - 0.1});

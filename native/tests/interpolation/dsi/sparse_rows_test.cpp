@@ -33,13 +33,13 @@ TEST(Roughness, LinearHeightsHaveNoneAndQuadraticOnesWhatTheyBend) {
 
 TEST(Hinges, OfTwoTrianglesByHand) {
     // A unit square cut along the diagonal from 0 to 2: L^2 / (A + B) = 2, heights sqrt(1/2).
-    const std::vector<Position> nodes{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const std::vector<PlanPosition> nodes{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     const std::vector<std::array<std::int32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
     const auto found = hinges(nodes, triangles);
     ASSERT_EQ(found.size(), 1U);
     const Hinge& h = found[0];
     EXPECT_EQ(h.nodes, (std::array<std::int32_t, 4>{0, 2, 1, 3}));
-    EXPECT_EQ(h.middle, (Position{0.5, 0.5}));
+    EXPECT_EQ(h.middle, (PlanPosition{0.5, 0.5}));
     // The slope across jumps by (z1 + z3 - z0 - z2) / sqrt(1/2): squared, times 2, is 4 times.
     for (int k = 0; k < 4; ++k)
         EXPECT_NEAR(h.g[k], k < 2 ? -2 : 2, 1e-14);
@@ -49,7 +49,7 @@ TEST(Hinges, OfTwoTrianglesByHand) {
 }
 
 TEST(Hinges, ATriangleWithoutOneHasAStandIn) {
-    const std::vector<Position> nodes{{0, 0}, {1, 0}, {0, 1}, {2, 0}};
+    const std::vector<PlanPosition> nodes{{0, 0}, {1, 0}, {0, 1}, {2, 0}};
     const std::vector<std::array<std::int32_t, 3>> triangles{{2, 1, 0}, {0, 1, 3}};
     const auto found = hinges(nodes, triangles);  // the second has no area
     ASSERT_EQ(found.size(), 2U);

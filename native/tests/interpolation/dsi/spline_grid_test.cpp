@@ -11,8 +11,8 @@ namespace {
 
 TEST(SplineGrid, SumsToOneRisesAndBendsAsItsDerivatives) {
     const SplineGrid grid({10, 20}, 0.5, 7, 5);
-    for (const Position& position :
-         {Position{10, 20}, {11.3, 21.1}, {13.49, 22.49}, {13.5, 22.5}}) {
+    for (const PlanPosition& position :
+         {PlanPosition{10, 20}, {11.3, 21.1}, {13.49, 22.49}, {13.5, 22.5}}) {
         const std::size_t cell = grid.cell_of(position);
         const auto values = grid.values(position, cell);
         double sum = 0;
@@ -61,7 +61,7 @@ TEST(SplineStencils, AreTheSumOfTheElements) {
     std::mt19937 random(2);
     std::vector<SplineGrid::Element> elements(grid.cells(), SplineGrid::Element{});
     for (auto& element : elements) {
-        SplineGrid::Weights weights;
+        SplineGrid::SplineWeights weights;
         for (double& weight : weights)
             weight = static_cast<double>(random()) / 4294967296.0;
         add_square(element, weights, 2);

@@ -50,11 +50,11 @@ TEST(SplineLevels, OnTheCoarsestGridItSolvesExactly) {
         {{1, 1}, 5}, {{7, 2}, 5}, {{4, 7}, 5}, {{3, 4}, 8, {1, 2}}, {{5, 5}, 8, {-1, 1}}};
     levels.set_constraints(constraints);
     // A plane has no roughness: the right side of its heights at the constraints gives it.
-    const auto plane = [](const Position& p) { return 2 + 0.5 * p[0] - p[1]; };
+    const auto plane = [](const PlanPosition& p) { return 2 + 0.5 * p[0] - p[1]; };
     levels.right().assign(grid.length(), 0.0);
     for (const auto& [position, strength, along] : constraints) {
         const std::size_t cell = grid.cell_of(position);
-        const bool is_rise = along != Position{};
+        const bool is_rise = along != PlanPosition{};
         const auto weights =
             is_rise ? grid.rises(position, cell, along) : grid.values(position, cell);
         const double value = is_rise ? 0.5 * along[0] - along[1] : plane(position);
@@ -64,7 +64,8 @@ TEST(SplineLevels, OnTheCoarsestGridItSolvesExactly) {
         }
     }
     levels.solve();
-    for (const Position& p : {Position{0.5, 0.5}, Position{6, 3}, Position{4, 6.5}}) {
+    for (const PlanPosition& p :
+         {PlanPosition{0.5, 0.5}, PlanPosition{6, 3}, PlanPosition{4, 6.5}}) {
         const std::size_t cell = grid.cell_of(p);
         const auto weights = grid.values(p, cell);
         double height = 0;

@@ -15,7 +15,7 @@ TEST(Covariance, IsOneLessTheSemivarianceInUnitsOfTheSill) {
         Variogram v{model, 400, 9, 0.5, {}, {}};
         v.further.push_back({VariogramModel::kCubic, 1000, 3, {}});
         const Covariance covariance(v);
-        ASSERT_EQ(covariance.parts().size(), 2U);
+        ASSERT_EQ(covariance.structures().size(), 2U);
         for (const double h : {1e-6, 1.0, 57.0, 399.0, 400.0, 401.0, 999.0, 5000.0}) {
             EXPECT_NEAR(covariance({3, 4}, {3 + 0.6 * h, 4 - 0.8 * h}), 1 - gamma_of(v, h) / 9,
                         1e-13)

@@ -17,8 +17,8 @@ struct Searched {
     bool within;
 };
 
-Searched search(const DataPoints& data, const Position& position, const Neighborhood& neighborhood,
-                std::int32_t left_out = NeighborSearch::kNobody) {
+Searched search(const DataPoints& data, const PlanPosition& position,
+                const Neighborhood& neighborhood, std::int32_t left_out = NeighborSearch::kNobody) {
     const spatial::NearestPoints tree(data.local);
     NeighborSearch finder(data, tree, neighborhood);
     std::vector<spatial::Neighbor> found;
@@ -31,7 +31,7 @@ Searched search(const DataPoints& data, const Position& position, const Neighbor
 }
 
 /// The same, by looking at every point.
-std::vector<std::int32_t> expected(const DataPoints& data, const Position& position,
+std::vector<std::int32_t> expected(const DataPoints& data, const PlanPosition& position,
                                    const Neighborhood& n, std::int32_t left_out) {
     std::vector<spatial::Neighbor> all;
     for (std::size_t i = 0; i < data.local.size(); ++i) {
@@ -43,7 +43,7 @@ std::vector<std::int32_t> expected(const DataPoints& data, const Position& posit
     std::array<int, 8> taken{};
     for (const auto& [squared, point] : all) {
         if (point == left_out || (n.radius > 0 && squared > n.radius * n.radius)) continue;
-        const Position& p = data.local[static_cast<std::size_t>(point)];
+        const PlanPosition& p = data.local[static_cast<std::size_t>(point)];
         const double angle = std::atan2(p[1] - position[1], p[0] - position[0]) + std::numbers::pi;
         auto& count = taken[std::min(7U, static_cast<unsigned>(angle / std::numbers::pi * 4))];
         if (n.octants > 0 && count == n.octants) continue;
@@ -65,7 +65,7 @@ TEST(NeighborSearch, AsLookingAtEveryPoint) {
                                   {500, 0, 0},
                                   {3, 3, 3}}) {
         for (int i = 0; i < 30; ++i) {
-            const Position position = data.local[static_cast<std::size_t>(13 * i)];
+            const PlanPosition position = data.local[static_cast<std::size_t>(13 * i)];
             for (const std::int32_t left_out : {NeighborSearch::kNobody, 13 * i}) {
                 const auto want = expected(data, position, n, left_out);
                 const Searched got = search(data, position, n, left_out);
@@ -85,13 +85,13 @@ TEST(NeighborSearch, OctantsAlongMeasuredLinesAndFarOutside) {
     for (int i = 0; i < 600; ++i)  // six lines, points close together along them; ties
         points.push_back({4e5 + 200.0 * (i % 6), 5e6 + 2.0 * (i / 6), 0});
     const DataPoints data = prepare_points(points);
-    for (const Position& position : {Position{4e5 + 301.37, 5e6 + 77.91},
-                                     {4e5 + 200.13, 5e6 + 90.77},
-                                     {4e5 - 700.29, 5e6 + 3.11},
-                                     {4e5 + 5000.7, 5e6 - 9000.3},
-                                     {4e5 + 1e7, 5e6 + 0.1}}) {
+    for (const PlanPosition& position : {PlanPosition{4e5 + 301.37, 5e6 + 77.91},
+                                         {4e5 + 200.13, 5e6 + 90.77},
+                                         {4e5 - 700.29, 5e6 + 3.11},
+                                         {4e5 + 5000.7, 5e6 - 9000.3},
+                                         {4e5 + 1e7, 5e6 + 0.1}}) {
         for (const Neighborhood& n : {Neighborhood{16, 2, 0}, {8, 1, 0}, {32, 4, 500}, {0, 3, 0}}) {
-            const Position local = data.to_local(position);
+            const PlanPosition local = data.to_local(position);
             const auto want = expected(data, local, n, NeighborSearch::kNobody);
             const Searched got = search(data, local, n);
             if (want.empty()) {
@@ -110,8 +110,9 @@ TEST(NeighborSearch, OctantsOfPointsInOneLineOrAtOnePlace) {
         line.push_back({0, 3.0 * i, 0});
     for (const Points& points : {line, Points{{7, 7, 1}}}) {
         const DataPoints data = prepare_points(points);
-        for (const Position& position : {Position{1.3, 100.7}, {-50.1, 900.4}, {3.2, -4.9}}) {
-            const Position local = data.to_local(position);
+        for (const PlanPosition& position :
+             {PlanPosition{1.3, 100.7}, {-50.1, 900.4}, {3.2, -4.9}}) {
+            const PlanPosition local = data.to_local(position);
             EXPECT_EQ(search(data, local, {8, 1, 0}).points,
                       expected(data, local, {8, 1, 0}, NeighborSearch::kNobody));
         }
@@ -134,7 +135,7 @@ TEST(NeighborSearch, OctantsLookBeyondACluster) {
         points.push_back({1 + 0.001 * i, 0.5, 0});
     points.push_back({-50, 1, 0});
     const DataPoints data = prepare_points(points);
-    const Position middle = data.to_local({0, 0});
+    const PlanPosition middle = data.to_local({0, 0});
     EXPECT_EQ(search(data, middle, {16, 0, 0}).points.back(), 15);
     EXPECT_EQ(search(data, middle, {16, 4, 0}).points,
               (std::vector<std::int32_t>{0, 1, 2, 3, 100}));

@@ -57,10 +57,10 @@ TEST(Triangulated, RefusesAndStops) {
     }
 }
 
-using PartMethod = PartValues (*)(std::span<const std::array<double, 3>>,
-                                  std::span<const std::array<double, 2>>, const PointsAround&,
-                                  const Execution&);
-constexpr std::array<PartMethod, 2> part_methods{linear_on_part, natural_neighbors_of_part};
+using PartMethod = SubsetValues (*)(std::span<const std::array<double, 3>>,
+                                    std::span<const std::array<double, 2>>, const PointsAround&,
+                                    const Execution&);
+constexpr std::array<PartMethod, 2> part_methods{linear_on_subset, natural_neighbors_of_subset};
 
 /// Of hills and of a lattice, the nodes also on points, on edges, on the hull and beside it.
 TEST(Triangulated, APartKnowsWhereItSuffices) {
@@ -93,7 +93,7 @@ TEST(Triangulated, APartKnowsWhereItSuffices) {
         ASSERT_LT(part.size(), points.size() * 3 / 4);
         for (std::size_t k = 0; k < methods.size(); ++k) {
             const std::vector<double> expected = methods[k](points, nodes, {1, nullptr});
-            const PartValues found = part_methods[k](part, nodes, around, {1, nullptr});
+            const SubsetValues found = part_methods[k](part, nodes, around, {1, nullptr});
             std::size_t in_middle = 0, certain = 0;
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 if (found.certain[i] != 0) {
@@ -106,7 +106,7 @@ TEST(Triangulated, APartKnowsWhereItSuffices) {
             EXPECT_EQ(certain, in_middle);
             PointsAround whole = around;
             whole.is_whole = true;
-            const PartValues of_all = part_methods[k](points, nodes, whole, {1, nullptr});
+            const SubsetValues of_all = part_methods[k](points, nodes, whole, {1, nullptr});
             EXPECT_EQ(of_all.z, expected);
             EXPECT_EQ(std::count(of_all.certain.begin(), of_all.certain.end(), 1), 800);
         }

@@ -44,7 +44,7 @@ TEST(ExperimentalVariogram, DistancesUnderAnAnisotropy) {
     const Points points{{0, 0, 0}, {0, 6, 0}, {2, 0, 0}};
     // Longest toward north: what lies east counts three times.
     const IsotropicSpace space({3, 0});
-    const Position from = space({0, 0}), north = space({0, 6}), east = space({2, 0});
+    const PlanPosition from = space({0, 0}), north = space({0, 6}), east = space({2, 0});
     EXPECT_NEAR(std::hypot(north[0] - from[0], north[1] - from[1]), 6, 1e-14);
     EXPECT_NEAR(std::hypot(east[0] - from[0], east[1] - from[1]), 6, 1e-14);
     EXPECT_NEAR(ManyPoints(points).diagonal(space), 6 * std::sqrt(2), 1e-14);

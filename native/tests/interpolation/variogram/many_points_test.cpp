@@ -33,9 +33,9 @@ Points varied() {
 TEST(NearestOfSome, AsATreeOfAllFindsThem) {
     const Points points = varied();
     const DistinctPoints positions{points.size(), [&](std::size_t i) {
-                                       return Position{points[i][0], points[i][1]};
+                                       return PlanPosition{points[i][0], points[i][1]};
                                    }};
-    std::vector<std::int32_t> asked = even_part(points.size(), 700);
+    std::vector<std::int32_t> asked = even_subset(points.size(), 700);
     asked.push_back(static_cast<std::int32_t>(points.size()) - 1);
     for (const std::size_t count : {1U, 2U, 33U}) {
         const auto expected = nearest_of_some(positions, asked, count, {1, nullptr});
@@ -78,7 +78,7 @@ TEST(ManyPoints, APartOfThemGivesTheSame) {
         EXPECT_EQ(a.errors, b.errors);
         EXPECT_EQ(a.variances, b.variances);
     }
-    EXPECT_LT(ManyPoints(points, true, 100).part_with({}).size(), 100U);
+    EXPECT_LT(ManyPoints(points, true, 100).subset_with({}).size(), 100U);
 }
 
 TEST(ManyPoints, RepeatedOnesCountOnce) {

@@ -34,7 +34,7 @@ TEST(CellComponents, RefuseCellsThatAreNotThere) {
               cell_components(faces, blocks, nullptr);
           },
           +[](const std::vector<Sides>&faces, const std::vector<std::int32_t>&blocks) {
-              cell_sides(faces, blocks.size(), nullptr);
+              faces_of_cells(faces, blocks.size(), nullptr);
           }}) {
         try {
             call(beyond, block);
@@ -46,15 +46,15 @@ TEST(CellComponents, RefuseCellsThatAreNotThere) {
     }
 }
 
-TEST(CellSides, AreTheSidesOfFacesInOrder) {
+TEST(CellFaces, AreTheSidesOfFacesInOrder) {
     const std::vector<Sides> faces{{1, 0}, {0, -1}, {1, -1}};
-    const CellSides sides = cell_sides(faces, 2, nullptr);
+    const CellFaces sides = faces_of_cells(faces, 2, nullptr);
     const auto same = [](const auto& found, const std::vector<std::uint32_t>& expected) {
         return std::ranges::equal(found, expected);
     };
     EXPECT_TRUE(same(sides.offsets, {0, 2, 4}));
     // a side is twice its face, and one more where the cell is the face's second
-    EXPECT_TRUE(same(sides.sides, {1, 2, 0, 4}));
+    EXPECT_TRUE(same(sides.faces, {1, 2, 0, 4}));
 }
 
 }  // namespace

@@ -299,7 +299,7 @@ TEST(Walls, StandBetweenTwoColumnsWhetherTheirEdgesMatchOrNot) {
         Conformed conformed(small, {}, matched ? &is_thick : nullptr);
         const ConformedFaces faces = conform_faces(small.geometry, small.faces, conformed.vertices,
                                                    conformed.lines, {1, nullptr});
-        const FoundWalls found =
+        const WallLists found =
             find_walls(small.geometry, small.faces, conformed.lines, faces, nullptr, {1, nullptr});
         EXPECT_TRUE(found.missing.empty());
         std::vector<std::array<std::int32_t, 2>> inner;

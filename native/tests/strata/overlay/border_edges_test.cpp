@@ -20,7 +20,7 @@ protected:
     /// Whether an edge divides the triangle (0, 0), (4, 0), (0, 4).
     bool divides(const std::array<double, 2>& from, const std::array<double, 2>& to) {
         const PlanTriangle triangle{vertex(0, 0), vertex(4, 0), vertex(0, 4)};
-        const BorderEdges::Edge edge{vertex(from[0], from[1]), vertex(to[0], to[1])};
+        const BorderEdges::VertexPair edge{vertex(from[0], from[1]), vertex(to[0], to[1])};
         geometry_.freeze_vertices();
         const auto outline = triangle_outline(geometry_, triangle);
         const PlanTiles tiles({-8, -8, 8, 8}, 64);

@@ -34,7 +34,7 @@ std::string refusal(const OwnedSurface& surface) {
     return "accepted";
 }
 
-TEST(SurfaceInput, TrianglesTurnCounterClockwiseWhicheverWayTheyWereGiven) {
+TEST(CutterInput, TrianglesTurnCounterClockwiseWhicheverWayTheyWereGiven) {
     OwnedSurface s;
     const auto a = s.vertex(0, 0, 0), b = s.vertex(1, 0, 0), c = s.vertex(0, 1, 0);
     s.triangle(a, c, b);
@@ -51,7 +51,7 @@ TEST(SurfaceInput, TrianglesTurnCounterClockwiseWhicheverWayTheyWereGiven) {
     EXPECT_EQ(area, 1);
 }
 
-TEST(SurfaceInput, EqualVerticesAreOne) {
+TEST(CutterInput, EqualVerticesAreOne) {
     OwnedSurface s;
     for (int copy = 0; copy < 2; ++copy) {  // two triangles of a square, with vertices of their own
         const auto a = s.vertex(0, 0, 5), b = s.vertex(1, 1, 5);
@@ -62,7 +62,7 @@ TEST(SurfaceInput, EqualVerticesAreOne) {
     EXPECT_EQ(entered.border().size(), 4u);  // they hang together
 }
 
-TEST(SurfaceInput, WhatHasNoAreaIsLeftOutWithAWarning) {
+TEST(CutterInput, WhatHasNoAreaIsLeftOutWithAWarning) {
     OwnedSurface s;
     const auto a = s.vertex(0, 0, 0), b = s.vertex(1, 0, 0), c = s.vertex(0, 1, 0),
                middle = s.vertex(0.5, 0, 0);
@@ -77,7 +77,7 @@ TEST(SurfaceInput, WhatHasNoAreaIsLeftOutWithAWarning) {
     EXPECT_EQ(entered.warnings[0].items, (std::vector<std::int64_t>{1, 2}));
 }
 
-TEST(SurfaceInput, RefusesWhatIsNoSurfaceOverThePlan) {
+TEST(CutterInput, RefusesWhatIsNoSurfaceOverThePlan) {
     OwnedSurface vertical;
     vertical.triangle(vertical.vertex(0, 0, 0), vertical.vertex(1, 0, 0),
                       vertical.vertex(0.5, 0, 1));
@@ -91,7 +91,7 @@ TEST(SurfaceInput, RefusesWhatIsNoSurfaceOverThePlan) {
     EXPECT_EQ(refusal(not_a_number), "not_finite");
 }
 
-TEST(SurfaceInput, CoordinatesAreSnappedBeforeVerticesAreCompared) {
+TEST(CutterInput, CoordinatesAreSnappedBeforeVerticesAreCompared) {
     OwnedSurface s;
     const double beside = std::nextafter(1.0, 2.0);
     const auto a = s.vertex(0, 0, 0), b = s.vertex(1, 1, 0), c = s.vertex(1, 0, 0),

@@ -6,14 +6,14 @@
 #include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
-#include "cutting/surface_parts.hpp"
+#include "cutting/cell_parts.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
 /// Each polygon in triangles round a node of its own.
-Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
+Polygons from_middle(CutterOverlay& overlay, const Polygons& polygons) {
     Polygons divided;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
         const auto nodes = polygons[p];
@@ -26,7 +26,7 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
 
 }  // namespace
 
-bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
+bool divide_loops(CutterOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
                   bool is_wall, Polygons& polygons) {
     if (is_wall && loops.size() == 1 && !arrangement::has_repeated(loops[0])) {
         polygons.add(loops[0]);
@@ -54,7 +54,7 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<N
 }
 
 /// Parts in the order of the model's cells, those of one cell in that of what bounds them.
-void SurfaceParts::number_parts() {
+void CellParts::number_parts() {
     std::vector<std::int32_t> roots;
     for (std::size_t s = 0; s < half_faces_.size(); ++s) {
         if (joined_->find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
@@ -77,8 +77,8 @@ void SurfaceParts::number_parts() {
 
 /// Adds polygons between two half-faces: they turn counter-clockwise, the other
 /// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
-void SurfaceParts::write(const Polygons& polygons, bool reversed, std::int32_t face,
-                         std::array<std::int32_t, 2> half_faces, bool on_cutter) {
+void CellParts::write(const Polygons& polygons, bool reversed, std::int32_t face,
+                      std::array<std::int32_t, 2> half_faces, bool on_cutter) {
     CutPiece origin{face, {-1, -1}, {kOn, kOn}, on_cutter};
     for (std::size_t k = 0; k < 2; ++k) {
         if (half_faces[k] < 0) continue;
@@ -98,20 +98,20 @@ void SurfaceParts::write(const Polygons& polygons, bool reversed, std::int32_t f
     }
 }
 
-/// A patch in polygons, which are added.
-void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
+/// A face piece in polygons, which are added.
+void CellParts::divide(const FacePiece& face_piece, Polygons& polygons) {
     const ComplexView& model = overlay_.model();
-    const auto face = index(patch.face);
-    if (patch.divided == nullptr) {
+    const auto face = index(face_piece.face);
+    if (face_piece.divided == nullptr) {
         polygons.add(model.face(face));
         return;
     }
     const auto corners = positions_of(model, model.face(face));
     const bool is_wall = model.face_surface[face] == kWall;
     Polygons whole;
-    if (!divide_loops(overlay_, polygon_normal(corners), patch.loops(), is_wall, whole)) {
+    if (!divide_loops(overlay_, polygon_normal(corners), face_piece.loops(), is_wall, whole)) {
         whole.clear();
-        for (const std::int32_t region : patch.regions()) {
+        for (const std::int32_t region : face_piece.regions()) {
             const auto [axis, facing] = overlay_.view_of(index(region));
             Position normal{0, 0, 0};
             normal[axis] = facing;
@@ -122,31 +122,31 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
 }
 
 /// Patches are divided on all threads and written in their order.
-void SurfaceParts::write_patches(Progress* progress) {
-    std::vector<Polygons> divided(patches_.size());
-    parallel_each(divided.size(), {overlay_.threads(), progress},
-                  [&](std::size_t i) { divide(patches_[i], divided[i]); });
-    for (std::size_t i = 0; i < patches_.size(); ++i)
-        write(divided[i], false, patches_[i].face, patches_[i].half_faces, false);
+void CellParts::write_face_pieces(Progress* progress) {
+    std::vector<Polygons> divided(face_pieces_.size());
+    parallel_for_each(divided.size(), {overlay_.threads(), progress},
+                      [&](std::size_t i) { divide(face_pieces_[i], divided[i]); });
+    for (std::size_t i = 0; i < face_pieces_.size(); ++i)
+        write(divided[i], false, face_pieces_[i].face, face_pieces_[i].half_faces, false);
 }
 
-/// A region of the surface, or an undivided triangle, in polygons, which are added.
-void SurfaceParts::divide(const CapFacet& facet, Polygons& polygons) {
+/// A region of the cutter, or an undivided triangle, in polygons, which are added.
+void CellParts::divide(const CutFacet& facet, Polygons& polygons) {
     if (facet.triangle >= 0) {
         auto nodes = overlay_.undivided_nodes(facet.triangle);
         std::rotate(nodes.begin(), std::ranges::min_element(nodes), nodes.end());  // as above
         polygons.add(nodes);
         return;
     }
-    const std::size_t region = index(caps_[facet.caps].region);
+    const std::size_t region = index(cut_faces_[facet.cut_faces].region);
     const auto corners = transformed(
         overlay_.corners(region), [this](SpacePointId p) { return overlay_.points().rounded(p); });
     divide_loops(overlay_, polygon_normal(corners), overlay_.loops(region), false, polygons);
 }
 
-/// Between what is on either side of the surface; where on one side two cells overlap, or one is
+/// Between what is on either side of the cutter; where on one side two cells overlap, or one is
 /// inside out, the polygon is between these two.
-void SurfaceParts::write_caps(Progress* progress) {
+void CellParts::write_cut_faces(Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> outer_face(overlay_.size(), -1);
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
@@ -155,11 +155,11 @@ void SurfaceParts::write_caps(Progress* progress) {
             if (model.cell(index(face), 1) < 0) outer_face[index(winding_.coincident(r))] = face;
         }
     }
-    std::vector<Polygons> in_polygons(cap_facets_.size());
-    parallel_each(in_polygons.size(), {overlay_.threads(), progress},
-                  [&](std::size_t i) { divide(cap_facets_[i], in_polygons[i]); });
-    for (std::size_t i = 0; i < cap_facets_.size(); ++i) {
-        const Caps& caps = caps_[cap_facets_[i].caps];
+    std::vector<Polygons> in_polygons(cut_facets_.size());
+    parallel_for_each(in_polygons.size(), {overlay_.threads(), progress},
+                      [&](std::size_t i) { divide(cut_facets_[i], in_polygons[i]); });
+    for (std::size_t i = 0; i < cut_facets_.size(); ++i) {
+        const CutFaces& cut_faces = cut_faces_[cut_facets_[i].cut_faces];
         const Polygons& polygons = in_polygons[i];
         // no two polygons of a half may be the same; between two parts of a half there is one
         std::array<bool, 2> written{false, false};
@@ -177,26 +177,27 @@ void SurfaceParts::write_caps(Progress* progress) {
             write(again ? from_middle(overlay_, polygons) : polygons, reversed, face, half_faces,
                   on_cutter);
         };
-        const std::int32_t outer = outer_face[index(caps.region)];
-        const auto cap = [&](const std::array<std::int32_t, 2>& half_faces) {
+        const std::int32_t outer = outer_face[index(cut_faces.region)];
+        const auto cut_face = [&](const std::array<std::int32_t, 2>& half_faces) {
             const auto cell = [&](std::int32_t half_face) {
                 return half_face < 0 ? -1 : half_faces_[index(half_face)].cell;
             };
-            return sides_.cap_face(index(caps.region), cell(half_faces[0]), cell(half_faces[1]));
+            return sides_.cut_face_number(index(cut_faces.region), cell(half_faces[0]),
+                                          cell(half_faces[1]));
         };
-        for (const auto& pair : caps.pairs_through) {
+        for (const auto& pair : cut_faces.pairs_through) {
             const bool reversed = pair[1] < 0 && half_faces_[index(pair[0])].sign < 0;
-            const bool is_outer =
-                pair[1] < 0 && outer >= 0 &&
-                sides_.ends_at_outer_face(index(caps.region), half_faces_[index(pair[0])].cell);
-            add(reversed, is_outer ? outer : cap(pair), pair, true);
+            const bool is_outer = pair[1] < 0 && outer >= 0 &&
+                                  sides_.ends_at_outer_face(index(cut_faces.region),
+                                                            half_faces_[index(pair[0])].cell);
+            add(reversed, is_outer ? outer : cut_face(pair), pair, true);
         }
-        for (const auto& pair : caps.pairs_on_one_side)
-            add(false, cap(pair), pair, false);
+        for (const auto& pair : cut_faces.pairs_on_one_side)
+            add(false, cut_face(pair), pair, false);
     }
 }
 
-void SurfaceParts::find_touches(Progress* progress) {
+void CellParts::find_touches(Progress* progress) {
     // part and ends; of parts within one cell, two uses of an edge side by side are not too many
     std::vector<std::array<std::int32_t, 3>> edges;
     for (const auto uses : groups_of(uses_.values, &HalfFaceUse::key)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/surface_parts.hpp"
+#include "cutting/cell_parts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ namespace {
 
 /// The parts of a model that a surface cuts.
 struct PartedCells {
-    PartedCells(validation::OwnedComplex of, CutterSurface by)
+    PartedCells(validation::OwnedComplex of, Cutter by)
         : complex(std::move(of)), surface(std::move(by)) {}
     std::ptrdiff_t count(std::int32_t cell, std::int8_t side) const {
         return std::ranges::count_if(parts.half_cells, [&](const HalfCell& part) {
             return part.cell == cell && part.side == side;
         });
     }
-    std::vector<std::size_t> caps() const {
+    std::vector<std::size_t> cut_faces() const {
         std::vector<std::size_t> found;
         for (std::size_t p = 0; p < parts.pieces.size(); ++p) {
             if (parts.pieces[p].is_on_cutter) found.push_back(p);
@@ -38,36 +38,36 @@ struct PartedCells {
 
     validation::OwnedComplex complex;
     ComplexView model = complex.view();
-    CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, {1, nullptr}};
+    Cutter surface;
+    CutterOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
     CutterSides sides{overlay, winding, nullptr};
-    SurfaceParts parts{overlay, winding, sides, nullptr};
+    CellParts parts{overlay, winding, sides, nullptr};
 };
 
-TEST(SurfaceParts, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
+TEST(CellParts, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
     const PartedCells cut(validation::two_cubes(), level_cutter(0.5));
     EXPECT_EQ(cut.parts.half_cells.size(), 3U);
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 1);
     EXPECT_EQ(cut.count(1, kAbove), 1);
-    // four walls in two, the other seven faces, one cap
+    // four walls in two, the other seven faces, one cut face
     EXPECT_EQ(cut.parts.pieces.size(), 8U + 7 + 1);
     EXPECT_EQ(cut.parts.touches, (std::array{false, false}));
 }
 
-TEST(SurfaceParts, ACapHasThePartBelowFirstAndIsSeenFromAbove) {
+TEST(CellParts, ACapHasThePartBelowFirstAndIsSeenFromAbove) {
     const PartedCells cut(validation::two_cubes(), level_cutter(0.5));
-    const auto caps = cut.caps();
-    ASSERT_EQ(caps.size(), 1U);
-    const CutPiece& cap = cut.parts.pieces[caps[0]];
-    EXPECT_EQ(cap.face, -1);
-    EXPECT_EQ(cap.cells, (std::array<std::int32_t, 2>{0, 0}));
-    EXPECT_EQ(cap.sides, (std::array<std::int8_t, 2>{kBelow, kAbove}));
-    EXPECT_EQ(cut.height_of_normal(caps[0]), 2);
+    const auto cut_faces = cut.cut_faces();
+    ASSERT_EQ(cut_faces.size(), 1U);
+    const CutPiece& cut_face = cut.parts.pieces[cut_faces[0]];
+    EXPECT_EQ(cut_face.face, -1);
+    EXPECT_EQ(cut_face.cells, (std::array<std::int32_t, 2>{0, 0}));
+    EXPECT_EQ(cut_face.sides, (std::array<std::int8_t, 2>{kBelow, kAbove}));
+    EXPECT_EQ(cut.height_of_normal(cut_faces[0]), 2);
 }
 
-TEST(SurfaceParts, EachPartIsClosed) {
+TEST(CellParts, EachPartIsClosed) {
     for (const double height : {0.5, 1.0, 1.5}) {
         const PartedCells cut(validation::two_cubes(), level_cutter(height));
         std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> uses;
@@ -86,34 +86,34 @@ TEST(SurfaceParts, EachPartIsClosed) {
     }
 }
 
-TEST(SurfaceParts, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
+TEST(CellParts, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
     const PartedCells cut(validation::two_cubes(), level_cutter(1));
     EXPECT_EQ(cut.parts.half_cells.size(), 2U);
-    for (const std::size_t cap : cut.caps())
-        EXPECT_EQ(cut.parts.pieces[cap].cells, (std::array<std::int32_t, 2>{0, 1}));
-    EXPECT_EQ(cut.caps().size(), 2U);  // the face's triangles
+    for (const std::size_t cut_face : cut.cut_faces())
+        EXPECT_EQ(cut.parts.pieces[cut_face].cells, (std::array<std::int32_t, 2>{0, 1}));
+    EXPECT_EQ(cut.cut_faces().size(), 2U);  // the face's triangles
 }
 
-TEST(SurfaceParts, TheTowersOfAUBecomeTwoParts) {
+TEST(CellParts, TheTowersOfAUBecomeTwoParts) {
     const PartedCells cut(u_shape(), level_cutter(1.5));
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 2);
-    EXPECT_EQ(cut.caps().size(), 2U);
+    EXPECT_EQ(cut.cut_faces().size(), 2U);
 }
 
-TEST(SurfaceParts, AHollowThatIsCutOutBelongsToThePartAroundIt) {
+TEST(CellParts, AHollowThatIsCutOutBelongsToThePartAroundIt) {
     const PartedCells cut(validation::two_cubes(), closed_cutter());
     EXPECT_EQ(cut.parts.half_cells.size(), 3U);
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 1);
-    EXPECT_EQ(cut.caps().size(), 4U);
+    EXPECT_EQ(cut.cut_faces().size(), 4U);
 }
 
-TEST(SurfaceParts, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
+TEST(CellParts, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
     auto u = u_shape();
     const ComplexView model = u.view();
-    const CutterSurface surface = level_cutter(9);
-    SurfaceOverlay overlay(model, surface, {1, nullptr});
+    const Cutter surface = level_cutter(9);
+    CutterOverlay overlay(model, surface, {1, nullptr});
     const std::vector<NodeLoop> front{node_loop({0, 1, 2, 3, 4, 5, 6, 7})};
     arrangement::LoopTable<NodeId> loops;
     loops.add_loop(front[0]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact overlay of a model's faces with the triangles of a surface.
-#include "cutting/surface_overlay.hpp"
+// The exact overlay of a model's faces with the triangles of a cutter.
+#include "cutting/cutter_overlay.hpp"
 
 #include "base/algorithms.hpp"
 #include "base/floating_point.hpp"
@@ -23,18 +23,18 @@ double computed_ulps(double x) {
 
 }  // namespace
 
-SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
-                               const Execution& execution, double least_rounding,
-                               std::span<const std::int32_t> groups, const FarFaces& far)
+CutterOverlay::CutterOverlay(const ComplexView& model, const Cutter& cutter,
+                             const Execution& execution, double least_rounding,
+                             std::span<const std::int32_t> groups, const FarFaces& far)
     : model_(model),
-      surface_(surface),
+      cutter_(cutter),
       far_(far),
       execution_(execution),
       arrangement_(points_),
       margin_(least_rounding) {
     find_same_faces(!groups.empty());
     find_active_faces(groups);
-    name_surface();
+    name_cutter();
     divide_active_faces();
     overlay_all();
     name_nodes();
@@ -56,11 +56,11 @@ bool is_within(const Position& p, const Position& q, const Position& tolerance, 
 
 }  // namespace
 
-/// Where on an edge of the surface a vertex may be but for its rounding.
-std::optional<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::edge_near(const Position& p,
-                                                                        const Position& tolerance,
-                                                                        const Position& a,
-                                                                        const Position& b) {
+/// Where on an edge of the cutter a vertex may be but for its rounding.
+std::optional<CutterOverlay::CutterFeature> CutterOverlay::edge_near(const Position& p,
+                                                                     const Position& tolerance,
+                                                                     const Position& a,
+                                                                     const Position& b) {
     // the part of the edge that is within the tolerance on every axis, and the axis that has it
     // shortest: there the point keeps the vertex's coordinate
     double from = 0, to = 1, shortest = HUGE_VAL;
@@ -80,11 +80,11 @@ std::optional<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::edge_near(const Po
     }
     const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
     if (from > to || !(share > 0 && share < 1)) return std::nullopt;
-    return SurfaceFeature{2, axis, {a, b}};
+    return CutterFeature{2, axis, {a, b}};
 }
 
-/// The same within a triangle of the surface.
-std::optional<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::triangle_near(
+/// The same within a triangle of the cutter.
+std::optional<CutterOverlay::CutterFeature> CutterOverlay::triangle_near(
     const Position& p, const Position& tolerance, const std::array<Position, 3>& corners) {
     constexpr double kRounding = 0x1p-50;  // of the distance
     const Position normal = polygon_normal(corners);
@@ -102,12 +102,12 @@ std::optional<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::triangle_near(
         if (exact::orient2d(view(corners[i]), view(corners[(i + 1) % 3]), view(p)) <= 0)
             return std::nullopt;
     }
-    return SurfaceFeature{3, axis, corners};
+    return CutterFeature{3, axis, corners};
 }
 
-/// Where on the surface a vertex may be but for its rounding: at a corner, or on edges, then in
+/// Where on the cutter a vertex may be but for its rounding: at a corner, or on edges, then in
 /// triangles.
-std::vector<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::features_near(NodeId vertex) const {
+std::vector<CutterOverlay::CutterFeature> CutterOverlay::features_near(NodeId vertex) const {
     std::vector<std::int32_t> near;
     const Position p = model_.vertex(vertex);
     tree_->find(Box{p, p}, [&](std::int32_t t) {
@@ -120,7 +120,7 @@ std::vector<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::features_near(NodeId
             if (is_within(p, corner(t, i), tolerance, 1)) return {{1, 0, {corner(t, i)}}};
         }
     }
-    std::vector<SurfaceFeature> features;
+    std::vector<CutterFeature> features;
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
             if (const auto feature = edge_near(p, tolerance, corner(t, i), corner(t, i + 1)))
@@ -128,7 +128,7 @@ std::vector<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::features_near(NodeId
         }
     }
     for (const std::int32_t t : near) {
-        if (const auto feature = triangle_near(p, tolerance, surface_.corners(index(t))))
+        if (const auto feature = triangle_near(p, tolerance, cutter_.corners(index(t))))
             features.push_back(*feature);
     }
     return features;
@@ -136,9 +136,9 @@ std::vector<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::features_near(NodeId
 
 /// The point on the first of some features that is indeed as near to a vertex; none where all are
 /// farther.
-std::optional<SpacePointId> SurfaceOverlay::point_on_surface(
-    const Position& p, std::span<const SurfaceFeature> features) {
-    for (const SurfaceFeature& feature : features) {
+std::optional<SpacePointId> CutterOverlay::point_on_cutter(
+    const Position& p, std::span<const CutterFeature> features) {
+    for (const CutterFeature& feature : features) {
         const auto& [count, axis, corners] = feature;
         if (count == 1) return points_.add(corners[0]);
         std::array<SpacePointId, 4> of{points_.add(p)};
@@ -153,7 +153,7 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(
 
 /// Gives the vertices of active faces exact points: where they are, or where they are but for their
 /// rounding. No two share one.
-void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
+void CutterOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     std::vector<std::uint8_t> is_new(vertex_point_.size(), 0);
     for (const std::int32_t f : faces) {
         for (const NodeId v : model_.face(index(f)))
@@ -169,7 +169,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     };
     for (const NodeId v : vertices)
         is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
-    std::vector<std::vector<SurfaceFeature>> features(vertices.size());
+    std::vector<std::vector<CutterFeature>> features(vertices.size());
     parallel_ranges(
         vertices.size(), 1 << 10, execution_,
         [&](std::size_t begin, std::size_t end) {
@@ -181,22 +181,22 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         if (features[i].empty()) continue;
         poll(execution_.progress, 16 * i);
         SpacePointId& point = vertex_point_[index(vertices[i])];
-        const auto on_surface = point_on_surface(model_.vertex(vertices[i]), features[i]);
-        if (!on_surface || *on_surface == point || is_taken(*on_surface) != 0) continue;
+        const auto on_cutter = point_on_cutter(model_.vertex(vertices[i]), features[i]);
+        if (!on_cutter || *on_cutter == point || is_taken(*on_cutter) != 0) continue;
         is_taken(point) = 0;
-        is_taken(*on_surface) = 1;
-        point = *on_surface;
+        is_taken(*on_cutter) = 1;
+        point = *on_cutter;
     }
 }
 
-void SurfaceOverlay::overlay_all() {
+void CutterOverlay::overlay_all() {
     add_triangles();
     // Which intersect is found out on all threads; where they do is entered in order.
     const auto count = index(first_cutter_) + divided_.size();
-    std::vector<std::int32_t> number_of(surface_.triangles.size(), -1);
+    std::vector<std::int32_t> number_of(cutter_.triangles.size(), -1);
     for (std::size_t i = 0; i < divided_.size(); ++i)
         number_of[index(divided_[i])] = first_cutter_ + static_cast<std::int32_t>(i);
-    for (const CrossedFace& cut : parts_.crossed)
+    for (const CrossedFace& cut : division_.crossed)
         arrangement_.add_line(number_of[index(cut.triangle)], cut.ends[0], cut.ends[1]);
     begin_phase(execution_.progress, 0.08, 0.15, "finding where surface and faces meet");
     const auto positions_of = [this](std::int32_t t) {
@@ -205,7 +205,7 @@ void SurfaceOverlay::overlay_all() {
                           points_.rounded(corners[2])};
     };
     const auto box_of = [&](std::int32_t t) { return spatial::bounding_box(positions_of(t)); };
-    // triangles of the surface that cross each other beyond the model are left alone, unless one of
+    // triangles of the cutter that cross each other beyond the model are left alone, unless one of
     // them reaches it
     std::vector<std::uint8_t> is_beyond(count, 0);
     for (std::size_t t = index(first_cutter_); t < count; ++t)
@@ -226,7 +226,7 @@ void SurfaceOverlay::overlay_all() {
         }
     };
     constexpr std::size_t kChunk = 1 << 8;
-    const auto met = found_in_ranges<TriangleIntersection>(count, kChunk, execution_, find);
+    const auto met = collect_ranges<TriangleIntersection>(count, kChunk, execution_, find);
     begin_phase(execution_.progress, 0.15, 0.3, "dividing faces and surface");
     points_.reserve_intersections(met.size());  // each is an end of two segments
     for (std::size_t i = 0; i < met.size(); ++i) {
@@ -236,26 +236,26 @@ void SurfaceOverlay::overlay_all() {
     arrangement_.divide(execution_);
 }
 
-/// The triangles of active faces, then those of the surface.
-void SurfaceOverlay::add_triangles() {
+/// The triangles of active faces, then those of the cutter.
+void CutterOverlay::add_triangles() {
     std::vector<std::array<SpacePointId, 3>> corners;
-    corners.reserve(parts_.triangles.size() + divided_.size());
-    for (const auto& t : parts_.triangles) {
+    corners.reserve(division_.triangles.size() + divided_.size());
+    for (const auto& t : division_.triangles) {
         corners.push_back(
             {vertex_point_[index(t[0])], vertex_point_[index(t[1])], vertex_point_[index(t[2])]});
     }
-    parts_.triangles = {};
+    division_.triangles = {};
     first_cutter_ = checked_number(corners.size(), "triangles");
-    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+    for (std::int32_t t = 0; index(t) < cutter_.triangles.size(); ++t) {
         if (undivided_.has(t)) continue;
         divided_.push_back(t);
-        corners.push_back(surface_points(t));
+        corners.push_back(cutter_points(t));
     }
     arrangement_.add_all(corners, execution_);
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
-void SurfaceOverlay::name_nodes() {
+void CutterOverlay::name_nodes() {
     std::vector<NodeId> out(points_.size(), -1);
     for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
         if (vertex_point_[v] != kNone) out[index(vertex_point_[v])] = static_cast<NodeId>(v);
@@ -273,30 +273,31 @@ void SurfaceOverlay::name_nodes() {
     loops_.region_begins = of_points.region_begins;
     loops_.nodes.resize(of_points.nodes.size());
     std::ranges::transform(of_points.nodes, loops_.nodes.begin(), node_of);
-    surface_nodes_.assign(surface_.vertices.size(), -1);
+    cutter_nodes_.assign(cutter_.vertices.size(), -1);
     for (std::size_t component = 0; component < undivided_.components(); ++component) {
         for (const std::int32_t t : undivided_.triangles(component)) {
-            for (const std::int32_t vertex : surface_.triangles[index(t)])
-                surface_nodes_[index(vertex)] = node_of(surface_point_[index(vertex)]);
+            for (const std::int32_t vertex : cutter_.triangles[index(t)])
+                cutter_nodes_[index(vertex)] = node_of(cutter_point_[index(vertex)]);
         }
     }
-    for (std::size_t i = 0; i < parts_.beside.size(); ++i) {
-        loops_.add_loop(parts_.beside[i]);
+    for (std::size_t i = 0; i < division_.beside.size(); ++i) {
+        loops_.add_loop(division_.beside[i]);
         loops_.end_region();
     }
-    parts_.beside = {};
-    for (std::size_t i = 0; i < parts_.crossed.size(); ++i)
-        add_halves(parts_.crossed[i], arrangement_.within_line(static_cast<std::int32_t>(i)), out);
+    division_.beside = {};
+    for (std::size_t i = 0; i < division_.crossed.size(); ++i)
+        add_halves(division_.crossed[i], arrangement_.within_line(static_cast<std::int32_t>(i)),
+                   out);
     sort_new_nodes();
     // edges and sides number regions and then faces in one row
-    checked_number(size() + model_.face_count() + surface_.triangles.size(),
+    checked_number(size() + model_.face_count() + cutter_.triangles.size(),
                    "faces and their parts");
 }
 
 /// Adds both halves of a crossed face as regions.
 /// @param within  the points between its ends, from the lesser to the greater
-void SurfaceOverlay::add_halves(const CrossedFace& cut, std::span<const SpacePointId> within,
-                                std::span<const NodeId> node_of_point) {
+void CutterOverlay::add_halves(const CrossedFace& cut, std::span<const SpacePointId> within,
+                               std::span<const NodeId> node_of_point) {
     std::vector<SpacePointId> line{std::min(cut.ends[0], cut.ends[1])};
     line.insert(line.end(), within.begin(), within.end());
     line.push_back(std::max(cut.ends[0], cut.ends[1]));
@@ -309,13 +310,13 @@ void SurfaceOverlay::add_halves(const CrossedFace& cut, std::span<const SpacePoi
             loops_.nodes.push_back(node_of_point[index(p)]);
         loops_.end_loop();
         loops_.end_region();
-        parts_.face_of_beside.push_back(cut.face);
+        division_.face_of_beside.push_back(cut.face);
     }
 }
 
 /// Numbers the new nodes in the order of their positions: whatever else there is elsewhere, what is
 /// decided by numbers is decided alike.
-void SurfaceOverlay::sort_new_nodes() {
+void CutterOverlay::sort_new_nodes() {
     const auto first = static_cast<NodeId>(model_.vertex_count());
     std::vector<std::pair<Position, NodeId>> order;
     for (std::size_t i = 0; i < new_positions_.size(); ++i)
@@ -335,10 +336,10 @@ void SurfaceOverlay::sort_new_nodes() {
         }
     };
     renumber(loops_.nodes);
-    renumber(surface_nodes_);
+    renumber(cutter_nodes_);
 }
 
-SpacePointId SurfaceOverlay::exact(NodeId node) {
+SpacePointId CutterOverlay::exact(NodeId node) {
     const auto vertices = static_cast<NodeId>(model_.vertex_count());
     if (node >= vertices) return exact_of_new_[index(node - vertices)];
     const SpacePointId known = vertex_point_[index(node)];
@@ -346,8 +347,8 @@ SpacePointId SurfaceOverlay::exact(NodeId node) {
 }
 
 /// The corner of a polygon that is farthest from the line of one of its edges, as an exact point.
-SpacePointId SurfaceOverlay::far_corner(std::span<const NodeId> polygon,
-                                        const std::array<NodeId, 2>& edge) {
+SpacePointId CutterOverlay::far_corner(std::span<const NodeId> polygon,
+                                       const std::array<NodeId, 2>& edge) {
     const Position a = position(edge[0]), b = position(edge[1]);
     NodeId far_node = edge[0];
     double farthest = -1;
@@ -362,9 +363,9 @@ SpacePointId SurfaceOverlay::far_corner(std::span<const NodeId> polygon,
     return exact(far_node);
 }
 
-void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
-                              std::vector<arrangement::HalfPlane>& items,
-                              arrangement::EdgeFan& fan) {
+void CutterOverlay::find_fan(std::span<const EdgeUse> uses,
+                             std::vector<arrangement::HalfPlane>& items,
+                             arrangement::EdgeFan& fan) {
     const SpacePointId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
     items.clear();
     for (const EdgeUse& use : uses) {
@@ -389,7 +390,7 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
     arrangement::find_fan(points_, a, b, items, fan);
 }
 
-std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
+std::pair<std::size_t, int> CutterOverlay::view_of(std::size_t region) const {
     if (!is_of_face(region)) return arrangement_.view_of(triangle(region));
     const View view(polygon_normal(
         transformed(loops_[region][0], [this](NodeId node) { return position(node); })));
@@ -398,7 +399,7 @@ std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
 
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
-SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
+SpacePointId CutterOverlay::inner_point(std::size_t region) {
     if (is_of_face(region)) return exact(loops_[region][0][0]);
     const auto [axis, facing] = view_of(region);
     const auto outline = loops_[region][0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 
 #include <array>
 #include <atomic>
@@ -52,24 +52,24 @@ public:
               faces.size(), model.vertex_count(),
               [&](std::size_t i) { return model.face(index(faces[i])); }, execution)) {}
 
-    /// Keeps what is near the surface, and says of what is beside it.
+    /// Keeps what is near the cutter, and says of what is beside it.
     /// @return around all faces
-    spatial::Box keep_near(const NearestSide& surface, double margin) {
+    spatial::Box keep_near(const NearestSide& nearest, double margin) {
         spatial::Box all;
         parallel_ranges(
             faces_.size(), kEdgeChunk, execution_, [&](std::size_t begin, std::size_t end) {
                 spatial::Box around;
                 for (std::size_t i = begin; i < end; ++i) {
                     const spatial::Box box = box_of(model_, model_.face(index(faces_[i])));
-                    if (surface.is_near(box, margin) || is_upright(model_, faces_[i], box))
+                    if (nearest.is_near(box, margin) || is_upright(model_, faces_[i], box))
                         stays_[i] = kNear;
                     around.include(box);
                 }
                 include_at_once(all, around);
             });
-        parallel_each(faces_.size(), execution_, [&](std::size_t i) {
+        parallel_for_each(faces_.size(), execution_, [&](std::size_t i) {
             if (!has(i, kNear)) return;
-            each_edge_of(i, [&](const EdgeUse& near_use) {
+            for_each_edge_of(i, [&](const EdgeUse& near_use) {
                 for (const EdgeUse& use : edges_.between(near_use.edge))
                     note(index(use.item), kBesideNear);
             });
@@ -80,7 +80,7 @@ public:
     /// Joins the others across edges that no other faces have, and keeps those with other edges and
     /// the first of each group.
     void join() {
-        parallel_each(edges_.size(), execution_, [&](std::size_t e) {
+        parallel_for_each(edges_.size(), execution_, [&](std::size_t e) {
             const auto uses = edges_[e];
             if (is_within(uses)) {
                 joined_.join(uses[0].item, uses[1].item);
@@ -89,7 +89,7 @@ public:
                     note(index(use.item), kOfGroup);
             }
         });
-        parallel_each(faces_.size(), execution_, [&](std::size_t i) {
+        parallel_for_each(faces_.size(), execution_, [&](std::size_t i) {
             if (first_of_group(i) == i) note(i, kOfGroup);
         });
     }
@@ -100,8 +100,8 @@ public:
     }
     /// Calls visit(use) for the edges of a face beyond which one of its group does not stay.
     template <class Visit>
-    void each_edge_to_left_out(std::size_t i, const Visit& visit) {
-        each_edge_of(i, [&](const EdgeUse& use) {
+    void for_each_edge_to_left_out(std::size_t i, const Visit& visit) {
+        for_each_edge_of(i, [&](const EdgeUse& use) {
             const auto uses = edges_.between(use.edge);
             if (is_within(uses) && !(stays(index(uses[0].item)) && stays(index(uses[1].item))))
                 visit(use);
@@ -109,13 +109,13 @@ public:
     }
 
 private:
-    // Why a face stays. Those near the surface and those beside one have no group.
+    // Why a face stays. Those near the cutter and those beside one have no group.
     static constexpr std::uint8_t kNear = 1, kBesideNear = 2, kOfGroup = 4;
 
     template <class Visit>
-    void each_edge_of(std::size_t i, const Visit& visit) const {
-        arrangement::each_edge(std::array{model_.face(index(faces_[i]))},
-                               static_cast<std::int32_t>(i), visit);
+    void for_each_edge_of(std::size_t i, const Visit& visit) const {
+        arrangement::for_each_edge(std::array{model_.face(index(faces_[i]))},
+                                   static_cast<std::int32_t>(i), visit);
     }
     /// Of the uses of an edge: whether faces of one group may be on its two sides.
     bool is_within(std::span<const EdgeUse> uses) {
@@ -143,12 +143,12 @@ private:
 }  // namespace
 
 FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_near,
-                   std::vector<std::int32_t>& faces, const NearestSide& surface, double margin,
+                   std::vector<std::int32_t>& faces, const NearestSide& nearest, double margin,
                    const Execution& execution)
     : model_(model), is_near_(is_near) {
     const std::size_t count = faces.size();
     Connection connection(model, faces, execution);
-    box_ = connection.keep_near(surface, margin);
+    box_ = connection.keep_near(nearest, margin);
     connection.join();
     // groups of which any are left out, in the order of their first faces
     std::vector<std::uint8_t> is_group(count, 0);
@@ -171,7 +171,7 @@ FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_ne
         remaining_faces.push_back(faces[i]);
         group_.push_back(number[first]);
         if (number[first] < 0) continue;
-        connection.each_edge_to_left_out(
+        connection.for_each_edge_to_left_out(
             i, [this](const EdgeUse& use) { edges_.push_back(use.key()); });
     }
     of_group_ = bucketize<std::int32_t>(first_.size(), [this](const auto& put) {
@@ -189,11 +189,11 @@ void FarFaces::renumber(std::span<const NodeId> number) {
     }
 }
 
-double margin_of(const CellBoxes& cells, const NearestSide& surface) {
-    return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+double margin_of(const CellBoxes& cells, const NearestSide& nearest) {
+    return 16 * std::max(rounding_of(nearest.cutter().vertices), cells.rounding);
 }
 
-CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces,
+CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> nearest_sides,
                      const Execution& execution)
     : boxes(model.cell_count()) {
     constexpr std::size_t kChunk = 1 << 14;
@@ -206,9 +206,9 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
     });
     if (!largest.empty()) rounding = 4 * kComputedUlps * ulp(std::ranges::max(largest));
     spatial::Box around;
-    for (const NearestSide& surface : surfaces) {
-        spatial::Box box = spatial::bounding_box(surface.surface().vertices);
-        box.widen(4 * margin_of(*this, surface));
+    for (const NearestSide& nearest : nearest_sides) {
+        spatial::Box box = spatial::bounding_box(nearest.cutter().vertices);
+        box.widen(4 * margin_of(*this, nearest));
         around.include(box);
     }
     // of vertices and cells: a bit for each side of that box that something of them is within
@@ -255,18 +255,18 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
     });
 }
 
-std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
+std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& nearest,
                                      const Execution& execution) {
-    const double margin = margin_of(cells, surface);
+    const double margin = margin_of(cells, nearest);
     std::vector<std::uint8_t> is_near(cells.boxes.size(), 0);
     parallel_ranges(is_near.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c)
-            is_near[c] = surface.is_near(cells.boxes[c], margin) ? 1 : 0;
+            is_near[c] = nearest.is_near(cells.boxes[c], margin) ? 1 : 0;
     });
     return is_near;
 }
 
-std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
+std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& nearest,
                                             std::span<const std::uint8_t> is_near,
                                             const Execution& execution) {
     constexpr std::size_t kChunk = 1 << 15;
@@ -296,20 +296,20 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Near
         if (joined.find(c) != c) {
             sides[index(c)] = sides[index(joined.find(c))];
         } else if (face[index(c)] >= 0) {
-            sides[index(c)] = surface.side(model.vertex(model.face(index(face[index(c)]))[0]));
+            sides[index(c)] = nearest.side(model.vertex(model.face(index(face[index(c)]))[0]));
         }
     }
     return sides;
 }
 
-NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near,
-                   const Execution& execution, const NearestSide* surface, double margin)
+NearModel::NearModel(const ComplexView& model, std::span<const std::uint8_t> is_near,
+                     const Execution& execution, const NearestSide* nearest, double margin)
     : model_(model), number_(model.cell_count(), -1) {
     for (std::int32_t c = 0; index(c) < number_.size(); ++c) {
         if (is_near[index(c)] == 0) continue;
         number_[index(c)] = static_cast<std::int32_t>(cells_.size());
         cells_.push_back(c);
-        part_.cell_block.push_back(model.cell_block[index(c)]);
+        complex_.cell_block.push_back(model.cell_block[index(c)]);
     }
     const auto is_asked = [&](std::int32_t cell) { return cell >= 0 && is_near[index(cell)] != 0; };
     number_in_order(
@@ -317,29 +317,29 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         [&](std::size_t f) { return is_asked(model.cell(f, 0)) || is_asked(model.cell(f, 1)); },
         [this](std::size_t count) { faces_.resize(count); },
         [this](std::size_t f, std::size_t i) { faces_[i] = static_cast<std::int32_t>(f); });
-    if (surface != nullptr && model.cell_kind == CellKind::kBlocks)
-        far_ = FarFaces(model, is_near, faces_, *surface, margin, execution);
+    if (nearest != nullptr && model.cell_kind == CellKind::kBlocks)
+        far_ = FarFaces(model, is_near, faces_, *nearest, margin, execution);
     // in the model's order: what is decided by numbers does not depend on which faces come first
     auto is_here = zeros<std::uint8_t>(model.vertex_count(), execution);
-    parallel_each(faces_.size(), execution, [&](std::size_t i) {
+    parallel_for_each(faces_.size(), execution, [&](std::size_t i) {
         for (const NodeId v : model.face(index(faces_[i])))
             atomic_set(is_here[index(v)]);
     });
-    Array<NodeId> own_vertex(model.vertex_count());
+    Array<NodeId> near_vertex(model.vertex_count());
     number_in_order(
         is_here.size(), execution, [&](std::size_t v) { return is_here[v] != 0; },
         [this](std::size_t count) {
-            part_.vertices.resize(count);
+            complex_.vertices.resize(count);
             vertices_of_.resize(count);
         },
         [&](std::size_t v, std::size_t number) {
             const auto node = static_cast<NodeId>(v);
-            own_vertex[v] = static_cast<NodeId>(number);
-            part_.vertices[number] = model.vertex(node);
+            near_vertex[v] = static_cast<NodeId>(number);
+            complex_.vertices[number] = model.vertex(node);
             vertices_of_[number] = node;
         });
-    far_.renumber(own_vertex);
-    part_.face_offsets.push_back(0);
+    far_.renumber(near_vertex);
+    complex_.face_offsets.push_back(0);
     for (const std::int32_t face : faces_) {
         const auto f = index(face);
         std::array<std::int32_t, 2> cells{-1, -1};
@@ -350,17 +350,17 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const NodeId v = corners[cells[0] >= 0 ? i : corners.size() - 1 - i];
-            part_.face_vertices.push_back(own_vertex[index(v)]);
+            complex_.face_vertices.push_back(near_vertex[index(v)]);
         }
-        part_.face_offsets.push_back(static_cast<std::int64_t>(part_.face_vertices.size()));
-        part_.face_cells.push_back(cells[0] >= 0 ? cells : std::array{cells[1], -1});
-        part_.face_surface.push_back(model.face_surface[f]);
+        complex_.face_offsets.push_back(static_cast<std::int64_t>(complex_.face_vertices.size()));
+        complex_.face_cells.push_back(cells[0] >= 0 ? cells : std::array{cells[1], -1});
+        complex_.face_surface.push_back(model.face_surface[f]);
         beyond_.push_back(cells[0] < 0 ? model.cell(f, 0) : cells[1] < 0 ? model.cell(f, 1) : -1);
     }
 }
 
-ComplexView NearPart::view() const {
-    ComplexView view = part_;
+ComplexView NearModel::view() const {
+    ComplexView view = complex_;
     view.blocks = model_.blocks;
     view.surfaces = model_.surfaces;
     view.cell_kind = model_.cell_kind;
@@ -369,8 +369,8 @@ ComplexView NearPart::view() const {
 
 /// Puts the parts of near cells and the other cells in the model's order.
 /// @return the new number of each part
-std::vector<std::int32_t> NearPart::number_parts(std::vector<HalfCell>& half_cells,
-                                                 WholePieces& whole) const {
+std::vector<std::int32_t> NearModel::number_parts(std::vector<HalfCell>& half_cells,
+                                                  WholePieces& whole) const {
     const std::vector<HalfCell> parts = std::move(half_cells);
     std::vector<std::int32_t> order(parts.size()), number(parts.size());
     std::iota(order.begin(), order.end(), 0);
@@ -396,8 +396,9 @@ std::vector<std::int32_t> NearPart::number_parts(std::vector<HalfCell>& half_cel
     return number;
 }
 
-std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<HalfCell>& half_cells,
-                                              std::span<const std::int8_t> sides) const {
+std::optional<WholePieces> NearModel::put_back(CutPieces&& pieces,
+                                               std::vector<HalfCell>& half_cells,
+                                               std::span<const std::int8_t> sides) const {
     WholePieces whole;
     whole.model_ = model_;
     whole.far_ = &far_;
@@ -405,7 +406,7 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
     std::size_t first_faces = 0;
     whole.sides_ = sides;
     const std::vector<std::int32_t> number = number_parts(half_cells, whole);
-    // pieces in the order of the model's faces, then caps
+    // pieces in the order of the model's faces, then cut faces
     const CutPieces near = std::move(pieces);
     std::vector<std::int32_t> of_faces(near.size());
     std::iota(of_faces.begin(), of_faces.end(), 0);
@@ -416,7 +417,7 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
     std::ranges::stable_sort(of_faces, {}, key);
     auto beside = std::ranges::count_if(
         beyond_, [&](std::int32_t cell) { return cell >= 0 && whole.far_part_[index(cell)] >= 0; });
-    const auto part_vertices = static_cast<NodeId>(part_.vertices.size());
+    const auto near_vertices = static_cast<NodeId>(complex_.vertices.size());
     const auto all = static_cast<NodeId>(model_.vertex_count());
     whole.near_.origins.reserve(near.size());
     whole.near_.polygons.nodes.reserve(near.polygons.nodes.size());
@@ -454,14 +455,14 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
             }
         }
         for (const NodeId node : polygon) {
-            whole.near_.polygons.nodes.push_back(node < part_vertices ? vertices_of_[index(node)]
-                                                                      : node - part_vertices + all);
+            whole.near_.polygons.nodes.push_back(node < near_vertices ? vertices_of_[index(node)]
+                                                                      : node - near_vertices + all);
         }
         whole.near_.polygons.close();
         whole.near_.origins.push_back(piece);
     }
     if (beside != 0 || first_faces != far_.groups()) return std::nullopt;
-    whole.first_cap_ = index(std::ranges::count_if(
+    whole.first_cut_face_ = index(std::ranges::count_if(
         whole.near_.origins, [](const CutPiece& piece) { return piece.face >= 0; }));
     return whole;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which faces of a model come near a surface, and what of them does.
+// Which faces of a model come near a cutter, and what of them does.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "base/algorithms.hpp"
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
-#include "cutting/surface_overlay.hpp"
+#include "cutting/cutter_overlay.hpp"
 #include "exact/orientation.hpp"
 
 namespace realmodel::cutting {
@@ -19,7 +19,7 @@ using spatial::Box;
 using spatial::BoxTree;
 
 /// A plane, from which rounding may have moved what is in it.
-class SurfaceOverlay::RoundedPlane {
+class CutterOverlay::RoundedPlane {
 public:
     /// @param margin  how far coordinates may be off
     RoundedPlane(const Position& origin, const Position& normal, double margin)
@@ -62,11 +62,11 @@ private:
     double margin_, reach_ = 0;
 };
 
-void SurfaceOverlay::find_same_faces(bool are_there) {
+void CutterOverlay::find_same_faces(bool may_repeat) {
     first_same_.resize(model_.face_count());
     std::iota(first_same_.begin(), first_same_.end(), 0);
     KeyTable first;
-    for (std::int32_t f = 0; are_there && index(f) < model_.face_count(); ++f) {
+    for (std::int32_t f = 0; may_repeat && index(f) < model_.face_count(); ++f) {
         const auto face = model_.face(index(f));
         const auto entry =
             first.find_or_add(arrangement::loop_hash(face), f, [&](std::int32_t other) {
@@ -80,10 +80,10 @@ void SurfaceOverlay::find_same_faces(bool are_there) {
     });
 }
 
-/// The faces that come near the surface: near the box of one of its triangles, and not all to one
+/// The faces that come near the cutter: near the box of one of its triangles, and not all to one
 /// side of the triangle's plane. And the triangles that nothing meets.
-void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
-    margin_ = std::max(margin_, rounding_of(surface_.vertices));
+void CutterOverlay::find_active_faces(std::span<const std::int32_t> groups) {
+    margin_ = std::max(margin_, rounding_of(cutter_.vertices));
     model_box_ = far_.box();
     for (std::size_t v = 0; v < model_.vertex_count(); ++v)
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
@@ -91,8 +91,8 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
         margin_ = std::max(margin_, 4 * rounding_of(std::array{model_box_.low, model_box_.high}));
     model_box_.widen(margin_);
     std::vector<Box> boxes;
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-        const auto corners = surface_.corners(t);
+    for (std::size_t t = 0; t < cutter_.triangles.size(); ++t) {
+        const auto corners = cutter_.corners(t);
         boxes.push_back(spatial::bounding_box(corners));
         boxes.back().widen(margin_);
         normals_.push_back(polygon_normal(corners));
@@ -108,17 +108,17 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
                 continue;
             }
             std::optional<RoundedPlane> plane;
-            each_near(model_.face(f), [&](std::int32_t t) {
+            for_each_near(model_.face(f), [&](std::int32_t t) {
                 if (is_beside(model_.face(f), t)) return;
                 active_[f] = 1;
                 if (!plane) plane.emplace(model_, model_.face(f), margin_);
-                if (!plane->is_beside(surface_.corners(index(t)), std::identity()))
+                if (!plane->is_beside(cutter_.corners(index(t)), std::identity()))
                     std::atomic_ref(meets[index(t)]).store(1, std::memory_order_relaxed);
             });
         }
     });
     if (!groups.empty())
-        undivided_ = UndividedTriangles(surface_, *tree_, std::move(meets), groups, execution_);
+        undivided_ = UndividedTriangles(cutter_, *tree_, std::move(meets), groups, execution_);
     for (std::size_t f = 0; f < active_.size(); ++f) {
         active_[f] = active_[index(first_same_[f])];
         if (active_[f] != 0 && index(first_same_[f]) == f)
@@ -128,39 +128,39 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
 
 /// Whether all corners of a polygon are on one side of the plane of a triangle, farther from it
 /// than rounding may put them.
-bool SurfaceOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) const {
+bool CutterOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) const {
     return RoundedPlane(corner(t, 0), normals_[index(t)], margin_)
         .is_beside(polygon, [this](NodeId v) { return model_.vertex(v); });
 }
 
 /// Calls visit(triangle) for those whose boxes a polygon's meets.
 template <class Visit>
-void SurfaceOverlay::each_near(std::span<const NodeId> polygon, const Visit& visit) const {
+void CutterOverlay::for_each_near(std::span<const NodeId> polygon, const Visit& visit) const {
     tree_->find(box_of(model_, polygon), visit);
 }
 
-/// The first triangle of the surface that a polygon may pass, -1 none.
-std::int32_t SurfaceOverlay::first_passed(std::span<const NodeId> polygon) const {
+/// The first triangle of the cutter that a polygon may pass, -1 none.
+std::int32_t CutterOverlay::first_passed(std::span<const NodeId> polygon) const {
     std::int32_t first = INT32_MAX;
-    each_near(polygon, [&](std::int32_t t) {
+    for_each_near(polygon, [&](std::int32_t t) {
         if (t < first && !is_beside(polygon, t)) first = t;
     });
     return first == INT32_MAX ? -1 : first;
 }
 
-void SurfaceOverlay::FaceParts::add(std::int32_t face, std::span<const LoopTriangle> more) {
+void CutterOverlay::FaceDivision::add(std::int32_t face, std::span<const LoopTriangle> more) {
     for (const auto& t : more) {
         triangles.push_back({t[0].node, t[1].node, t[2].node});
         face_of_triangle.push_back(face);
     }
 }
 
-void SurfaceOverlay::FaceParts::add_beside(std::int32_t face, std::span<const NodeId> polygon) {
+void CutterOverlay::FaceDivision::add_beside(std::int32_t face, std::span<const NodeId> polygon) {
     beside.add(polygon);
     face_of_beside.push_back(face);
 }
 
-void SurfaceOverlay::FaceParts::add(const FaceParts& other) {
+void CutterOverlay::FaceDivision::add(const FaceDivision& other) {
     triangles.insert(triangles.end(), other.triangles.begin(), other.triangles.end());
     face_of_triangle.insert(face_of_triangle.end(), other.face_of_triangle.begin(),
                             other.face_of_triangle.end());
@@ -169,20 +169,20 @@ void SurfaceOverlay::FaceParts::add(const FaceParts& other) {
     crossed.insert(crossed.end(), other.crossed.begin(), other.crossed.end());
 }
 
-/// Gives the corners of the surface's triangles exact points.
-void SurfaceOverlay::name_surface() {
-    surface_point_.assign(surface_.vertices.size(), kNone);
-    for (const auto& triangle : surface_.triangles) {
+/// Gives the corners of the cutter's triangles exact points.
+void CutterOverlay::name_cutter() {
+    cutter_point_.assign(cutter_.vertices.size(), kNone);
+    for (const auto& triangle : cutter_.triangles) {
         for (const std::int32_t vertex : triangle) {
-            SpacePointId& known = surface_point_[index(vertex)];
-            if (!known.has_value()) known = points_.add(surface_.vertices[index(vertex)]);
+            SpacePointId& known = cutter_point_[index(vertex)];
+            if (!known.has_value()) known = points_.add(cutter_.vertices[index(vertex)]);
         }
     }
 }
 
 /// Whether the line of an edge of a face passes through a triangle, beside its edges.
-bool SurfaceOverlay::passes_within(NodeId a, NodeId b,
-                                   const std::array<SpacePointId, 3>& triangle) const {
+bool CutterOverlay::passes_within(NodeId a, NodeId b,
+                                  const std::array<SpacePointId, 3>& triangle) const {
     std::array<int, 3> sides{};
     for (std::size_t i = 0; i < 3; ++i)
         sides[i] = exact::orient3d(points_, vertex_point_[index(a)], vertex_point_[index(b)],
@@ -193,20 +193,20 @@ bool SurfaceOverlay::passes_within(NodeId a, NodeId b,
 /// A face as a crossed one, without its ends; none where more meets it than that. Its corners are
 /// all beside the plane of the triangle, which two of its edges pass: whatever its shape, that is
 /// one line within it.
-std::optional<SurfaceOverlay::CrossedFace> SurfaceOverlay::crossed(std::int32_t face) const {
+std::optional<CutterOverlay::CrossedFace> CutterOverlay::crossed(std::int32_t face) const {
     const auto polygon = model_.face(index(face));
     const auto corners = positions_of(model_, polygon);
     CrossedFace cut{face, -1};
     bool is_one = true;
-    each_near(polygon, [&](std::int32_t t) {
+    for_each_near(polygon, [&](std::int32_t t) {
         if (!is_one || is_beside(polygon, t) ||
-            PlaneOutline(surface_.corners(index(t)), margin_).is_surely_beside(corners))
+            PlaneOutline(cutter_.corners(index(t)), margin_).is_surely_beside(corners))
             return;
         is_one = cut.triangle < 0;
         cut.triangle = t;
     });
     if (!is_one || cut.triangle < 0) return std::nullopt;
-    const auto triangle = surface_points(cut.triangle);
+    const auto triangle = cutter_points(cut.triangle);
     const exact::SidesOfPlane side_of(points_, triangle);
     std::size_t changes = 0;
     NodeId before = polygon.back();
@@ -226,28 +226,28 @@ std::optional<SurfaceOverlay::CrossedFace> SurfaceOverlay::crossed(std::int32_t 
 
 /// Divides some of the crossed faces as other ones.
 template <class Which>
-void SurfaceOverlay::divide_crossed(const Which& which) {
-    std::erase_if(parts_.crossed, [&](CrossedFace& cut) {
+void CutterOverlay::divide_crossed(const Which& which) {
+    std::erase_if(division_.crossed, [&](CrossedFace& cut) {
         if (!which(cut)) return false;
-        divide(cut.face, model_.face(index(cut.face)), parts_);
+        divide(cut.face, model_.face(index(cut.face)), division_);
         return true;
     });
 }
 
-/// Divides a polygon of a face: of a convex one that passes a triangle of the surface once, what is
+/// Divides a polygon of a face: of a convex one that passes a triangle of the cutter once, what is
 /// on either side of that is cut off by one edge, and a strip of two triangles is left.
-void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
-                            FaceParts& parts) const {
+void CutterOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
+                           FaceDivision& division) const {
     const std::int32_t passed = first_passed(polygon);
     if (passed < 0) {
-        parts.add_beside(face, polygon);
+        division.add_beside(face, polygon);
         return;
     }
     auto [loop, rounding] = loop_of(model_, polygon);
     std::vector<LoopTriangle> triangles;
     if (loop.size() == 3) {
         const LoopTriangle triangle{loop[0], loop[1], loop[2]};
-        parts.add(face, std::span(&triangle, 1));
+        division.add(face, std::span(&triangle, 1));
         return;
     }
     const Position a = corner(passed, 0);
@@ -261,7 +261,7 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
     }
     if (changes.size() != 2 || !is_convex(loop, rounding)) {
         triangulate(std::span(&loop, 1), rounding, triangles);
-        parts.add(face, triangles);
+        division.add(face, triangles);
         return;
     }
     std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(changes[0]), loop.end());
@@ -271,34 +271,35 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
     strip.push_back(loop[half]);
     if (half + 1 < loop.size()) strip.push_back(loop.back());
     triangulate(std::span(&strip, 1), rounding, triangles);
-    parts.add(face, triangles);
+    division.add(face, triangles);
     const std::vector<NodeId> nodes = transformed(loop, &LoopCorner::node);
-    for (const auto& side : {std::span(nodes).first(half), std::span(nodes).subspan(half)}) {
-        if (side.size() > 2) divide(face, side, parts);
+    for (const auto& half_polygon :
+         {std::span(nodes).first(half), std::span(nodes).subspan(half)}) {
+        if (half_polygon.size() > 2) divide(face, half_polygon, division);
     }
 }
 
-/// Divides some polygons beside the surface into triangles, as polygons of their own.
+/// Divides some polygons beside the cutter into triangles, as polygons of their own.
 template <class Which>
-void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) const {
-    const Polygons beside = std::exchange(parts.beside, {});
-    const std::vector<std::int32_t> faces = std::exchange(parts.face_of_beside, {});
+void CutterOverlay::triangulate_polygons(FaceDivision& division, const Which& which) const {
+    const Polygons beside = std::exchange(division.beside, {});
+    const std::vector<std::int32_t> faces = std::exchange(division.face_of_beside, {});
     for (std::size_t i = 0; i < beside.size(); ++i) {
         if (!which(beside[i])) {
-            parts.add_beside(faces[i], beside[i]);
+            division.add_beside(faces[i], beside[i]);
             continue;
         }
         const auto [loop, rounding] = loop_of(model_, beside[i]);
         std::vector<LoopTriangle> triangles;
         triangulate(std::span(&loop, 1), rounding, triangles);
-        parts.add(faces[i], triangles);
+        division.add(faces[i], triangles);
     }
 }
 
-Array<Box> SurfaceOverlay::face_boxes() const {
+Array<Box> CutterOverlay::face_boxes() const {
     const std::size_t faces = model_.face_count();
     Array<Box> boxes(faces + far_.faces().size());
-    parallel_each(boxes.size(), execution_, [&](std::size_t f) {
+    parallel_for_each(boxes.size(), execution_, [&](std::size_t f) {
         boxes[f] = f < faces
                        ? box_of(model_, model_.face(f))
                        : box_of(far_.model(), far_.model().face(index(far_.faces()[f - faces])));
@@ -307,7 +308,7 @@ Array<Box> SurfaceOverlay::face_boxes() const {
     return boxes;
 }
 
-SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
+CutterOverlay::BoxedFace CutterOverlay::boxed_face(std::size_t face) {
     if (face >= model_.face_count()) {
         const std::size_t number = face - model_.face_count();
         const std::int32_t left_out = far_.faces()[number];
@@ -323,59 +324,58 @@ SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
                     return std::array{point(t[0]), point(t[1]), point(t[2])};
                 })};
     }
-    FaceParts parts;
+    FaceDivision division;
     const std::int32_t first = first_same_[face];
-    const auto crossed = std::ranges::lower_bound(parts_.crossed, first, {}, &CrossedFace::face);
-    if (crossed != parts_.crossed.end() && crossed->face == first) {
+    const auto crossed = std::ranges::lower_bound(division_.crossed, first, {}, &CrossedFace::face);
+    if (crossed != division_.crossed.end() && crossed->face == first) {
         // round a corner of each half; where such triangles overlap they turn against each other
-        const auto half = 2 * static_cast<std::size_t>(parts_.crossed.end() - crossed);
+        const auto half = 2 * static_cast<std::size_t>(division_.crossed.end() - crossed);
         for (const std::size_t region : {size() - half, size() - half + 1}) {
             const auto loop = loops_[region][0];
             for (std::size_t i = 2; i < loop.size(); ++i)
-                parts.triangles.push_back({loop[0], loop[i - 1], loop[i]});
+                division.triangles.push_back({loop[0], loop[i - 1], loop[i]});
         }
     } else if (is_active(face)) {
-        divide(first, model_.face(face), parts);
+        divide(first, model_.face(face), division);
     } else {
-        parts.add_beside(first, model_.face(face));
+        division.add_beside(first, model_.face(face));
     }
-    triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
+    triangulate_polygons(division, [](std::span<const NodeId>) { return true; });
     return {{model_.cell(face, 0), model_.cell(face, 1)},
-            transformed(parts.triangles, [this](auto& t) {
+            transformed(division.triangles, [this](auto& t) {
                 return std::array{exact(t[0]), exact(t[1]), exact(t[2])};
             })};
 }
 
 /// Divides more faces, on all threads.
-void SurfaceOverlay::divide_all(std::span<const std::int32_t> faces) {
+void CutterOverlay::divide_all(std::span<const std::int32_t> faces) {
     constexpr std::size_t kFaces = 1 << 9;  // at a time
-    std::vector<FaceParts> parts_of_chunks((faces.size() + kFaces - 1) / kFaces);
+    std::vector<FaceDivision> divisions((faces.size() + kFaces - 1) / kFaces);
     parallel_ranges(
         faces.size(), kFaces, execution_,
         [&](std::size_t begin, std::size_t end) {
-            FaceParts& parts = parts_of_chunks[begin / kFaces];
+            FaceDivision& division = divisions[begin / kFaces];
             for (std::size_t i = begin; i < end; ++i) {
                 if (const auto line = crossed(faces[i])) {
-                    parts.crossed.push_back(*line);
+                    division.crossed.push_back(*line);
                 } else {
-                    divide(faces[i], model_.face(index(faces[i])), parts);
+                    divide(faces[i], model_.face(index(faces[i])), division);
                 }
             }
         },
         0.02);
-    for (const FaceParts& parts : parts_of_chunks)
-        parts_.add(parts);
+    for (const FaceDivision& division : divisions)
+        division_.add(division);
 }
 
 /// The edges of the divided faces' triangles without area, from one on, in order; the vertices have
 /// exact points.
-std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
-    std::size_t first) const {
+std::vector<std::array<NodeId, 2>> CutterOverlay::edges_of_flat_triangles(std::size_t first) const {
     constexpr std::size_t kTriangles = 1 << 11;  // at a time
-    const std::size_t count = parts_.triangles.size() - first;
+    const std::size_t count = division_.triangles.size() - first;
     const auto find = [&](std::size_t begin, std::size_t end, auto& flat_edges) {
         for (std::size_t i = begin; i < end; ++i) {
-            const auto& t = parts_.triangles[first + i];
+            const auto& t = division_.triangles[first + i];
             bool flat = true;
             for (std::size_t axis = 0; axis < 3 && flat; ++axis) {
                 flat = exact::orient2d(points_, axis, vertex_point_[index(t[0])],
@@ -385,7 +385,7 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
                 flat_edges.push_back(unordered(t[k], t[(k + 1) % 3]));
         }
     };
-    auto edges = found_in_ranges<std::array<NodeId, 2>>(count, kTriangles, execution_, find);
+    auto edges = collect_ranges<std::array<NodeId, 2>>(count, kTriangles, execution_, find);
     std::sort(edges.begin(), edges.end());
     return edges;
 }
@@ -393,13 +393,13 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
 /// Divides active faces, in two where that will do. A triangle without area has no region in the
 /// overlay: the corner in its middle comes to lie on its long edge, and so on an edge of the face,
 /// or the polygon, beyond, which must know it.
-void SurfaceOverlay::divide_active_faces() {
+void CutterOverlay::divide_active_faces() {
     vertex_point_.assign(model_.vertex_count(), kNone);
     name_vertices_of(active_faces_);
     divide_all(active_faces_);
     divide_crossed([this](CrossedFace& cut) {
         const auto corners = model_.face(index(cut.face));
-        const auto plane = surface_points(cut.triangle);
+        const auto plane = cutter_points(cut.triangle);
         for (std::size_t k = 0; k < 2; ++k) {
             const std::size_t to = cut.after[k], from = (to + corners.size() - 1) % corners.size();
             cut.ends[k] = points_.intersection(vertex_point_[index(corners[from])],
@@ -408,9 +408,9 @@ void SurfaceOverlay::divide_active_faces() {
         }
         return cut.ends[0] == cut.ends[1];  // of a face without an extent there
     });
-    for (std::size_t first = 0; first < parts_.triangles.size();) {
+    for (std::size_t first = 0; first < division_.triangles.size();) {
         const auto edges = edges_of_flat_triangles(first);
-        first = parts_.triangles.size();
+        first = division_.triangles.size();
         if (edges.empty()) break;
         const auto has_edge = [&edges](std::span<const NodeId> polygon) {
             for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -431,7 +431,7 @@ void SurfaceOverlay::divide_active_faces() {
         active_faces_.insert(active_faces_.end(), fresh.begin(), fresh.end());
         divide_crossed(
             [&](const CrossedFace& cut) { return has_edge(model_.face(index(cut.face))); });
-        triangulate_parts(parts_, has_edge);
+        triangulate_polygons(division_, has_edge);
     }
     std::sort(active_faces_.begin(), active_faces_.end());
 }

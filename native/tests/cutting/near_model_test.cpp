@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/near_part.hpp"
+#include "cutting/near_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ CellComplex row() {
 }
 
 /// Upright, at one x; its upper side is where x is less.
-CutterSurface upright(double x) {
+Cutter upright(double x) {
     return {{{x, -1, -1}, {x, 5, -1}, {x, 5, 5}, {x, -1, 5}}, {{0, 2, 1}, {0, 3, 2}}};
 }
 
@@ -41,13 +41,13 @@ double middle_of(const CellComplex& model, std::int32_t cell) {
 }
 
 std::vector<std::uint8_t> near_cells(const CellComplex& model, double x, int threads) {
-    const CutterSurface surface = upright(x);
+    const Cutter surface = upright(x);
     const NearestSide nearest(surface);
     return cells_near(CellBoxes(model, {&nearest, 1}, {threads, nullptr}), nearest,
                       {threads, nullptr});
 }
 
-TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
+TEST(NearModel, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
     const CellComplex model = row();
     const auto inside = near_cells(model, 1.5, 1);
     const auto between = near_cells(model, 2, 2);
@@ -58,9 +58,9 @@ TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
     }
 }
 
-TEST(NearPart, OnlyCellsThatMayBeNearHaveABox) {
+TEST(NearModel, OnlyCellsThatMayBeNearHaveABox) {
     const CellComplex model = row();
-    const CutterSurface surface = upright(1.5), other = upright(3.5);
+    const Cutter surface = upright(1.5), other = upright(3.5);
     const std::array nearest{NearestSide(surface), NearestSide(other)};
     const CellBoxes of_one(model, {nearest.data(), 1}, {2, nullptr});
     const CellBoxes of_both(model, nearest, {1, nullptr});
@@ -73,9 +73,9 @@ TEST(NearPart, OnlyCellsThatMayBeNearHaveABox) {
     }
 }
 
-TEST(NearPart, TheOthersAreOnOneSideEach) {
+TEST(NearModel, TheOthersAreOnOneSideEach) {
     const CellComplex model = row();
-    const CutterSurface surface = upright(1.5);
+    const Cutter surface = upright(1.5);
     const NearestSide nearest(surface);
     const CellBoxes cells(model, {&nearest, 1}, {1, nullptr});
     const auto sides =
@@ -87,7 +87,7 @@ TEST(NearPart, TheOthersAreOnOneSideEach) {
 }
 
 /// Puts all faces of a part back as they are.
-void expect_put_back(const ComplexView& all, const NearPart& part) {
+void expect_put_back(const ComplexView& all, const NearModel& part) {
     const ComplexView near = part.view();
     CutPieces pieces;
     std::vector<HalfCell> cells;
@@ -121,13 +121,13 @@ void expect_put_back(const ComplexView& all, const NearPart& part) {
         ++f;
     };
     for (std::size_t chunk = 0; chunk < whole->chunks(); ++chunk)
-        whole->each_of(chunk, visit);
+        whole->for_each_of(chunk, visit);
     EXPECT_EQ(f, all.face_count());
 }
 
-TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
+TEST(NearModel, WhatIsPutBackUntouchedIsTheModel) {
     const CellComplex model = row();
-    const NearPart part(model, near_cells(model, 1.5, 1), {2, nullptr});
+    const NearModel part(model, near_cells(model, 1.5, 1), {2, nullptr});
     EXPECT_EQ(part.view().cell_count(), 2U);
     expect_put_back(model, part);
 }
@@ -144,11 +144,11 @@ CellComplex blocks() {
     return strata::build_stack(input, {1, nullptr}, CellKind::kBlocks);
 }
 
-TEST(NearPart, FacesOfBlocksAwayFromTheSurfaceAreLeftOut) {
+TEST(NearModel, FacesOfBlocksAwayFromTheSurfaceAreLeftOut) {
     const CellComplex model = blocks();
     const ComplexView all = model;
     ASSERT_EQ(all.cell_count(), 2U);
-    const CutterSurface surface = upright(4.5);  // through the lower block
+    const Cutter surface = upright(4.5);  // through the lower block
     const NearestSide nearest(surface);
     const CellBoxes cells(model, {&nearest, 1}, {1, nullptr});
     for (const std::uint8_t upper : {0, 1}) {  // whether it is of the part, too
@@ -156,7 +156,7 @@ TEST(NearPart, FacesOfBlocksAwayFromTheSurfaceAreLeftOut) {
         for (std::size_t f = 0; f < all.face_count(); ++f) {
             if (all.vertex(all.face(f)[0])[2] == 0) is_near[index(all.cell(f, 0))] = 1;
         }
-        const NearPart part(model, is_near, {2, nullptr}, &nearest, margin_of(cells, nearest));
+        const NearModel part(model, is_near, {2, nullptr}, &nearest, margin_of(cells, nearest));
         const FarFaces& far = part.far();
         EXPECT_EQ(part.view().cell_count(), 1U + upper);
         EXPECT_GE(far.groups(), 4U);  // outer faces and those between, on either side
@@ -175,10 +175,10 @@ TEST(NearPart, FacesOfBlocksAwayFromTheSurfaceAreLeftOut) {
     }
 }
 
-TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
+TEST(NearModel, AFaceBesideAnotherCellThatWasChangedIsTold) {
     const CellComplex model = row();
     const auto is_near = near_cells(model, 1.5, 1);
-    const NearPart part(model, is_near, {2, nullptr});
+    const NearModel part(model, is_near, {2, nullptr});
     CutPieces pieces;  // none of the part's faces is left
     std::vector<HalfCell> cells;
     const std::vector<std::int8_t> sides(model.cell_block.size(), kAbove);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "validation/cell_sides.hpp"
+#include "validation/cell_faces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,33 +10,33 @@
 namespace realmodel::validation {
 namespace {
 
-std::vector<Side> of(std::span<const Side> sides) {
+std::vector<OrientedFace> of(std::span<const OrientedFace> sides) {
     return {sides.begin(), sides.end()};
 }
 
-TEST(SidesByCell, EachCellHasItsFacesInOrderAndTheSharedOneFromItsOtherSide) {
+TEST(FacesByCell, EachCellHasItsFacesInOrderAndTheSharedOneFromItsOtherSide) {
     auto cubes = two_cubes();
     const ComplexView model = cubes.view();
-    const SidesByCell sides(model, {2, nullptr});
-    EXPECT_EQ(of(sides[0]), (std::vector<Side>{0, 2, 6, 8, 10, 12}));
-    EXPECT_EQ(of(sides[1]), (std::vector<Side>{3, 4, 14, 16, 18, 20}));
+    const FacesByCell sides(model, {2, nullptr});
+    EXPECT_EQ(of(sides[0]), (std::vector<OrientedFace>{0, 2, 6, 8, 10, 12}));
+    EXPECT_EQ(of(sides[1]), (std::vector<OrientedFace>{3, 4, 14, 16, 18, 20}));
     EXPECT_EQ(face_of(sides[1][0]), 1U);
     EXPECT_TRUE(is_reversed(sides[1][0]));
     EXPECT_FALSE(is_reversed(sides[0][1]));
     EXPECT_EQ(sides.values.end(), sides[1].data() + 6);
 }
 
-TEST(SidesByCell, ACellWithoutFacesHasNone) {
+TEST(FacesByCell, ACellWithoutFacesHasNone) {
     auto cubes = two_cubes();
     cubes.block.push_back(0);
-    EXPECT_TRUE(SidesByCell(cubes.view(), {1, nullptr})[2].empty());
+    EXPECT_TRUE(FacesByCell(cubes.view(), {1, nullptr})[2].empty());
 }
 
-TEST(SidesByCell, ManyFacesInSeveralChunksStayInOrder) {
+TEST(FacesByCell, ManyFacesInSeveralChunksStayInOrder) {
     auto cubes = two_cubes();
     for (int i = 0; i < 10000; ++i)
         cubes.add_face({0, 1, 2}, i % 2, 1 - i % 2, 0);
-    const SidesByCell sides(cubes.view(), {3, nullptr});
+    const FacesByCell sides(cubes.view(), {3, nullptr});
     for (const std::size_t cell : {0U, 1U}) {
         EXPECT_EQ(sides[cell].size(), 10006U);
         EXPECT_TRUE(std::ranges::is_sorted(sides[cell]));
@@ -48,7 +48,7 @@ using Edge = std::array<std::int64_t, 4>;  // its vertices, how often ahead and 
 /// The open edge of a cell, the same whether it is taken for small or for large; none: all 0.
 Edge open_edge_of(OwnedComplex& complex, std::size_t cell = 0) {
     const ComplexView model = complex.view();
-    const SidesByCell sides(model, {1, nullptr});
+    const FacesByCell sides(model, {1, nullptr});
     EdgeTable table;
     const auto numbers = [](const std::optional<EdgeCount>& use) {
         return use ? Edge{use->low, use->high, use->ahead, use->back} : Edge{};

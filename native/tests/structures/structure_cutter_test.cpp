@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "structures/structure_surface.hpp"
+#include "structures/structure_cutter.hpp"
 
 #include "faulted_cubes.hpp"
 #include "realmodel/base/errors.hpp"
@@ -18,51 +18,51 @@ strata::OwnedSurface upright(double low, double high, double end = 9) {
     return s;
 }
 
-StructureSurface surface_of(const strata::OwnedSurface& fault, bool dies_out = false) {
+StructureCutter cutter_of(const strata::OwnedSurface& fault, bool dies_out = false) {
     const std::vector<strata::OwnedSurface> surfaces{fault};
     auto structures = FaultedCubes::structures_of(surfaces, 1);
     structures[0].dies_out = dies_out;
-    return structure_surface(structures, FaultedCubes::around());
+    return structure_cutter(structures, FaultedCubes::around());
 }
 
-std::size_t continuations(const StructureSurface& s) {
+std::size_t continuations(const StructureCutter& s) {
     return static_cast<std::size_t>(std::ranges::count(s.is_continuation, 1));
 }
 
 /// Whether a surface has a triangle beyond a height, or a y.
-bool reaches(const StructureSurface& s, std::size_t axis, double value) {
-    return std::ranges::any_of(s.surface.vertices,
+bool reaches(const StructureCutter& s, std::size_t axis, double value) {
+    return std::ranges::any_of(s.combined.vertices,
                                [&](const Position& p) { return p[axis] >= value; });
 }
 
-TEST(StructureSurface, WhatDividesTheRockIsNotContinued) {
-    const StructureSurface s = surface_of(upright(-9, 9));
+TEST(StructureCutter, WhatDividesTheRockIsNotContinued) {
+    const StructureCutter s = cutter_of(upright(-9, 9));
     EXPECT_EQ(continuations(s), 0U);
     EXPECT_EQ(s.structure, (std::vector<std::int32_t>{0, 0}));
     EXPECT_EQ(s.single.size(), 1U);
 }
 
-TEST(StructureSurface, AFaultThatEndsAtAHeightIsContinuedStraightUp) {
-    const StructureSurface s = surface_of(upright(-9, 1));
+TEST(StructureCutter, AFaultThatEndsAtAHeightIsContinuedStraightUp) {
+    const StructureCutter s = cutter_of(upright(-9, 1));
     EXPECT_GT(continuations(s), 0U);
     EXPECT_TRUE(reaches(s, 2, 2));  // above the rock
-    for (const Position& p : s.surface.vertices)
+    for (const Position& p : s.combined.vertices)
         EXPECT_EQ(p[0], 0.5);
 }
 
-TEST(StructureSurface, AFaultThatEndsAsideIsContinuedInItsPlane) {
-    const StructureSurface s = surface_of(upright(-9, 9, 0.5));
+TEST(StructureCutter, AFaultThatEndsAsideIsContinuedInItsPlane) {
+    const StructureCutter s = cutter_of(upright(-9, 9, 0.5));
     EXPECT_GT(continuations(s), 0U);
     EXPECT_TRUE(reaches(s, 1, 1));
-    for (const Position& p : s.surface.vertices)
+    for (const Position& p : s.combined.vertices)
         EXPECT_EQ(p[0], 0.5);
 }
 
-TEST(StructureSurface, AnOpenBodyIsRefusedWithAPlace) {
+TEST(StructureCutter, AnOpenBodyIsRefusedWithAPlace) {
     const std::vector<strata::OwnedSurface> surfaces{upright(-9, 9)};
     const auto structures = FaultedCubes::structures_of(surfaces, 0);
     try {
-        structure_surface(structures, FaultedCubes::around());
+        structure_cutter(structures, FaultedCubes::around());
         FAIL();
     } catch (const InputError& e) {
         EXPECT_EQ(e.kind, "not_closed");

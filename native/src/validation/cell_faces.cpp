@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "validation/cell_sides.hpp"
+#include "validation/cell_faces.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,24 +13,26 @@
 
 namespace realmodel::validation {
 
-SidesByCell::SidesByCell(const ComplexView& model, const Execution& execution) {
-    const std::size_t sides = model.face_cells.size(), cells = model.cell_count();
+FacesByCell::FacesByCell(const ComplexView& model, const Execution& execution) {
+    const std::size_t oriented_faces = model.face_cells.size(), cells = model.cell_count();
     const auto produce = [&](std::size_t chunk, const auto& put) {
-        for (std::size_t i = chunk * kItemsOfChunk, end = std::min(sides, i + kItemsOfChunk);
+        for (std::size_t i = chunk * kItemsOfChunk,
+                         end = std::min(oriented_faces, i + kItemsOfChunk);
              i < end; ++i) {
             const std::int32_t cell = model.face_cells[i];
-            if (cell >= 0) put(index(cell), static_cast<Side>(i));
+            if (cell >= 0) put(index(cell), static_cast<OrientedFace>(i));
         }
     };
-    const std::size_t chunks = (sides + kItemsOfChunk - 1) / kItemsOfChunk;
-    Buckets<Side>::operator=(sorted_in_buckets<Side>(cells, chunks, produce, execution));
+    const std::size_t chunks = (oriented_faces + kItemsOfChunk - 1) / kItemsOfChunk;
+    Buckets<OrientedFace>::operator=(
+        sorted_in_buckets<OrientedFace>(cells, chunks, produce, execution));
 }
 
-CellExtent::CellExtent(const ComplexView& model, std::span<const Side> sides) {
+CellExtent::CellExtent(const ComplexView& model, std::span<const OrientedFace> oriented_faces) {
     low_.fill(HUGE_VAL);
     high_.fill(-HUGE_VAL);
-    for (const Side side : sides) {
-        for (const std::int32_t v : model.face(face_of(side))) {
+    for (const OrientedFace oriented_face : oriented_faces) {
+        for (const std::int32_t v : model.face(face_of(oriented_face))) {
             const auto p = model.vertex(v);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 low_[axis] = std::min(low_[axis], p[axis]);
@@ -70,10 +72,10 @@ struct LoopEdge {
 
 /// Calls visit(from, to) along the loop of a face as its cell has it.
 template <class Visit>
-void along_loop(const ComplexView& model, Side side, const Visit& visit) {
-    const auto loop = model.face(face_of(side));
+void along_loop(const ComplexView& model, OrientedFace oriented_face, const Visit& visit) {
+    const auto loop = model.face(face_of(oriented_face));
     std::int32_t before = loop.back();
-    if (is_reversed(side)) {
+    if (is_reversed(oriented_face)) {
         for (const std::int32_t v : loop) {
             visit(v, before);
             before = v;
@@ -86,23 +88,24 @@ void along_loop(const ComplexView& model, Side side, const Visit& visit) {
     }
 }
 
-std::size_t count_edges(const ComplexView& model, std::span<const Side> sides) {
+std::size_t count_edges(const ComplexView& model, std::span<const OrientedFace> oriented_faces) {
     std::size_t edges = 0;
-    for (const Side side : sides)
-        edges += model.face(face_of(side)).size();
+    for (const OrientedFace oriented_face : oriented_faces)
+        edges += model.face(face_of(oriented_face)).size();
     return edges;
 }
 
 /// The edges of a large cell in buckets that fit the cache, each edge with all its uses in one.
-Buckets<LoopEdge> edge_buckets(const ComplexView& model, std::span<const Side> sides,
+Buckets<LoopEdge> edge_buckets(const ComplexView& model,
+                               std::span<const OrientedFace> oriented_faces,
                                const Execution& execution) {
     constexpr std::size_t kUsesOfBucket = 8192, kMaxBuckets = std::size_t{1} << 16;
-    const std::size_t buckets =
-        std::min(kMaxBuckets, std::bit_ceil(count_edges(model, sides) / kUsesOfBucket + 1));
+    const std::size_t buckets = std::min(
+        kMaxBuckets, std::bit_ceil(count_edges(model, oriented_faces) / kUsesOfBucket + 1));
     const auto produce = [&](std::size_t chunk, const auto& put) {
-        const std::size_t end = std::min(sides.size(), (chunk + 1) * kItemsOfChunk);
+        const std::size_t end = std::min(oriented_faces.size(), (chunk + 1) * kItemsOfChunk);
         for (std::size_t i = chunk * kItemsOfChunk; i < end; ++i) {
-            along_loop(model, sides[i], [&](std::int32_t from, std::int32_t to) {
+            along_loop(model, oriented_faces[i], [&](std::int32_t from, std::int32_t to) {
                 // not the hash of EdgeTable, or a bucket would fill one part of its table
                 const auto low = static_cast<std::uint32_t>(std::min(from, to));
                 const std::uint64_t hash = low * std::uint64_t{0xD1B54A32D192ED03u};
@@ -110,25 +113,26 @@ Buckets<LoopEdge> edge_buckets(const ComplexView& model, std::span<const Side> s
             });
         }
     };
-    const std::size_t chunks = (sides.size() + kItemsOfChunk - 1) / kItemsOfChunk;
+    const std::size_t chunks = (oriented_faces.size() + kItemsOfChunk - 1) / kItemsOfChunk;
     return bucketize_in_order<LoopEdge>(buckets, chunks, produce, execution);
 }
 
 }  // namespace
 
-std::optional<EdgeCount> open_edge(const ComplexView& model, std::span<const Side> sides,
-                                   EdgeTable& table) {
-    table.reset(count_edges(model, sides), model.cell_kind == CellKind::kBlocks);
-    for (const Side side : sides) {
-        along_loop(model, side, [&](std::int32_t from, std::int32_t to) { table.use(from, to); });
+std::optional<EdgeCount> open_edge(const ComplexView& model,
+                                   std::span<const OrientedFace> oriented_faces, EdgeTable& table) {
+    table.reset(count_edges(model, oriented_faces), model.cell_kind == CellKind::kBlocks);
+    for (const OrientedFace oriented_face : oriented_faces) {
+        along_loop(model, oriented_face,
+                   [&](std::int32_t from, std::int32_t to) { table.use(from, to); });
     }
     return table.closed() ? std::nullopt : table.open_edge();
 }
 
 std::optional<EdgeCount> open_edge_of_large_cell(const ComplexView& model,
-                                                 std::span<const Side> sides,
+                                                 std::span<const OrientedFace> oriented_faces,
                                                  const Execution& execution) {
-    const auto buckets = edge_buckets(model, sides, execution);
+    const auto buckets = edge_buckets(model, oriented_faces, execution);
     std::vector<std::optional<EdgeCount>> open(buckets.size());
     parallel_chunks(buckets.size(), execution, [&](std::size_t b) {
         EdgeTable table;

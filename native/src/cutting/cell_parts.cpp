@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What bounds the parts of cells, and which of it belongs together.
-#include "cutting/surface_parts.hpp"
+#include "cutting/cell_parts.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -15,30 +15,30 @@
 
 namespace realmodel::cutting {
 
-using arrangement::each_edge;
+using arrangement::for_each_edge;
 
-SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding,
-                           const PartSides& sides, Progress* progress)
+CellParts::CellParts(CutterOverlay& overlay, const CutterWinding& winding, const PartSides& sides,
+                     Progress* progress)
     : overlay_(overlay),
       winding_(winding),
       sides_(sides),
       loses_(overlay.model().cell_block.size(), 0) {
-    make_patches(progress);
+    make_face_pieces(progress);
     begin_phase(progress, 0.68, 0.75, "joining what bounds a part");
-    make_caps();
+    make_cut_faces();
     joined_.emplace(half_faces_.size());
     join_parts(progress);
     attach_hollows(progress);
     join_unseparated();
     number_parts();
     begin_phase(progress, 0.77, 0.85, "dividing faces into polygons");
-    write_patches(progress);
-    write_caps(progress);
+    write_face_pieces(progress);
+    write_cut_faces(progress);
     find_touches(progress);
 }
 
-std::int32_t SurfaceParts::add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign,
-                                         std::int32_t source) {
+std::int32_t CellParts::add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign,
+                                      std::int32_t source) {
     if (cell < 0) return -1;
     if (half == kOn) {
         loses_[index(cell)] = 1;
@@ -50,32 +50,32 @@ std::int32_t SurfaceParts::add_half_face(std::int32_t cell, std::int8_t half, st
 }
 
 /// Notes of the cells of a face that is left out, or part of it, that they lose a part.
-void SurfaceParts::leave_out(std::size_t face) {
+void CellParts::leave_out(std::size_t face) {
     for (std::size_t k = 0; k < 2; ++k) {
         const std::int32_t cell = overlay_.model().cell(face, k);
         if (cell >= 0) loses_[index(cell)] = 1;
     }
 }
 
-/// Adds a patch with a half-face for each of its face's cells; nothing where it is left out.
-void SurfaceParts::add_patch(Patch patch) {
-    const auto face = index(patch.face);
-    if (patch.half == kOn) {
+/// Adds a face piece with a half-face for each of its face's cells; nothing where it is left out.
+void CellParts::add_face_piece(FacePiece face_piece) {
+    const auto face = index(face_piece.face);
+    if (face_piece.half == kOn) {
         leave_out(face);
         return;
     }
-    const auto number = static_cast<std::int32_t>(patches_.size());
+    const auto number = static_cast<std::int32_t>(face_pieces_.size());
     for (std::size_t k = 0; k < 2; ++k)
-        patch.half_faces[k] =
-            add_half_face(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1, number);
-    patches_.push_back(patch);
+        face_piece.half_faces[k] =
+            add_half_face(overlay_.model().cell(face, k), face_piece.half, k == 0 ? 1 : -1, number);
+    face_pieces_.push_back(face_piece);
 }
 
-/// Joins the regions of faces along edges that are none of the surface's, of one face after another
+/// Joins the regions of faces along edges that are none of the cutter's, of one face after another
 /// in the same memory.
-class SurfaceParts::FaceDivider {
+class CellParts::FaceDivider {
 public:
-    FaceDivider(const SurfaceOverlay& overlay, const CutterWinding& winding)
+    FaceDivider(const CutterOverlay& overlay, const CutterWinding& winding)
         : overlay_(overlay), winding_(winding) {}
 
     void divide(std::int32_t face, std::span<const std::int32_t> regions, DividedFaces& divided) {
@@ -87,32 +87,33 @@ public:
         joined_.pair([this](const std::array<NodeId, 2>& edge, std::int32_t, std::int32_t) {
             return !winding_.is_edge(edge);
         });
-        DisjointSets together(regions.size());
-        joined_.each_pair([&](std::int32_t i, std::int32_t j) { together.join(i, j); });
-        // patches in the order of their outlines, which may take turns
-        patch_of_.assign(regions.size(), -1);  // by the first region of each
+        DisjointSets joined_regions(regions.size());
+        joined_.for_each_pair([&](std::int32_t i, std::int32_t j) { joined_regions.join(i, j); });
+        // face pieces in the order of their outlines, which may take turns
+        face_piece_of_.assign(regions.size(), -1);  // by the first region of each
         outlines_.clear();
         edges_.clear();
         std::int32_t count = 0;
-        joined_.each_outline(
+        joined_.for_each_outline(
             [&](std::span<const arrangement::JoinedPolygons::PolygonHalfEdge> outline) {
-                std::int32_t& patch = patch_of_[index(together.find(outline[0].polygon))];
-                if (patch < 0) patch = count++;
-                outlines_.push_back({patch, edges_.size(), outline.size()});
+                std::int32_t& face_piece =
+                    face_piece_of_[index(joined_regions.find(outline[0].polygon))];
+                if (face_piece < 0) face_piece = count++;
+                outlines_.push_back({face_piece, edges_.size(), outline.size()});
                 edges_.insert(edges_.end(), outline.begin(), outline.end());
             });
-        std::ranges::stable_sort(outlines_, {}, &Outline::patch);
+        std::ranges::stable_sort(outlines_, {}, &Outline::face_piece);
         regions_.clear();
         for (std::size_t i = 0; i < regions.size(); ++i) {
-            const std::int32_t patch =
-                patch_of_[index(together.find(static_cast<std::int32_t>(i)))];
-            if (patch >= 0) regions_.push_back({patch, regions[i]});
+            const std::int32_t face_piece =
+                face_piece_of_[index(joined_regions.find(static_cast<std::int32_t>(i)))];
+            if (face_piece >= 0) regions_.push_back({face_piece, regions[i]});
         }
         std::ranges::stable_sort(regions_, {}, &std::pair<std::int32_t, std::int32_t>::first);
         auto outline = outlines_.begin();
         auto region = regions_.begin();
-        for (std::int32_t patch = 0; patch < count; ++patch) {
-            for (; outline != outlines_.end() && outline->patch == patch; ++outline) {
+        for (std::int32_t face_piece = 0; face_piece < count; ++face_piece) {
+            for (; outline != outlines_.end() && outline->face_piece == face_piece; ++outline) {
                 for (const auto& edge : std::span(edges_).subspan(outline->begin, outline->size)) {
                     divided.loops.nodes.push_back(edge.from);
                     divided.beside.push_back(regions[index(edge.polygon)]);
@@ -120,7 +121,7 @@ public:
                 divided.loops.end_loop();
             }
             divided.loops.end_region();
-            for (; region != regions_.end() && region->first == patch; ++region)
+            for (; region != regions_.end() && region->first == face_piece; ++region)
                 divided.regions.push_back(region->second);
             divided.region_begins.push_back(divided.regions.size());
             divided.face.push_back(face);
@@ -129,21 +130,22 @@ public:
 
 private:
     struct Outline {
-        std::int32_t patch;
+        std::int32_t face_piece;
         std::size_t begin, size;  ///< in `edges_`
     };
 
-    const SurfaceOverlay& overlay_;
+    const CutterOverlay& overlay_;
     const CutterWinding& winding_;
     arrangement::JoinedPolygons joined_;
-    std::vector<std::int32_t> patch_of_;
+    std::vector<std::int32_t> face_piece_of_;
     std::vector<Outline> outlines_;
     std::vector<arrangement::JoinedPolygons::PolygonHalfEdge> edges_;
-    std::vector<std::pair<std::int32_t, std::int32_t>> regions_;  ///< the patch and each of its
+    std::vector<std::pair<std::int32_t, std::int32_t>>
+        regions_;  ///< the face piece and each of its
 };
 
-/// Active faces are divided on all threads; patches are numbered in the order of faces.
-void SurfaceParts::make_patches(Progress* progress) {
+/// Active faces are divided on all threads; face pieces are numbered in the order of faces.
+void CellParts::make_face_pieces(Progress* progress) {
     const ComplexView& model = overlay_.model();
     const auto of_face = bucketize<std::int32_t>(model.face_count(), [this](const auto& put) {
         for (std::size_t r = 0; r < overlay_.size(); ++r) {
@@ -166,154 +168,156 @@ void SurfaceParts::make_patches(Progress* progress) {
         poll(progress, f);
         const auto face = static_cast<std::int32_t>(f);
         if (!overlay_.is_active(f)) {
-            add_patch({face, sides_.of_face(f)});
+            add_face_piece({face, sides_.of_face(f)});
             continue;
         }
         const std::int32_t first = overlay_.first_same(f);
         const auto position = std::ranges::lower_bound(active, first) - active.begin();
         const DividedFaces& divided = divided_[static_cast<std::size_t>(position) / kChunk];
         const auto [begin, end] = std::equal_range(divided.face.begin(), divided.face.end(), first);
-        for (auto patch = begin; patch != end; ++patch) {
-            const auto number = static_cast<std::size_t>(patch - divided.face.begin());
+        for (auto face_piece = begin; face_piece != end; ++face_piece) {
+            const auto number = static_cast<std::size_t>(face_piece - divided.face.begin());
             const auto region = index(divided.regions_of(number)[0]);
-            add_patch({face, sides_.of_region(region, f), &divided, number});
+            add_face_piece({face, sides_.of_region(region, f), &divided, number});
         }
     }
 }
 
-/// Calls visit(use) for all edges of the half-faces of cells that reach the surface.
+/// Calls visit(use) for all edges of the half-faces of cells that reach the cutter.
 template <class Visit>
-void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
-    for (const std::int32_t half_face : patch.half_faces) {
+void CellParts::for_each_use(const FacePiece& face_piece, const Visit& visit) const {
+    for (const std::int32_t half_face : face_piece.half_faces) {
         if (half_face < 0 || !sides_.reaches(half_faces_[index(half_face)].cell)) continue;
         const HalfFace& bound = half_faces_[index(half_face)];
-        if (patch.divided == nullptr) {
-            const auto face = index(patch.face);
+        if (face_piece.divided == nullptr) {
+            const auto face = index(face_piece.face);
             const FarFaces& far = overlay_.far();
-            each_edge(std::array{overlay_.model().face(face)},
-                      static_cast<std::int32_t>(overlay_.size() + face), [&](const EdgeUse& use) {
-                          if (far.group(face) < 0 || !far.is_beyond(use.key()))
-                              visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
-                      });
+            for_each_edge(std::array{overlay_.model().face(face)},
+                          static_cast<std::int32_t>(overlay_.size() + face),
+                          [&](const EdgeUse& use) {
+                              if (far.group(face) < 0 || !far.is_beyond(use.key()))
+                                  visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
+                          });
             continue;
         }
         std::size_t edge = 0;
-        const auto loops = patch.loops();
+        const auto loops = face_piece.loops();
         const std::size_t first =
-            static_cast<std::size_t>(loops[0].data() - patch.divided->loops.nodes.data());
-        each_edge(loops, 0, [&](EdgeUse use) {
-            use.item = patch.divided->beside[first + edge++];
+            static_cast<std::size_t>(loops[0].data() - face_piece.divided->loops.nodes.data());
+        for_each_edge(loops, 0, [&](EdgeUse use) {
+            use.item = face_piece.divided->beside[first + edge++];
             visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
         });
     }
 }
 
 template <class Visit>
-void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
-    for (const auto& of_side : caps.half_faces) {
+void CellParts::for_each_use(const CutFaces& cut_faces, const Visit& visit) const {
+    for (const auto& of_side : cut_faces.half_faces) {
         for (const std::int32_t half_face : of_side) {
             const HalfFace& bound = half_faces_[index(half_face)];
             if (!sides_.reaches(bound.cell)) continue;
-            if (caps.component >= 0) {
-                for (const UndividedBorder& border : winding_.borders(index(caps.component)))
+            if (cut_faces.component >= 0) {
+                for (const UndividedBorder& border : winding_.borders(index(cut_faces.component)))
                     visit(HalfFaceUse{bound.cell, bound.half, border.use, half_face});
                 continue;
             }
-            each_edge(overlay_.loops(index(caps.region)), caps.region, [&](const EdgeUse& use) {
-                visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
-            });
+            for_each_edge(overlay_.loops(index(cut_faces.region)), cut_faces.region,
+                          [&](const EdgeUse& use) {
+                              visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
+                          });
         }
     }
 }
 
-void SurfaceParts::collect_uses(Progress* progress) {
+void CellParts::collect_uses(Progress* progress) {
     constexpr std::size_t kChunk = 1 << 10;
-    const std::size_t count = patches_.size() + caps_.size();
+    const std::size_t count = face_pieces_.size() + cut_faces_.size();
     uses_ = sorted_in_buckets<HalfFaceUse>(
         overlay_.node_count(), (count + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
             const auto visit = [&put](const HalfFaceUse& use) { put(index(use.use.edge[0]), use); };
             for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
-                if (i < patches_.size()) {
-                    each_use(patches_[i], visit);
+                if (i < face_pieces_.size()) {
+                    for_each_use(face_pieces_[i], visit);
                 } else {
-                    each_use(caps_[i - patches_.size()], visit);
+                    for_each_use(cut_faces_[i - face_pieces_.size()], visit);
                 }
             }
         },
         {overlay_.threads(), progress});
 }
 
-void SurfaceParts::make_caps() {
+void CellParts::make_cut_faces() {
     const UndividedTriangles& undivided = overlay_.undivided();
-    std::vector<std::int32_t> caps_of(undivided.components(), -1);
-    std::int32_t next = 0;  // triangle of the surface
+    std::vector<std::int32_t> cut_faces_of(undivided.components(), -1);
+    std::int32_t next = 0;  // triangle of the cutter
     const auto add_undivided_until = [&](std::int32_t end) {
         for (; undivided.components() > 0 && next < end; ++next) {
-            if (undivided.has(next)) add_caps_of_undivided(next, caps_of);
+            if (undivided.has(next)) add_cut_faces_of_undivided(next, cut_faces_of);
         }
     };
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!winding_.counts(r) || !winding_.touches_model(r)) continue;
         add_undivided_until(overlay_.cutter_triangle(r));
-        add_caps(static_cast<std::int32_t>(r), -1);
-        cap_facets_.push_back({caps_.size() - 1, -1});
+        add_cut_faces(static_cast<std::int32_t>(r), -1);
+        cut_facets_.push_back({cut_faces_.size() - 1, -1});
     }
-    add_undivided_until(static_cast<std::int32_t>(overlay_.surface().triangles.size()));
+    add_undivided_until(static_cast<std::int32_t>(overlay_.cutter().triangles.size()));
 }
 
-/// @param caps_of  of components, -1 none yet
-void SurfaceParts::add_caps_of_undivided(std::int32_t triangle,
-                                         std::vector<std::int32_t>& caps_of) {
+/// @param cut_faces_of  of components, -1 none yet
+void CellParts::add_cut_faces_of_undivided(std::int32_t triangle,
+                                           std::vector<std::int32_t>& cut_faces_of) {
     const std::int32_t component = overlay_.undivided().component(triangle);
     const std::int32_t region = winding_.borders(index(component))[0].region;
     if (!winding_.touches_model(index(region))) return;
-    std::int32_t& caps = caps_of[index(component)];
-    if (caps < 0) {
-        caps = static_cast<std::int32_t>(caps_.size());
-        add_caps(region, component);
+    std::int32_t& cut_faces = cut_faces_of[index(component)];
+    if (cut_faces < 0) {
+        cut_faces = static_cast<std::int32_t>(cut_faces_.size());
+        add_cut_faces(region, component);
     }
-    cap_facets_.push_back({index(caps), triangle});
+    cut_facets_.push_back({index(cut_faces), triangle});
 }
 
-void SurfaceParts::add_caps(std::int32_t region, std::int32_t component) {
-    Caps& caps = caps_.emplace_back(Caps{region, component, {}, {}, {}});
-    const auto source = -static_cast<std::int32_t>(caps_.size());
+void CellParts::add_cut_faces(std::int32_t region, std::int32_t component) {
+    CutFaces& cut_faces = cut_faces_.emplace_back(CutFaces{region, component, {}, {}, {}});
+    const auto source = -static_cast<std::int32_t>(cut_faces_.size());
     for (std::size_t k = 0; k < 2; ++k) {
         for (const auto& [cell, times] : winding_.around(index(region), k)) {
-            const std::int8_t half = sides_.of_cap(index(region), k, cell);
+            const std::int8_t half = sides_.of_cut_face(index(region), k, cell);
             for (int i = 0; i < std::abs(times); ++i) {
                 const std::int32_t half_face =
                     add_half_face(cell, half, (times > 0) == (k == 0) ? 1 : -1, source);
-                if (half_face >= 0) caps.half_faces[k].push_back(half_face);
+                if (half_face >= 0) cut_faces.half_faces[k].push_back(half_face);
             }
         }
     }
-    pair_caps(caps);
+    pair_cut_faces(cut_faces);
 }
 
-/// Calls visit(loops) for the region of caps, or for each of the undivided triangles.
+/// Calls visit(loops) for the region of cut faces, or for each of the undivided triangles.
 template <class Visit>
-void SurfaceParts::visit_cap_loops(const Caps& caps, const Visit& visit) const {
-    if (caps.component < 0) {
-        visit(overlay_.loops(index(caps.region)));
+void CellParts::visit_cut_face_loops(const CutFaces& cut_faces, const Visit& visit) const {
+    if (cut_faces.component < 0) {
+        visit(overlay_.loops(index(cut_faces.region)));
         return;
     }
-    for (const std::int32_t t : overlay_.undivided().triangles(index(caps.component)))
+    for (const std::int32_t t : overlay_.undivided().triangles(index(cut_faces.component)))
         visit(std::array<std::array<NodeId, 3>, 1>{overlay_.undivided_nodes(t)});
 }
 
-/// Pairs what a region of the surface lies between.
-void SurfaceParts::pair_caps(Caps& caps) {
+/// Pairs what a region of the cutter lies between.
+void CellParts::pair_cut_faces(CutFaces& cut_faces) {
     const auto sign = [this](std::int32_t half_face) { return half_faces_[index(half_face)].sign; };
     std::array<std::vector<std::int32_t>, 2> alone;
     for (std::size_t k = 0; k < 2; ++k) {
-        std::vector<std::int32_t> ahead, back;  // facing as the surface, and against it
-        for (const std::int32_t half_face : caps.half_faces[k])
+        std::vector<std::int32_t> ahead, back;  // facing as the cutter, and against it
+        for (const std::int32_t half_face : cut_faces.half_faces[k])
             (sign(half_face) > 0 ? ahead : back).push_back(half_face);
         const std::size_t count = std::min(ahead.size(), back.size());
         for (std::size_t i = 0; i < count; ++i)
-            caps.pairs_on_one_side.push_back({ahead[i], back[i]});
+            cut_faces.pairs_on_one_side.push_back({ahead[i], back[i]});
         auto& rest = ahead.size() > count ? ahead : back;
         alone[k].assign(rest.begin() + static_cast<std::ptrdiff_t>(count), rest.end());
     }
@@ -321,22 +325,22 @@ void SurfaceParts::pair_caps(Caps& caps) {
         const std::int32_t low = i < alone[0].size() ? alone[0][i] : -1;
         const std::int32_t high = i < alone[1].size() ? alone[1][i] : -1;
         if (low >= 0 && high >= 0 && sign(low) > 0 && sign(high) < 0) {
-            caps.pairs_through.push_back({low, high});
+            cut_faces.pairs_through.push_back({low, high});
             continue;
         }
         for (const std::int32_t half_face : {low, high}) {
-            if (half_face >= 0) caps.pairs_through.push_back({half_face, -1});
+            if (half_face >= 0) cut_faces.pairs_through.push_back({half_face, -1});
         }
     }
 }
 
-/// Parts that the surface does not separate become one.
-void SurfaceParts::join_unseparated() {
-    for (Caps& caps : caps_) {
-        std::erase_if(caps.pairs_through, [&](const std::array<std::int32_t, 2>& pair) {
-            const bool separates = caps.component < 0
-                                       ? sides_.separates(index(caps.region))
-                                       : sides_.separates_undivided(index(caps.component));
+/// Parts that the cutter does not separate become one.
+void CellParts::join_unseparated() {
+    for (CutFaces& cut_faces : cut_faces_) {
+        std::erase_if(cut_faces.pairs_through, [&](const std::array<std::int32_t, 2>& pair) {
+            const bool separates = cut_faces.component < 0
+                                       ? sides_.separates(index(cut_faces.region))
+                                       : sides_.separates_undivided(index(cut_faces.component));
             if (pair[1] < 0 || separates) return false;
             joined_->join(pair[0], pair[1]);
             has_joined_cells_ = true;
@@ -347,7 +351,7 @@ void SurfaceParts::join_unseparated() {
     }
 }
 
-void SurfaceParts::join_parts(Progress* progress) {
+void CellParts::join_parts(Progress* progress) {
     // cells that are on one side stay whole
     const std::size_t cells = overlay_.model().cell_block.size();
     std::vector<std::uint8_t> halves(cells, 0);
@@ -365,25 +369,26 @@ void SurfaceParts::join_parts(Progress* progress) {
         joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
     // a group of far faces is of one part of either cell
-    std::vector<const Patch*> first_of_group(overlay_.far().groups(), nullptr);
-    for (const Patch& patch : patches_) {
-        const std::int32_t group = overlay_.far().group(index(patch.face));
+    std::vector<const FacePiece*> first_of_group(overlay_.far().groups(), nullptr);
+    for (const FacePiece& face_piece : face_pieces_) {
+        const std::int32_t group = overlay_.far().group(index(face_piece.face));
         if (group < 0) continue;
-        const Patch*& leader = first_of_group[index(group)];
-        if (leader == nullptr) leader = &patch;
+        const FacePiece*& leader = first_of_group[index(group)];
+        if (leader == nullptr) leader = &face_piece;
         for (std::size_t k = 0; k < 2; ++k) {
-            if (patch.half_faces[k] >= 0) joined_->join(leader->half_faces[k], patch.half_faces[k]);
+            if (face_piece.half_faces[k] >= 0)
+                joined_->join(leader->half_faces[k], face_piece.half_faces[k]);
         }
     }
     collect_uses(progress);
-    const auto each_edge_of_cells = [&](std::size_t node, const auto& visit) {
+    const auto for_each_edge_of_cells = [&](std::size_t node, const auto& visit) {
         for (const auto uses : groups_of(uses_[node], &HalfFaceUse::key)) {
             if (is_divided(index(uses[0].cell))) visit(uses);
         }
     };
     std::vector<std::uint8_t> has_many(uses_.size());  // which take points that are added
-    parallel_each(uses_.size(), {overlay_.threads(), progress}, [&](std::size_t node) {
-        each_edge_of_cells(node, [&](std::span<const HalfFaceUse> uses) {
+    parallel_for_each(uses_.size(), {overlay_.threads(), progress}, [&](std::size_t node) {
+        for_each_edge_of_cells(node, [&](std::span<const HalfFaceUse> uses) {
             if (uses.size() == 2) {
                 joined_->join(uses[0].half_face, uses[1].half_face);
             } else {
@@ -394,7 +399,7 @@ void SurfaceParts::join_parts(Progress* progress) {
     for (std::size_t node = 0; node < uses_.size(); ++node) {
         poll(progress, node);
         if (has_many[node] == 0) continue;
-        each_edge_of_cells(node, [&](std::span<const HalfFaceUse> uses) {
+        for_each_edge_of_cells(node, [&](std::span<const HalfFaceUse> uses) {
             if (uses.size() != 2) join_round_edge(uses);
         });
     }
@@ -402,7 +407,7 @@ void SurfaceParts::join_parts(Progress* progress) {
 
 /// Of several half-faces of one cell around an edge those belong together that bound one sector of
 /// it: each that the cell begins at, going round, with the one where it ends.
-void SurfaceParts::join_round_edge(std::span<const HalfFaceUse> uses) {
+void CellParts::join_round_edge(std::span<const HalfFaceUse> uses) {
     std::vector<arrangement::HalfPlane> scratch;
     EdgeFan fan;
     overlay_.find_fan(transformed(uses, &HalfFaceUse::use), scratch, fan);
@@ -411,9 +416,9 @@ void SurfaceParts::join_round_edge(std::span<const HalfFaceUse> uses) {
         int change;  ///< 1 the cell begins, -1 it ends
     };
     std::vector<SectorBound> steps;
-    for (std::size_t b = 0; b < fan.blades(); ++b) {
+    for (std::size_t b = 0; b < fan.half_planes(); ++b) {
         for (const int change : {-1, 1}) {
-            for (const std::size_t i : fan.blade(b)) {
+            for (const std::size_t i : fan.half_plane(b)) {
                 const std::size_t side = half_faces_[index(uses[i].half_face)].sign > 0 ? 0 : 1;
                 if ((uses[i].use.ahead() == side) == (change > 0))
                     steps.push_back({uses[i].half_face, change});
@@ -446,8 +451,8 @@ void SurfaceParts::join_round_edge(std::span<const HalfFaceUse> uses) {
     assert(begun.empty());
 }
 
-/// Joins the walls of hollows that the surface cuts out of cells with the parts around them.
-void SurfaceParts::attach_hollows(Progress* progress) {
+/// Joins the walls of hollows that the cutter cuts out of cells with the parts around them.
+void CellParts::attach_hollows(Progress* progress) {
     const auto of_cell =
         bucketize<std::int32_t>(overlay_.model().cell_count(), [this](const auto& put) {
             for (std::size_t s = 0; s < half_faces_.size(); ++s) {
@@ -471,15 +476,15 @@ void SurfaceParts::attach_hollows(Progress* progress) {
                                [this](NodeId node) { return overlay_.position(node); });
             };
             if (source < 0) {
-                visit_cap_loops(caps_[index(-1 - source)], visit_loops);
+                visit_cut_face_loops(cut_faces_[index(-1 - source)], visit_loops);
                 return;
             }
-            const Patch& patch = patches_[index(source)];
-            if (patch.divided != nullptr) {
-                visit_loops(patch.loops());
+            const FacePiece& face_piece = face_pieces_[index(source)];
+            if (face_piece.divided != nullptr) {
+                visit_loops(face_piece.loops());
                 return;
             }
-            const auto face = index(patch.face);
+            const auto face = index(face_piece.face);
             visit_loops(std::array{overlay_.model().face(face)});
             // what is left out is with the first face of its group
             const FarFaces& far = overlay_.far();

@@ -10,15 +10,16 @@
 
 namespace realmodel::cutting {
 
-/// The parts that a surface divides cells into, and the polygons around them: a face's regions that
-/// nothing of the surface lies between, joined again, and for each region of the surface a cap for
-/// whatever it goes through. A part has all that bounds its cell on one side, and as many caps as
-/// the cell's boundary goes round them: so every part is closed, whatever rounding made of the
-/// cell. Parts that are not wanted are left out; parts that the surface does not separate are one.
-class SurfaceParts {
+/// The parts that a cutter divides cells into, and the polygons around them: a face's regions that
+/// nothing of the cutter lies between, joined again, and for each region of the cutter a cut face
+/// for whatever it goes through. A part has all that bounds its cell on one side, and as many cut
+/// faces as the cell's boundary goes round them: so every part is closed, whatever rounding made of
+/// the cell. Parts that are not wanted are left out; parts that the cutter does not separate are
+/// one.
+class CellParts {
 public:
-    SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding, const PartSides& sides,
-                 Progress* progress);
+    CellParts(CutterOverlay& overlay, const CutterWinding& winding, const PartSides& sides,
+              Progress* progress);
 
     CutPieces pieces;
     std::vector<HalfCell> half_cells;
@@ -26,31 +27,32 @@ public:
     std::array<bool, 2> touches{false, false};
 
 private:
-    /// What bounds a part: a patch of a face, a whole face, or a cap, as its cell sees it.
+    /// What bounds a part: a face piece of a face, a whole face, or a cut face, as its cell sees
+    /// it.
     struct HalfFace {
         std::int32_t cell;
         std::int8_t half;
         /// 1: turns counter-clockwise seen from outside of the cell, -1 does not.
         std::int8_t sign;
-        std::int32_t source;  ///< its patch; of caps -1 - their number
+        std::int32_t source;  ///< its face piece; of cut faces -1 - their number
     };
-    /// What the faces of a chunk are divided into, by the numbers of patches in it.
+    /// What the faces of a chunk are divided into, by the numbers of face pieces in it.
     struct DividedFaces {
-        std::vector<std::int32_t> face;  ///< of patches
+        std::vector<std::int32_t> face;  ///< of face pieces
         arrangement::LoopTable<NodeId> loops;
         std::vector<std::int32_t> beside;  ///< of the edges of all loops: the region
         std::vector<std::int32_t> regions;
         std::vector<std::size_t> region_begins{0};
 
-        std::span<const std::int32_t> regions_of(std::size_t patch) const {
-            return {regions.data() + region_begins[patch],
-                    regions.data() + region_begins[patch + 1]};
+        std::span<const std::int32_t> regions_of(std::size_t face_piece) const {
+            return {regions.data() + region_begins[face_piece],
+                    regions.data() + region_begins[face_piece + 1]};
         }
     };
     class FaceDivider;
-    /// Regions of one face that no edge of the surface lies between; or a whole face, which has no
+    /// Regions of one face that no edge of the cutter lies between; or a whole face, which has no
     /// regions.
-    struct Patch {
+    struct FacePiece {
         std::int32_t face;
         std::int8_t half;
         const DividedFaces* divided = nullptr;  ///< nullptr: the whole face
@@ -60,9 +62,9 @@ private:
         Loops<NodeId> loops() const { return divided->loops[number]; }
         std::span<const std::int32_t> regions() const { return divided->regions_of(number); }
     };
-    /// The half-faces of one region of the surface, or of a component of undivided triangles: what
+    /// The half-faces of one region of the cutter, or of a component of undivided triangles: what
     /// is below it, then what is above.
-    struct Caps {
+    struct CutFaces {
         std::int32_t region;     ///< of a component that at its first border
         std::int32_t component;  ///< -1: the region alone
         std::array<std::vector<std::int32_t>, 2> half_faces;
@@ -71,10 +73,10 @@ private:
         /// often too much as the other too little.
         std::vector<std::array<std::int32_t, 2>> pairs_through, pairs_on_one_side;
     };
-    /// What is one polygon, or several, between the half-faces of caps: their region, or one of the
-    /// undivided triangles.
-    struct CapFacet {
-        std::size_t caps;
+    /// What is one polygon, or several, between the half-faces of cut faces: their region, or one
+    /// of the undivided triangles.
+    struct CutFacet {
+        std::size_t cut_faces;
         std::int32_t triangle;  ///< -1: the region
     };
     /// A half-face at one of its edges.
@@ -94,43 +96,43 @@ private:
         }
     };
 
-    void make_patches(Progress* progress);
-    void make_caps();
-    void add_caps(std::int32_t region, std::int32_t component);
-    void add_caps_of_undivided(std::int32_t triangle, std::vector<std::int32_t>& caps_of);
+    void make_face_pieces(Progress* progress);
+    void make_cut_faces();
+    void add_cut_faces(std::int32_t region, std::int32_t component);
+    void add_cut_faces_of_undivided(std::int32_t triangle, std::vector<std::int32_t>& cut_faces_of);
     template <class Visit>
-    void visit_cap_loops(const Caps& caps, const Visit& visit) const;
-    void divide(const CapFacet& facet, Polygons& polygons);
+    void visit_cut_face_loops(const CutFaces& cut_faces, const Visit& visit) const;
+    void divide(const CutFacet& facet, Polygons& polygons);
     void leave_out(std::size_t face);
-    void add_patch(Patch patch);
+    void add_face_piece(FacePiece face_piece);
     std::int32_t add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign,
                                std::int32_t source);
     template <class Visit>
-    void each_use(const Patch& patch, const Visit& visit) const;
+    void for_each_use(const FacePiece& face_piece, const Visit& visit) const;
     template <class Visit>
-    void each_use(const Caps& caps, const Visit& visit) const;
+    void for_each_use(const CutFaces& cut_faces, const Visit& visit) const;
     void collect_uses(Progress* progress);
-    void pair_caps(Caps& caps);
+    void pair_cut_faces(CutFaces& cut_faces);
     void join_parts(Progress* progress);
     void join_unseparated();
     void join_round_edge(std::span<const HalfFaceUse> uses);
     void attach_hollows(Progress* progress);
     void number_parts();
-    void write_patches(Progress* progress);
-    void write_caps(Progress* progress);
-    void divide(const Patch& patch, Polygons& polygons);
+    void write_face_pieces(Progress* progress);
+    void write_cut_faces(Progress* progress);
+    void divide(const FacePiece& face_piece, Polygons& polygons);
     void write(const Polygons& polygons, bool reversed, std::int32_t face,
                std::array<std::int32_t, 2> half_faces, bool on_cutter);
     void find_touches(Progress* progress);
 
-    SurfaceOverlay& overlay_;
+    CutterOverlay& overlay_;
     const CutterWinding& winding_;
     const PartSides& sides_;
     std::vector<HalfFace> half_faces_;
     std::vector<DividedFaces> divided_;  ///< of chunks of active faces
-    std::vector<Patch> patches_;
-    std::vector<Caps> caps_;
-    std::vector<CapFacet> cap_facets_;  ///< in the order of the surface's triangles
+    std::vector<FacePiece> face_pieces_;
+    std::vector<CutFaces> cut_faces_;
+    std::vector<CutFacet> cut_facets_;  ///< in the order of the cutter's triangles
     /// By the lesser nodes of edges, in order: those of one edge, cell and half side by side.
     Buckets<HalfFaceUse> uses_;
     std::optional<DisjointSets> joined_;  ///< half-faces of the same part
@@ -142,7 +144,7 @@ private:
 /// The region that some of the overlay's loops bound, in convex polygons (`is_wall`: one polygon if
 /// it has one outline), which are added. `normal` is that of the face or triangle they lie on.
 /// False where they cross each other as seen along it: rounding has bent the face over itself.
-bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
+bool divide_loops(CutterOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
                   bool is_wall, Polygons& polygons);
 
 }  // namespace realmodel::cutting

@@ -11,29 +11,29 @@ namespace {
 /// Two unit cubes, one on the other (face 0 is the base, face 1 between them, face 2 the top), and
 /// a surface.
 struct Parted {
-    explicit Parted(CutterSurface of) : surface(std::move(of)) {}
-    SurfaceCells parts(bool in_model_alone = true, bool leave_out = false) {
+    explicit Parted(Cutter of) : surface(std::move(of)) {}
+    CutterCompartments parts(bool in_model_alone = true, bool leave_out = false) {
         return {overlay,
                 winding,
-                cells_near_surface(overlay, winding),
+                cells_near_cutter(overlay, winding),
                 {[in_model_alone](std::span<const EdgeUse>) { return in_model_alone; },
                  [leave_out](std::size_t) { return leave_out; }},
                 nullptr};
     }
-    std::int32_t of_face(const SurfaceCells& parts, std::size_t face) const {
+    std::int32_t of_face(const CutterCompartments& parts, std::size_t face) const {
         return parts.of(overlay.size() + face);
     }
 
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
-    CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, {1}};
+    Cutter surface;
+    CutterOverlay overlay{model, surface, {1}};
     CutterWinding winding{overlay, nullptr};
 };
 
-TEST(SurfaceCells, ALevelSurfaceLeavesTwoParts) {
+TEST(CutterCompartments, ALevelSurfaceLeavesTwoParts) {
     Parted cut(level_cutter(0.5));
-    const SurfaceCells parts = cut.parts();
+    const CutterCompartments parts = cut.parts();
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_NE(cut.of_face(parts, 0), cut.of_face(parts, 1));
     EXPECT_EQ(cut.of_face(parts, 1), cut.of_face(parts, 2));
@@ -44,14 +44,14 @@ TEST(SurfaceCells, ALevelSurfaceLeavesTwoParts) {
     }
 }
 
-TEST(SurfaceCells, AroundABorderBesideTheModelItLeavesOne) {
+TEST(CutterCompartments, AroundABorderBesideTheModelItLeavesOne) {
     Parted cut(level_cutter(0.5));
     EXPECT_EQ(cut.parts(false).size(), 1U);
 }
 
-TEST(SurfaceCells, APartKnowsOneOfItsSides) {
+TEST(CutterCompartments, APartKnowsOneOfItsSides) {
     Parted cut(level_cutter(0.5));
-    const SurfaceCells parts = cut.parts();
+    const CutterCompartments parts = cut.parts();
     for (std::size_t part = 0; part < parts.size(); ++part) {
         const auto [item, side] = parts.first_side(part);
         const std::int32_t of = side == 0 ? parts.of(item) : parts.at(item, 1);
@@ -59,9 +59,9 @@ TEST(SurfaceCells, APartKnowsOneOfItsSides) {
     }
 }
 
-TEST(SurfaceCells, RegionsThatAreLeftOutAreJoinedWithNothing) {
+TEST(CutterCompartments, RegionsThatAreLeftOutAreJoinedWithNothing) {
     Parted cut(level_cutter(0.5));
-    const SurfaceCells parts = cut.parts(true, true);
+    const CutterCompartments parts = cut.parts(true, true);
     EXPECT_GT(parts.size(), 2U);
     for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
         if (!cut.overlay.of_cutter(r) || parts.of(r) < 0) continue;
@@ -71,9 +71,8 @@ TEST(SurfaceCells, RegionsThatAreLeftOutAreJoinedWithNothing) {
 
 TEST(CellsNearSurface, AreThoseWithAFaceNearItOrAroundIt) {
     Parted lower(level_cutter(0.5)), within(closed_cutter());
-    EXPECT_EQ(cells_near_surface(lower.overlay, lower.winding), (std::vector<std::uint8_t>{1, 0}));
-    EXPECT_EQ(cells_near_surface(within.overlay, within.winding),
-              (std::vector<std::uint8_t>{1, 0}));
+    EXPECT_EQ(cells_near_cutter(lower.overlay, lower.winding), (std::vector<std::uint8_t>{1, 0}));
+    EXPECT_EQ(cells_near_cutter(within.overlay, within.winding), (std::vector<std::uint8_t>{1, 0}));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults and bodies as one surface that cuts, with what continues faults beyond their borders.
-#include "structures/structure_surface.hpp"
+// Faults and bodies as one cutter, with what continues faults beyond their borders.
+#include "structures/structure_cutter.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -17,8 +17,8 @@
 
 namespace realmodel::structures {
 
+using cutting::Cutter;
 using cutting::CutterBorderEdge;
-using cutting::CutterSurface;
 using cutting::NodeId;
 using cutting::Position;
 using meshing::PlanPoint;
@@ -43,12 +43,12 @@ struct PlaneFrame {
 };
 
 /// The plane through the middle of a surface, by areas, at right angles to its mean normal.
-std::optional<PlaneFrame> mean_plane(const cutting::CutterSurface& surface) {
-    const auto at = [&](NodeId v) { return surface.vertices[index(v)]; };
-    const Position first = at(surface.triangles[0][0]);  // exact where the plane is that of an axis
+std::optional<PlaneFrame> mean_plane(const cutting::Cutter& cutter) {
+    const auto at = [&](NodeId v) { return cutter.vertices[index(v)]; };
+    const Position first = at(cutter.triangles[0][0]);  // exact where the plane is that of an axis
     Position normal{0, 0, 0}, total{0, 0, 0};
     double whole = 0;
-    for (const auto& t : surface.triangles) {
+    for (const auto& t : cutter.triangles) {
         const Position face_normal = triangle_normal(at(t[0]), at(t[1]), at(t[2]));
         const double area = length(face_normal);
         whole += area;
@@ -101,7 +101,7 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
 }  // namespace
 
 std::optional<std::vector<std::array<Position, 3>>> continued_in_mean_plane(
-    const cutting::CutterSurface& fault, std::span<const std::array<NodeId, 2>> border,
+    const cutting::Cutter& fault, std::span<const std::array<NodeId, 2>> border,
     std::span<const double> lengths) {
     const auto plane = mean_plane(fault);
     if (!plane) return std::nullopt;
@@ -181,7 +181,7 @@ public:
     ///                all in one direction; so are edges at bays of the border, where what
     ///                continues them would overlap, and a point could be beside either
     /// @param size  of a box around the rock and all structures
-    Continuation(const CutterSurface& fault, const std::vector<std::vector<std::uint8_t>>& beyond,
+    Continuation(const Cutter& fault, const std::vector<std::vector<std::uint8_t>>& beyond,
                  double size)
         : fault_(fault), border_(border_of(fault)), lengths_(reaches(size)) {
         find_directions(beyond);
@@ -236,14 +236,14 @@ private:
         }
         const std::vector<Position> directions = direction_;
         DisjointSets chains(border_.size());
-        const auto each_pair = [&](const auto& visit) {
+        const auto for_each_pair = [&](const auto& visit) {
             for (std::int32_t i = 0; index(i) < border_.size(); ++i) {
                 for (const std::int32_t next : leaving[index(border_[index(i)].to)])
                     visit(i, next);
             }
         };
         for (const auto& is_beyond : beyond) {
-            each_pair([&](std::int32_t i, std::int32_t next) {
+            for_each_pair([&](std::int32_t i, std::int32_t next) {
                 if (are_beyond(is_beyond, border_[index(i)]) &&
                     are_beyond(is_beyond, border_[index(next)]))
                     chains.join(i, next);
@@ -252,7 +252,7 @@ private:
         take_means(directions, chains);
         for (bool any = true; any;) {
             any = false;
-            each_pair([&](std::int32_t i, std::int32_t next) {
+            for_each_pair([&](std::int32_t i, std::int32_t next) {
                 if (chains.find(i) == chains.find(next) || !overlap(i, next)) return;
                 chains.join(i, next);
                 any = true;
@@ -323,7 +323,7 @@ private:
         triangles_.push_back({b, far_a, far_b});
     }
 
-    const CutterSurface& fault_;
+    const Cutter& fault_;
     std::vector<CutterBorderEdge> border_;
     std::vector<Position> direction_;  ///< of these
     std::array<double, 2> lengths_;
@@ -354,7 +354,7 @@ bool passes(const Box& box, std::span<const Position> corners) {
 }
 
 /// Whether a fault divides some rock by itself: it passes it, and its border is away from it.
-bool divides(const CutterSurface& fault, const Box& rock) {
+bool divides(const Cutter& fault, const Box& rock) {
     const Position extent = minus(rock.high, rock.low);
     Box near = rock;
     near.widen(kBesideRock * length(extent));
@@ -371,8 +371,8 @@ bool divides(const CutterSurface& fault, const Box& rock) {
 /// For each fault that a fault ends at, of the vertices of the latter: whether they are beyond it.
 /// There its continuation must go on in its plane: straight up or down it might come back.
 std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
-                                                     std::span<const CutterSurface> faults,
-                                                     const CutterSurface& fault) {
+                                                     std::span<const Cutter> faults,
+                                                     const Cutter& fault) {
     std::vector<std::vector<std::uint8_t>> all;
     for (const std::int32_t other : structure.ends_at) {
         std::vector<std::uint8_t>& is_beyond = all.emplace_back(fault.vertices.size(), 0);
@@ -392,10 +392,10 @@ std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
 
 /// What continues a fault beyond its border.
 std::vector<std::array<Position, 3>> continuation(std::span<const Structure> structures,
-                                                  std::span<const CutterSurface> faults,
+                                                  std::span<const Cutter> faults,
                                                   std::int32_t number, double size) {
     const Structure& structure = structures[index(number)];
-    const CutterSurface& fault = faults[index(number)];
+    const Cutter& fault = faults[index(number)];
     if (!structure.dies_out)
         return Continuation(fault, beyond_others(structure, faults, fault), size).triangles();
     std::vector<std::array<NodeId, 2>> border;
@@ -411,20 +411,20 @@ std::vector<std::array<Position, 3>> continuation(std::span<const Structure> str
 }
 
 /// Puts triangles of structures together, one structure after another.
-class SurfaceOfTriangles {
+class CutterOfTriangles {
 public:
     void begin(bool is_closed) { all_.single.emplace_back().is_closed = is_closed; }
     void add(const std::array<Position, 3>& corners, bool is_continuation) {
         if (exact::in_one_line(corners[0], corners[1], corners[2])) return;
         put({vertices_.add(corners[0]), vertices_.add(corners[1]), vertices_.add(corners[2])},
             is_continuation);
-        CutterSurface& single = all_.single.back();
+        Cutter& single = all_.single.back();
         const auto first = static_cast<NodeId>(single.vertices.size());
         single.vertices.insert(single.vertices.end(), corners.begin(), corners.end());
         single.triangles.push_back({first, first + 1, first + 2});
     }
     /// @param rock  what of the body is away from it cuts nothing; nullopt: all cuts
-    void add_body(const CutterSurface& body, const std::optional<Box>& rock) {
+    void add_body(const Cutter& body, const std::optional<Box>& rock) {
         std::vector<NodeId> nodes(body.vertices.size(), -1);
         for (std::size_t t = 0; t < body.triangles.size(); ++t) {
             const auto corners = body.corners(t);
@@ -441,117 +441,117 @@ public:
         }
         all_.single.back() = body;
     }
-    StructureSurface surface() && {
-        all_.surface.vertices = vertices_.keys();
+    StructureCutter cutter() && {
+        all_.combined.vertices = vertices_.keys();
         return std::move(all_);
     }
 
 private:
     void put(const std::array<NodeId, 3>& triangle, bool is_continuation) {
-        all_.surface.triangles.push_back(triangle);
+        all_.combined.triangles.push_back(triangle);
         all_.structure.push_back(static_cast<std::int32_t>(all_.single.size()) - 1);
         all_.is_continuation.push_back(is_continuation ? 1 : 0);
     }
 
-    StructureSurface all_;
+    StructureCutter all_;
     KeyNumbers<Position> vertices_;
 };
 
 /// Which triangles of structures there are.
-struct SurfaceExtent {
+struct CutterExtent {
     bool continues_all = false;  ///< those are continued, too, that divide the rock by themselves
-    bool has_all_of_bodies = true;  ///< the surface of all has what of bodies is beyond the rock
+    bool has_all_of_bodies = true;  ///< the cutter of all has what of bodies is beyond the rock
 };
 
 /// @param count  of structures, those that are taken
-StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
-                            const Box& rock, const SurfaceExtent& extent_of) {
-    std::vector<CutterSurface> surfaces;
+StructureCutter cutter_of(std::span<const Structure> structures, std::size_t count, const Box& rock,
+                          const CutterExtent& extent_of) {
+    std::vector<Cutter> cutters;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
-        surfaces.push_back(checked_surface(structures[index(s)], s));
-        whole.include(spatial::bounding_box(surfaces.back().vertices));
+        cutters.push_back(checked_cutter(structures[index(s)], s));
+        whole.include(spatial::bounding_box(cutters.back().vertices));
     }
     const double size = length(minus(whole.high, whole.low));
     Box near = rock;
     near.widen(kBesideRock * length(minus(rock.high, rock.low)));
-    SurfaceOfTriangles all;
+    CutterOfTriangles all;
     for (std::int32_t s = 0; index(s) < count; ++s) {
-        const CutterSurface& surface = surfaces[index(s)];
-        all.begin(surface.is_closed);
-        if (surface.is_closed) {
-            all.add_body(surface, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
+        const Cutter& cutter = cutters[index(s)];
+        all.begin(cutter.is_closed);
+        if (cutter.is_closed) {
+            all.add_body(cutter, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
             continue;
         }
-        for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-            all.add(surface.corners(t), false);
-        if (extent_of.continues_all || !divides(surface, rock)) {
-            for (const auto& t : continuation(structures, surfaces, s, size))
+        for (std::size_t t = 0; t < cutter.triangles.size(); ++t)
+            all.add(cutter.corners(t), false);
+        if (extent_of.continues_all || !divides(cutter, rock)) {
+            for (const auto& t : continuation(structures, cutters, s, size))
                 all.add(t, true);
         }
     }
-    return std::move(all).surface();
+    return std::move(all).cutter();
 }
 
 }  // namespace
 
-CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
+Cutter checked_cutter(const Structure& structure, std::int32_t number) {
     try {
-        CutterSurface surface = cutting::oriented_surface(structure.surface, false);
-        if (structure.is_body && !surface.is_closed) {
-            const auto border = border_of(surface);
-            const Position place = surface.vertices[border.empty() ? 0 : index(border[0].from)];
+        Cutter cutter = cutting::oriented_cutter(structure.surface, false);
+        if (structure.is_body && !cutter.is_closed) {
+            const auto border = border_of(cutter);
+            const Position place = cutter.vertices[border.empty() ? 0 : index(border[0].from)];
             throw InputError("not_closed", "the body is not closed: its surface ends at an edge",
                              -1, {}, place);
         }
-        if (!structure.is_body && surface.is_closed)
+        if (!structure.is_body && cutter.is_closed)
             throw InputError("is_closed", "the fault is a closed surface: it has no border");
-        return surface;
+        return cutter;
     } catch (InputError& error) {
         error.surface = number;
         throw;
     }
 }
 
-StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
-    return surface_of(structures, structures.size(), rock, {.has_all_of_bodies = false});
+StructureCutter structure_cutter(std::span<const Structure> structures, const Box& rock) {
+    return cutter_of(structures, structures.size(), rock, {.has_all_of_bodies = false});
 }
 
-StructureSurface structure_surface(std::span<const Structure> structures,
-                                   std::span<const ContinuedStructure> continued) {
-    SurfaceOfTriangles all;
-    std::vector<std::vector<std::int8_t>> kept_sides;
+StructureCutter structure_cutter(std::span<const Structure> structures,
+                                 std::span<const ContinuedStructure> continued) {
+    CutterOfTriangles all;
+    std::vector<std::vector<std::int8_t>> end_sides;
     for (std::size_t s = 0; s < structures.size(); ++s) {
         all.begin(structures[s].is_body);
         for (std::size_t t = 0; t < continued[s].triangles.size(); ++t)
             all.add(continued[s].triangles[t], continued[s].is_continuation[t] != 0);
-        kept_sides.push_back(continued[s].kept_sides);
+        end_sides.push_back(continued[s].end_sides);
     }
-    StructureSurface surface = std::move(all).surface();
-    surface.kept_sides = std::move(kept_sides);
-    return surface;
+    StructureCutter cutter = std::move(all).cutter();
+    cutter.end_sides = std::move(end_sides);
+    return cutter;
 }
 
 std::vector<ContinuedStructure> continued_structures(
     std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners) {
-    const StructureSurface surface =
-        surface_of(structures, structures.size(), spatial::bounding_box(corners), {});
+    const StructureCutter cutter =
+        cutter_of(structures, structures.size(), spatial::bounding_box(corners), {});
     std::vector<ContinuedStructure> continued(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
-            continued[s].kept_sides.push_back(
-                kept_side(surface, static_cast<std::int32_t>(s), other));
+            continued[s].end_sides.push_back(
+                larger_side(cutter, static_cast<std::int32_t>(s), other));
     }
-    for (std::size_t t = 0; t < surface.structure.size(); ++t) {
-        ContinuedStructure& structure = continued[index(surface.structure[t])];
-        structure.triangles.push_back(surface.surface.corners(t));
-        structure.is_continuation.push_back(surface.is_continuation[t]);
+    for (std::size_t t = 0; t < cutter.structure.size(); ++t) {
+        ContinuedStructure& structure = continued[index(cutter.structure[t])];
+        structure.triangles.push_back(cutter.combined.corners(t));
+        structure.is_continuation.push_back(cutter.is_continuation[t]);
     }
     return continued;
 }
 
-StructureSurface first_surface(std::span<const Structure> structures, const Box& rock) {
-    return surface_of(structures, 1, rock, {.continues_all = true});
+StructureCutter cutter_of_first(std::span<const Structure> structures, const Box& rock) {
+    return cutter_of(structures, 1, rock, {.continues_all = true});
 }
 
 }  // namespace realmodel::structures

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "realmodel/structures/build_parts.hpp"
+#include "realmodel/structures/build_compartments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -50,16 +50,16 @@ struct Faulted {
         input.acts = acts;
         std::size_t next = 0;
         for (std::size_t p = 0; p < heights.size(); ++p) {
-            PartStack stack;
+            CompartmentStack stack;
             for (std::size_t k = 0; k < heights[p].size(); ++k) {
                 const auto number = static_cast<std::int32_t>(k);
                 stack.stack.surfaces.push_back(sheets[next++].view());
                 stack.surfaces.push_back({number, k == 0 ? -1 : number});
             }
-            input.parts.push_back({std::move(sides[p]), {stack}});
+            input.compartments.push_back({std::move(sides[p]), {stack}});
         }
     }
-    PartStack& stack(std::size_t part) { return input.parts[part].rocks[0]; }
+    CompartmentStack& stack(std::size_t part) { return input.compartments[part].rocks[0]; }
 
     std::vector<OwnedSurface> shapes, sheets;
     std::vector<std::uint8_t> acts;
@@ -78,20 +78,20 @@ void expect_equal(const Joined& one, const Joined& other) {
     EXPECT_TRUE(std::ranges::equal(one.complex.face_surface, other.complex.face_surface));
     EXPECT_TRUE(std::ranges::equal(one.complex.cell_block, other.complex.cell_block));
     EXPECT_EQ(one.complex.volumes, other.complex.volumes);
-    EXPECT_EQ(one.cell_part, other.cell_part);
+    EXPECT_EQ(one.cell_compartment, other.cell_compartment);
 }
 
 Joined built(const StructuredInput& input) {
-    const Joined one = build_parts(input, {1, nullptr});
+    const Joined one = build_compartments(input, {1, nullptr});
     strata::expect_valid(one.complex, input.cells == CellKind::kBlocks);
     for (const int threads : {2, 5})
-        expect_equal(one, build_parts(input, {threads, nullptr}));
+        expect_equal(one, build_compartments(input, {threads, nullptr}));
     return one;
 }
 
 InputError refused(const StructuredInput& input) {
     try {
-        build_parts(input, {2, nullptr});
+        build_compartments(input, {2, nullptr});
     } catch (const InputError& error) {
         return error;
     }
@@ -103,11 +103,11 @@ TEST(BuildParts, AreTheStacksJoined) {
         Faulted own = one_fault();
         own.input.cells = cells;
         std::vector<CellComplex> stacks;
-        std::vector<PartModel> models;
+        std::vector<CompartmentModel> models;
         for (std::size_t p = 0; p < 2; ++p)
             stacks.push_back(strata::build_stack(own.stack(p).stack, {1, nullptr}, cells));
         for (std::size_t p = 0; p < 2; ++p)
-            models.push_back({stacks[p], own.input.parts[p].sides});
+            models.push_back({stacks[p], own.input.compartments[p].sides});
         const Joined all = built(own.input);
         EXPECT_EQ(all.complex.cell_kind, cells);
         EXPECT_GT(std::ranges::count(all.complex.face_surface, 3), 0);  // on the fault
@@ -115,12 +115,12 @@ TEST(BuildParts, AreTheStacksJoined) {
         // below the fault x > 1 + z / 4, above it x < 1 + z / 4; between y = 0 and y = 4
         EXPECT_NEAR(all.complex.volumes[1], 4 * (3 - 0.125) + 4 * (1 + 0.25), 1e-12);
         EXPECT_NEAR(all.complex.volumes[2], 4 * (3 - 0.375) + 4 * (1 + 0.5), 1e-12);
-        for (std::size_t c = 0; c < all.cell_part.size(); ++c)
-            EXPECT_TRUE(all.cell_part[c] == 0 || all.cell_part[c] == 1);
+        for (std::size_t c = 0; c < all.cell_compartment.size(); ++c)
+            EXPECT_TRUE(all.cell_compartment[c] == 0 || all.cell_compartment[c] == 1);
     }
 }
 
-/// One part of space with two solids, one in the other: a plunging edge of two level sets. In the
+/// One compartment with two solids, one in the other: a plunging edge of two level sets. In the
 /// inner one is block 1, in the outer one block 2, and outside of both block 3; above z = 2 there
 /// is block 4 everywhere.
 struct Folded {
@@ -130,11 +130,11 @@ struct Folded {
         input.cells = cells;
         for (const double z : {0.0, 2.0, 3.0})
             sheets.push_back(level(z));
-        PartOfSpace part;
+        CompartmentInput part;
         for (std::size_t s = 0; s < 2; ++s)
             part.solids.push_back({solids[s].view(), static_cast<std::int32_t>(s + 1)});
         for (std::int32_t m = 0; m < 3; ++m) {
-            PartStack stack;
+            CompartmentStack stack;
             for (const OwnedSurface& sheet : sheets)
                 stack.stack.surfaces.push_back(sheet.view());
             stack.surfaces = {{kBase, -1}, {3, m + 1}, {4, 4}};
@@ -142,7 +142,7 @@ struct Folded {
                               static_cast<std::int8_t>(m < 2 ? -1 : 1)};
             part.between.push_back({sides, {stack}});
         }
-        input.parts.push_back(std::move(part));
+        input.compartments.push_back(std::move(part));
     }
     std::vector<OwnedSurface> solids{strata::box({1.5, -2, -2}, {2.5, 9, 1}),
                                      strata::box({0.5, -3, -3}, {3, 10, 4})};
@@ -175,33 +175,34 @@ TEST(BuildParts, SolidsEndCellsWhereBlocksDiffer) {
 
 TEST(BuildParts, SolidsThatDoNotFitAreRefused) {
     Folded without(CellKind::kColumns);
-    without.input.parts[0].between[1].sides.pop_back();
+    without.input.compartments[0].between[1].sides.pop_back();
     EXPECT_EQ(refused(without.input).kind, "bad_part");
     Folded both(CellKind::kColumns);
-    both.input.parts[0].rocks = both.input.parts[0].between[0].rocks;
+    both.input.compartments[0].rocks = both.input.compartments[0].between[0].rocks;
     EXPECT_EQ(refused(both.input).kind, "bad_part");
     Folded unknown(CellKind::kColumns);
-    unknown.input.parts[0].solids[0].surface = 5;
+    unknown.input.compartments[0].solids[0].surface = 5;
     EXPECT_EQ(refused(unknown.input).kind, "bad_part");
     Folded open(CellKind::kColumns);
     open.solids[0].triangles.resize(open.solids[0].triangles.size() - 3);
-    open.input.parts[0].solids[0].boundary = open.solids[0].view();
+    open.input.compartments[0].solids[0].boundary = open.solids[0].view();
     EXPECT_EQ(refused(open.input).kind, "not_closed");
 }
 
 TEST(BuildParts, WhereARockMassIsNotThereNothingIs) {
     Faulted own({inclined(1, 0), inclined(3, 0)}, {{0, 1}, {0, 1}, {0, 1}}, {{}, {}, {}});
-    const auto parts = parts_of({{{0, 0, 0}, {4, 4, 1}}}, own.input.structures, {1, nullptr});
+    const auto parts =
+        compartments_of({{{0, 0, 0}, {4, 4, 1}}}, own.input.structures, {1, nullptr});
     ASSERT_EQ(parts.size(), 3U);  // the second is the one between the faults
     for (std::size_t p = 0; p < 3; ++p)
-        own.input.parts[p].sides = parts[p].sides;
+        own.input.compartments[p].sides = parts[p].sides;
     EXPECT_NEAR(built(own.input).complex.volumes[1], 16, 1e-12);
     own.stack(1) = {};
     const Joined beside = built(own.input);
     EXPECT_NEAR(beside.complex.volumes[1], 8, 1e-12);
-    EXPECT_EQ(std::ranges::count(beside.cell_part, 1), 0);
-    EXPECT_GT(std::ranges::count(beside.cell_part, 0), 0);
-    EXPECT_GT(std::ranges::count(beside.cell_part, 2), 0);
+    EXPECT_EQ(std::ranges::count(beside.cell_compartment, 1), 0);
+    EXPECT_GT(std::ranges::count(beside.cell_compartment, 0), 0);
+    EXPECT_GT(std::ranges::count(beside.cell_compartment, 2), 0);
     for (const std::size_t part : {0, 2})
         own.stack(part) = {};
     const Joined nothing = built(own.input);
@@ -255,18 +256,21 @@ TEST(BuildParts, StacksThatAreEmptiedBecomeBlocks) {
     own.stack(0).stack.emptied = {1};  // what was there is air: the upper two layers fill it
     const Joined all = built(own.input);
     EXPECT_EQ(all.complex.cell_kind, CellKind::kBlocks);
-    EXPECT_EQ(std::ranges::count(all.cell_part, 0), 1);  // surface 1 lies upon nothing there
-    EXPECT_EQ(std::ranges::count(all.cell_part, 1), 2);
+    EXPECT_EQ(std::ranges::count(all.cell_compartment, 0), 1);  // surface 1 lies upon nothing there
+    EXPECT_EQ(std::ranges::count(all.cell_compartment, 1), 2);
 }
 
 TEST(BuildParts, ColumnsWhereNothingIsWantedMayBeLeftOut) {
     Faulted own = one_fault();
     const Joined all = built(own.input);
     const std::vector<std::uint8_t> cells{1, 1, 0, 0};  // part 0 is where x > 1: nothing is wanted
-    own.input.parts[0].wanted = strata::WantedSpace{{0, 0, -9}, {1, 4, 18}, {4, 1, 1}, cells};
+    own.input.compartments[0].wanted =
+        strata::WantedSpace{{0, 0, -9}, {1, 4, 18}, {4, 1, 1}, cells};
     const Joined few = built(own.input);
-    EXPECT_LT(std::ranges::count(few.cell_part, 0), std::ranges::count(all.cell_part, 0));
-    EXPECT_EQ(std::ranges::count(few.cell_part, 1), std::ranges::count(all.cell_part, 1));
+    EXPECT_LT(std::ranges::count(few.cell_compartment, 0),
+              std::ranges::count(all.cell_compartment, 0));
+    EXPECT_EQ(std::ranges::count(few.cell_compartment, 1),
+              std::ranges::count(all.cell_compartment, 1));
 }
 
 TEST(BuildParts, WarningsOfSeveralPartsComeOnce) {
@@ -317,9 +321,9 @@ TEST(BuildParts, WhatIsRefusedIsNamedAsInTheWhole) {
 
 TEST(BuildParts, OverlappingRockMassesHaveTheirNumbers) {
     Faulted own = one_fault();
-    const PartStack rock = own.stack(1);
-    own.input.parts[0].rocks = {{}, {}, {}};
-    own.input.parts[1].rocks = {rock, {}, rock};
+    const CompartmentStack rock = own.stack(1);
+    own.input.compartments[0].rocks = {{}, {}, {}};
+    own.input.compartments[1].rocks = {rock, {}, rock};
     const InputError error = refused(own.input);
     EXPECT_EQ(error.kind, "rocks_overlap");
     EXPECT_EQ(error.items, (std::vector<std::int64_t>{0, 2}));
@@ -331,8 +335,8 @@ TEST(BuildParts, PartsThatDoNotFitTheRestAreRefused) {
     const std::vector<std::pair<std::int64_t, std::function<void(Faulted&)>>> cases{
         {-1, [&](Faulted& own) { own.input.acts = few; }},
         {-1, [](Faulted& own) { own.input.piece.emplace().continued.resize(2); }},
-        {1, [](Faulted& own) { own.input.parts[1].sides = {}; }},
-        {1, [](Faulted& own) { own.input.parts[1].rocks.emplace_back(); }},
+        {1, [](Faulted& own) { own.input.compartments[1].sides = {}; }},
+        {1, [](Faulted& own) { own.input.compartments[1].rocks.emplace_back(); }},
         {0, [](Faulted& own) { own.stack(0).surfaces.pop_back(); }},
         {0, [](Faulted& own) { own.stack(0).surfaces[1].number = 3; }},
         {0, [](Faulted& own) { own.stack(0).surfaces[1].number = -4; }},
@@ -360,11 +364,11 @@ TEST(BuildParts, PartsThatDoNotFitTheRestAreRefused) {
 TEST(BuildParts, CanBeWatchedAndCancelled) {
     const Faulted own = one_fault();
     Progress progress;
-    build_parts(own.input, {2, &progress});
+    build_compartments(own.input, {2, &progress});
     EXPECT_DOUBLE_EQ(progress.fraction(), 1);
     EXPECT_EQ(progress.text(), "joining the compartments");
     progress.cancel();
-    EXPECT_THROW(build_parts(own.input, {2, &progress}), Cancelled);
+    EXPECT_THROW(build_compartments(own.input, {2, &progress}), Cancelled);
 }
 
 }  // namespace

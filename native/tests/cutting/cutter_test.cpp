@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/cutter_surface.hpp"
+#include "cutting/cutter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace realmodel::cutting {
 namespace {
 
-double volume(const CutterSurface& surface) {
+double volume(const Cutter& surface) {
     const auto at = [&](std::int32_t v) { return surface.vertices[index(v)]; };
     double sixfold = 0;
     for (const auto& t : surface.triangles)
@@ -18,10 +18,10 @@ double volume(const CutterSurface& surface) {
     return sixfold / 6;
 }
 
-TEST(CutterSurface, ABlocksBoundaryTurnsOutward) {
+TEST(Cutter, ABlocksBoundaryTurnsOutward) {
     auto cubes = validation::two_cubes();
     for (const std::int32_t block : {0, 1}) {  // of the second, the face in common turns over
-        const CutterSurface surface = block_boundary(cubes.view(), block);
+        const Cutter surface = block_boundary(cubes.view(), block);
         EXPECT_TRUE(surface.is_closed);
         EXPECT_EQ(surface.triangles.size(), 12U);
         EXPECT_EQ(surface.vertices.size(), 8U);
@@ -30,15 +30,15 @@ TEST(CutterSurface, ABlocksBoundaryTurnsOutward) {
     EXPECT_THROW(block_boundary(cubes.view(), 2), InputError);
 }
 
-TEST(CutterSurface, WithinABlockThereIsNoBoundary) {
+TEST(Cutter, WithinABlockThereIsNoBoundary) {
     auto cubes = validation::two_cubes();
     cubes.block = {0, 0};
-    const CutterSurface surface = block_boundary(cubes.view(), 0);
+    const Cutter surface = block_boundary(cubes.view(), 0);
     EXPECT_EQ(surface.triangles.size(), 20U);
     EXPECT_DOUBLE_EQ(volume(surface), 2);
 }
 
-TEST(CutterSurface, AFaceThatIsNotConvexIsDividedWithinItself) {
+TEST(Cutter, AFaceThatIsNotConvexIsDividedWithinItself) {
     auto u = u_shape();
     std::vector<std::array<std::int32_t, 3>> triangles;
     triangulate_face(u.view(), 0, triangles);

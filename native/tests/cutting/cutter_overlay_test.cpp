@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/surface_overlay.hpp"
+#include "cutting/cutter_overlay.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,11 +36,11 @@ struct Overlaid {
 
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
-    CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, {1, nullptr}};
+    Cutter surface;
+    CutterOverlay overlay{model, surface, {1, nullptr}};
 };
 
-TEST(SurfaceOverlay, OnlyFacesNearTheSurfaceHaveRegions) {
+TEST(CutterOverlay, OnlyFacesNearTheSurfaceHaveRegions) {
     Overlaid cut(0.5);
     EXPECT_EQ(cut.overlay.active_faces(), (std::vector<std::int32_t>{3, 4, 5, 6}));
     EXPECT_TRUE(cut.overlay.is_active(6));
@@ -48,7 +48,7 @@ TEST(SurfaceOverlay, OnlyFacesNearTheSurfaceHaveRegions) {
     EXPECT_TRUE(Overlaid(5).overlay.active_faces().empty());
 }
 
-TEST(SurfaceOverlay, SurfaceAndWallsDivideOneAnother) {
+TEST(CutterOverlay, SurfaceAndWallsDivideOneAnother) {
     // it halves each wall, and has a region within and one around
     Overlaid cut(0.5);
     EXPECT_EQ(cut.overlay.size(), 4U * 2 + 2);
@@ -59,12 +59,12 @@ TEST(SurfaceOverlay, SurfaceAndWallsDivideOneAnother) {
         EXPECT_EQ(p[2], 0.5);
 }
 
-TEST(SurfaceOverlay, AFaceThatOneTrianglePassesIsInTwo) {
+TEST(CutterOverlay, AFaceThatOneTrianglePassesIsInTwo) {
     // the ends of a prism have eight corners; two of its sides are passed as well
     auto owned = prism({{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}});
     const ComplexView model = owned.view();
-    const CutterSurface surface = level_cutter(1.5);
-    SurfaceOverlay overlay(model, surface, {1, nullptr});
+    const Cutter surface = level_cutter(1.5);
+    CutterOverlay overlay(model, surface, {1, nullptr});
     std::map<std::size_t, std::size_t> corners;
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (overlay.of_cutter(r)) continue;
@@ -77,15 +77,15 @@ TEST(SurfaceOverlay, AFaceThatOneTrianglePassesIsInTwo) {
     EXPECT_EQ(overlay.new_positions().size(), 4U + 3);
 }
 
-TEST(SurfaceOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
+TEST(CutterOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
     // Each end of eight corners is a strip of two triangles, which the surface halves, and a
     // polygon on either side of it. A triangle that is there twice is more than faces in two are
     // made for.
     auto owned = prism({{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}});
     const ComplexView model = owned.view();
-    CutterSurface surface = level_cutter(1.5);
+    Cutter surface = level_cutter(1.5);
     surface.triangles.push_back(surface.triangles[0]);
-    SurfaceOverlay overlay(model, surface, {1, nullptr});
+    CutterOverlay overlay(model, surface, {1, nullptr});
     std::map<std::size_t, std::size_t> regions, polygons;
     std::map<std::array<NodeId, 2>, int> sum;
     const auto add = [&sum](std::span<const NodeId> loop) {
@@ -113,7 +113,7 @@ TEST(SurfaceOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
         EXPECT_EQ(uses, 0) << edge[0] << ' ' << edge[1];
 }
 
-TEST(SurfaceOverlay, AroundTheCubesTheSurfaceHasAHole) {
+TEST(CutterOverlay, AroundTheCubesTheSurfaceHasAHole) {
     Overlaid cut(0.5);
     std::size_t holes = 0;
     for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
@@ -126,7 +126,7 @@ TEST(SurfaceOverlay, AroundTheCubesTheSurfaceHasAHole) {
     EXPECT_EQ(holes, 1U);
 }
 
-TEST(SurfaceOverlay, VerticesOnTheSurfaceButForRoundingAreTakenToLieOnIt) {
+TEST(CutterOverlay, VerticesOnTheSurfaceButForRoundingAreTakenToLieOnIt) {
     for (const double height : {1.0, moved_by_ulps(1, 2), moved_by_ulps(1, -2)}) {
         Overlaid cut(height);
         EXPECT_TRUE(cut.on_cutter(4)) << height;
@@ -136,7 +136,7 @@ TEST(SurfaceOverlay, VerticesOnTheSurfaceButForRoundingAreTakenToLieOnIt) {
     EXPECT_FALSE(Overlaid(moved_by_ulps(1, 64)).on_cutter(4));
 }
 
-TEST(SurfaceOverlay, AlongAFaceItsTrianglesDivideTheSurface) {
+TEST(CutterOverlay, AlongAFaceItsTrianglesDivideTheSurface) {
     Overlaid cut(1);
     std::vector<NodeLoop> of_cutter, of_face;
     for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
@@ -153,7 +153,7 @@ TEST(SurfaceOverlay, AlongAFaceItsTrianglesDivideTheSurface) {
         EXPECT_EQ(std::ranges::count(of_cutter, region), 1);
 }
 
-TEST(SurfaceOverlay, AnInnerPointIsInItsRegionAndInNoHole) {
+TEST(CutterOverlay, AnInnerPointIsInItsRegionAndInNoHole) {
     for (const bool upward : {true, false}) {
         Overlaid cut(0.5, upward);
         int within = 0;
@@ -170,13 +170,13 @@ TEST(SurfaceOverlay, AnInnerPointIsInItsRegionAndInNoHole) {
     }
 }
 
-TEST(SurfaceOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
+TEST(CutterOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
     Overlaid cut(0.5);
     // around the cut of a wall: the wall above, the wall below, the surface on two sides
     std::vector<arrangement::EdgeUse> uses;
     for (std::size_t r = 0; r < cut.overlay.size(); ++r)
-        arrangement::each_edge(cut.overlay.loops(r), static_cast<std::int32_t>(r),
-                               [&](const arrangement::EdgeUse& use) { uses.push_back(use); });
+        arrangement::for_each_edge(cut.overlay.loops(r), static_cast<std::int32_t>(r),
+                                   [&](const arrangement::EdgeUse& use) { uses.push_back(use); });
     std::sort(uses.begin(), uses.end());
     std::size_t begin = 0;
     while (uses[begin].edge != uses[begin + 3].edge)
@@ -184,10 +184,11 @@ TEST(SurfaceOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
     std::vector<arrangement::HalfPlane> scratch;
     arrangement::EdgeFan fan;
     cut.overlay.find_fan(std::span(uses).subspan(begin, 4), scratch, fan);
-    ASSERT_EQ(fan.blades(), 4U);
+    ASSERT_EQ(fan.half_planes(), 4U);
     for (std::size_t b = 0; b < 4; ++b) {
-        const auto of_cutter = [&](std::size_t blade) {
-            return cut.overlay.of_cutter(index(uses[begin + fan.blade(blade % 4)[0]].item));
+        const auto of_cutter = [&](std::size_t half_plane) {
+            return cut.overlay.of_cutter(
+                index(uses[begin + fan.half_plane(half_plane % 4)[0]].item));
         };
         EXPECT_NE(of_cutter(b), of_cutter(b + 1));
     }

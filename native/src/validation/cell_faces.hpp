@@ -17,23 +17,23 @@ namespace realmodel::validation {
 
 /// A face seen from one of its cells: `face * 2 + side`. From the second cell its loop runs the
 /// other way.
-using Side = std::uint32_t;
-inline std::size_t face_of(Side side) {
-    return side >> 1;
+using OrientedFace = std::uint32_t;
+inline std::size_t face_of(OrientedFace oriented_face) {
+    return oriented_face >> 1;
 }
-inline bool is_reversed(Side side) {
-    return (side & 1) != 0;
+inline bool is_reversed(OrientedFace oriented_face) {
+    return (oriented_face & 1) != 0;
 }
 
-/// The sides of every cell, ascending.
-struct SidesByCell : Buckets<Side> {
-    SidesByCell(const ComplexView& model, const Execution& execution);
+/// The oriented faces of every cell, ascending.
+struct FacesByCell : Buckets<OrientedFace> {
+    FacesByCell(const ComplexView& model, const Execution& execution);
 };
 
 /// The box around a cell.
 class CellExtent {
 public:
-    CellExtent(const ComplexView& model, std::span<const Side> sides);
+    CellExtent(const ComplexView& model, std::span<const OrientedFace> oriented_faces);
 
     /// Whether the cell has no extent along an axis.
     bool is_flat() const;
@@ -125,12 +125,12 @@ private:
 };
 
 /// An edge of a cell that is not closed there, or none. One thread, one table for all its cells.
-std::optional<EdgeCount> open_edge(const ComplexView& model, std::span<const Side> sides,
-                                   EdgeTable& table);
+std::optional<EdgeCount> open_edge(const ComplexView& model,
+                                   std::span<const OrientedFace> oriented_faces, EdgeTable& table);
 
 /// The same of a cell of many faces, on several threads.
 std::optional<EdgeCount> open_edge_of_large_cell(const ComplexView& model,
-                                                 std::span<const Side> sides,
+                                                 std::span<const OrientedFace> oriented_faces,
                                                  const Execution& execution);
 
 }  // namespace realmodel::validation

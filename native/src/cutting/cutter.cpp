@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/cutter_surface.hpp"
+#include "cutting/cutter.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -18,13 +18,12 @@ using arrangement::EdgeUses;
 using spatial::Box;
 using spatial::BoxTree;
 
-std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
-    const auto& triangles = surface.triangles;
+std::vector<CutterBorderEdge> border_of(const Cutter& cutter) {
+    const auto& triangles = cutter.triangles;
     const auto corners = [&](std::size_t t) -> const auto& {
         return triangles[t];
     };
-    const auto edges =
-        arrangement::edges_of(triangles.size(), surface.vertices.size(), corners, {});
+    const auto edges = arrangement::edges_of(triangles.size(), cutter.vertices.size(), corners, {});
     std::vector<CutterBorderEdge> border;
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].size() % 2 == 0) continue;
@@ -37,16 +36,16 @@ std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
     return border;
 }
 
-Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge) {
-    const Position o = surface.vertices[index(edge.from)];
-    const Position along = minus(surface.vertices[index(edge.to)], o);
-    const Position inward = minus(surface.vertices[index(edge.corner)], o);
+Position away_from(const Cutter& cutter, const CutterBorderEdge& edge) {
+    const Position o = cutter.vertices[index(edge.from)];
+    const Position along = minus(cutter.vertices[index(edge.to)], o);
+    const Position inward = minus(cutter.vertices[index(edge.corner)], o);
     const double share = dot(inward, along) / dot(along, along);
     return unit(minus(times(share, along), inward));
 }
 
-CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
-    CutterSurface surface;
+Cutter block_boundary(const ComplexView& model, std::int32_t block) {
+    Cutter cutter;
     std::vector<NodeId> number(model.vertex_count(), -1);
     std::vector<std::array<std::int32_t, 3>> triangles;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
@@ -58,19 +57,19 @@ CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
             for (NodeId& v : t) {
                 NodeId& known = number[index(v)];
                 if (known < 0) {
-                    known = static_cast<NodeId>(surface.vertices.size());
-                    surface.vertices.push_back(model.vertex(v));
+                    known = static_cast<NodeId>(cutter.vertices.size());
+                    cutter.vertices.push_back(model.vertex(v));
                 }
                 v = known;
             }
             if (second) std::swap(t[1], t[2]);
-            surface.triangles.push_back(t);
+            cutter.triangles.push_back(t);
         }
     }
-    surface.is_closed = true;
-    if (surface.triangles.empty())
+    cutter.is_closed = true;
+    if (cutter.triangles.empty())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
-    return surface;
+    return cutter;
 }
 
 // A surface as a user gives it, made ready to cut: repeated triangles, borders that run along one
@@ -79,42 +78,42 @@ CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
 namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
-using Edge = std::array<NodeId, 2>;
+using NodeEdge = std::array<NodeId, 2>;
 
 /// Triangles of a surface, and the number that each had in the input.
-class SurfaceInput {
+class CutterInput {
 public:
-    explicit SurfaceInput(const TriangleView& input);
-    CutterSurface ready(bool with_seam) &&;
+    explicit CutterInput(const TriangleView& input);
+    Cutter ready(bool with_seam) &&;
 
 private:
-    Position at(NodeId v) const { return surface_.vertices[index(v)]; }
+    Position at(NodeId v) const { return cutter_.vertices[index(v)]; }
     /// A corner of a border that lies on a border edge, at a share of its length.
-    struct OnEdge {
-        Edge edge;
+    struct NodeOnEdge {
+        NodeEdge edge;
         double share;
         NodeId node;
-        auto operator<=>(const OnEdge&) const = default;
+        auto operator<=>(const NodeOnEdge&) const = default;
     };
 
     EdgeUses edges_of(const std::vector<Triangle>& triangles) const;
     bool are_closed(const std::vector<Triangle>& triangles) const;
     bool drop_repeated();
     void divide_borders();
-    void divide_triangle(std::size_t t, std::span<const OnEdge> on_edges);
+    void divide_triangle(std::size_t t, std::span<const NodeOnEdge> on_edges);
     bool runs(std::int32_t t, NodeId a, NodeId b) const;
     void reverse(std::int32_t t);
-    bool orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
+    bool orient_as_first(std::vector<std::int32_t>& component, std::vector<bool>& done,
                          const EdgeUses& edges);
     void orient_upward();
     Position beyond_tip(NodeId from, const CutterBorderEdge& next) const;
     void extend_border();
 
-    CutterSurface surface_;
+    Cutter cutter_;
     std::vector<std::int64_t> original_;
 };
 
-SurfaceInput::SurfaceInput(const TriangleView& input) {
+CutterInput::CutterInput(const TriangleView& input) {
     const std::int32_t count =
         checked_number(input.vertices.size() / 3, "vertices of the surface that is to cut");
     checked_number(input.triangles.size(), "corners of the surface that is to cut");
@@ -127,7 +126,7 @@ SurfaceInput::SurfaceInput(const TriangleView& input) {
             if (!std::isfinite(p[k]))
                 throw InputError("not_finite", "a vertex of the surface is not finite", -1, {v});
         }
-        surface_.vertices.push_back(p);
+        cutter_.vertices.push_back(p);
         const auto vertex =
             same.find_or_add(KeyTable::hash(std::bit_cast<std::array<std::uint64_t, 3>>(p)), v,
                              [&](NodeId other) { return at(other) == p; });
@@ -139,22 +138,22 @@ SurfaceInput::SurfaceInput(const TriangleView& input) {
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = first[index(input.triangles[t + i])];
         if (exact::in_one_line(at(corners[0]), at(corners[1]), at(corners[2]))) continue;
-        surface_.triangles.push_back(corners);
+        cutter_.triangles.push_back(corners);
         original_.push_back(static_cast<std::int64_t>(t / 3));
     }
-    if (surface_.triangles.empty())
+    if (cutter_.triangles.empty())
         throw InputError("no_triangles",
                          "the surface that is to cut has no triangles with an area");
 }
 
-EdgeUses SurfaceInput::edges_of(const std::vector<Triangle>& triangles) const {
-    return arrangement::edges_of(triangles.size(), surface_.vertices.size(),
+EdgeUses CutterInput::edges_of(const std::vector<Triangle>& triangles) const {
+    return arrangement::edges_of(triangles.size(), cutter_.vertices.size(),
                                  [&](std::size_t t) -> const Triangle& { return triangles[t]; },
                                  {1});
 }
 
 /// Whether some triangles have each edge an even number of times.
-bool SurfaceInput::are_closed(const std::vector<Triangle>& triangles) const {
+bool CutterInput::are_closed(const std::vector<Triangle>& triangles) const {
     const EdgeUses edges = edges_of(triangles);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].size() % 2 != 0) return false;
@@ -164,10 +163,10 @@ bool SurfaceInput::are_closed(const std::vector<Triangle>& triangles) const {
 
 /// Where leaving out pairs of equal triangles leaves a closed surface: does that, and true. Else
 /// leaves one of each.
-bool SurfaceInput::drop_repeated() {
+bool CutterInput::drop_repeated() {
     std::vector<std::pair<Triangle, std::size_t>> sorted;
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-        sorted.push_back({surface_.triangles[t], t});
+    for (std::size_t t = 0; t < cutter_.triangles.size(); ++t) {
+        sorted.push_back({cutter_.triangles[t], t});
         std::ranges::sort(sorted.back().first);
     }
     std::ranges::sort(sorted);
@@ -185,20 +184,20 @@ bool SurfaceInput::drop_repeated() {
     std::vector<Triangle> triangles;
     std::vector<std::int64_t> original;
     for (const std::size_t t : remaining) {
-        triangles.push_back(surface_.triangles[t]);
+        triangles.push_back(cutter_.triangles[t]);
         original.push_back(original_[t]);
     }
-    surface_.triangles = std::move(triangles);
+    cutter_.triangles = std::move(triangles);
     original_ = std::move(original);
     return closed;
 }
 
 /// Divides border edges at the corners of other borders that lie on them, or do but for rounding.
-void SurfaceInput::divide_borders() {
-    std::vector<Edge> edges;
+void CutterInput::divide_borders() {
+    std::vector<NodeEdge> edges;
     std::vector<Box> boxes;
     std::vector<NodeId> corners;
-    const EdgeUses uses = edges_of(surface_.triangles);
+    const EdgeUses uses = edges_of(cutter_.triangles);
     for (std::size_t e = 0; e < uses.size(); ++e) {
         if (uses[e].size() != 1) continue;
         edges.push_back(uses.ends(e));
@@ -207,14 +206,14 @@ void SurfaceInput::divide_borders() {
     }
     sort_unique(corners);
     const BoxTree tree(boxes);
-    std::vector<OnEdge> on_edges;
+    std::vector<NodeOnEdge> on_edges;
     for (const NodeId v : corners) {
         const Position p = at(v);
         const double tolerance = rounding_of(std::span(&p, 1));
         Box box{p, p};
         box.widen(tolerance);
         tree.find(box, [&](std::int32_t e) {
-            const Edge& edge = edges[index(e)];
+            const NodeEdge& edge = edges[index(e)];
             if (v == edge[0] || v == edge[1]) return;
             const Position a = at(edge[0]), line = minus(at(edge[1]), a), off = minus(p, a);
             const double share = dot(off, line) / dot(line, line);
@@ -227,13 +226,13 @@ void SurfaceInput::divide_borders() {
     }
     if (on_edges.empty()) return;
     std::ranges::sort(on_edges);
-    const std::size_t count = surface_.triangles.size();
+    const std::size_t count = cutter_.triangles.size();
     for (std::size_t t = 0; t < count; ++t)
         divide_triangle(t, on_edges);
 }
 
-void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edges) {
-    const Triangle corners = surface_.triangles[t];
+void CutterInput::divide_triangle(std::size_t t, std::span<const NodeOnEdge> on_edges) {
+    const Triangle corners = cutter_.triangles[t];
     const std::array positions{at(corners[0]), at(corners[1]), at(corners[2])};
     const View view(polygon_normal(positions));
     Loop loop;
@@ -242,7 +241,7 @@ void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edg
         loop.push_back({a, view(at(a))});
         const std::size_t begin = loop.size();
         const auto edge = unordered(a, b);
-        for (const OnEdge& on : items_with_key(on_edges, edge, &OnEdge::edge))
+        for (const NodeOnEdge& on : items_with_key(on_edges, edge, &NodeOnEdge::edge))
             loop.push_back({on.node, view(at(on.node))});
         if (a > b) std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
     }
@@ -251,48 +250,49 @@ void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edg
     triangulate(std::span(&loop, 1), view.rounding(positions), triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const auto& triangle = triangles[i];
-        const Triangle part{triangle[0].node, triangle[1].node, triangle[2].node};
+        const Triangle piece{triangle[0].node, triangle[1].node, triangle[2].node};
         if (i == 0) {
-            surface_.triangles[t] = part;
+            cutter_.triangles[t] = piece;
         } else {
-            surface_.triangles.push_back(part);
+            cutter_.triangles.push_back(piece);
             original_.push_back(original_[t]);
         }
     }
 }
 
 /// Whether a triangle's outline runs from a to b.
-bool SurfaceInput::runs(std::int32_t t, NodeId a, NodeId b) const {
-    const Triangle& c = surface_.triangles[index(t)];
+bool CutterInput::runs(std::int32_t t, NodeId a, NodeId b) const {
+    const Triangle& c = cutter_.triangles[index(t)];
     return (c[0] == a && c[1] == b) || (c[1] == a && c[2] == b) || (c[2] == a && c[0] == b);
 }
 
-void SurfaceInput::reverse(std::int32_t t) {
-    std::swap(surface_.triangles[index(t)][1], surface_.triangles[index(t)][2]);
+void CutterInput::reverse(std::int32_t t) {
+    std::swap(cutter_.triangles[index(t)][1], cutter_.triangles[index(t)][2]);
 }
 
 /// Gives all triangles that are connected with the first of a part its orientation, and adds them.
 /// @return whether the part is closed
-bool SurfaceInput::orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
-                                   const EdgeUses& edges) {
+bool CutterInput::orient_as_first(std::vector<std::int32_t>& component, std::vector<bool>& done,
+                                  const EdgeUses& edges) {
     bool closed = true;
-    for (std::size_t i = 0; i < part.size(); ++i) {
-        const Triangle corners = surface_.triangles[index(part[i])];
+    for (std::size_t i = 0; i < component.size(); ++i) {
+        const Triangle corners = cutter_.triangles[index(component[i])];
         for (std::size_t k = 0; k < 3; ++k) {
             const NodeId a = corners[k], b = corners[(k + 1) % 3];
             const auto uses = edges.between(unordered(a, b));
             closed = closed && uses.size() == 2;
             for (const arrangement::EdgeUse& use : uses) {
                 const std::int32_t other = use.item;
-                if (other == part[i]) continue;
+                if (other == component[i]) continue;
                 if (done[index(other)]) {
                     if (!runs(other, a, b)) continue;
                     throw InputError("one_sided", "the surface has no two sides", -1,
-                                     {original_[index(part[i])], original_[index(other)]}, at(a));
+                                     {original_[index(component[i])], original_[index(other)]},
+                                     at(a));
                 }
                 if (runs(other, a, b)) reverse(other);
                 done[index(other)] = true;
-                part.push_back(other);
+                component.push_back(other);
             }
         }
     }
@@ -300,38 +300,38 @@ bool SurfaceInput::orient_as_first(std::vector<std::int32_t>& part, std::vector<
 }
 
 /// Orients each connected part of an open surface: upward on the whole, outward if closed.
-void SurfaceInput::orient_upward() {
-    const EdgeUses edges = edges_of(surface_.triangles);
+void CutterInput::orient_upward() {
+    const EdgeUses edges = edges_of(cutter_.triangles);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].size() < 3) continue;
         const auto row = [&](std::size_t i) { return original_[index(edges[e][i].item)]; };
         throw InputError("branching", "more than two triangles of the surface share an edge", -1,
                          {row(0), row(1), row(2)}, at(edges.ends(e)[0]));
     }
-    std::vector<bool> done(surface_.triangles.size(), false);
+    std::vector<bool> done(cutter_.triangles.size(), false);
     for (std::int32_t start = 0; index(start) < done.size(); ++start) {
         if (done[index(start)]) continue;
-        std::vector<std::int32_t> part{start};
+        std::vector<std::int32_t> component{start};
         done[index(start)] = true;
-        const bool closed = orient_as_first(part, done, edges);
+        const bool closed = orient_as_first(component, done, edges);
         double upward = 0, volume = 0;
-        const Position origin = at(surface_.triangles[index(start)][0]);
-        for (const std::int32_t t : part) {
-            const Triangle& c = surface_.triangles[index(t)];
+        const Position origin = at(cutter_.triangles[index(start)][0]);
+        for (const std::int32_t t : component) {
+            const Triangle& c = cutter_.triangles[index(t)];
             const std::array corners{at(c[0]), at(c[1]), at(c[2])};
             const Position normal = polygon_normal(corners);
             upward += normal[2];
             volume += dot(normal, minus(corners[0], origin));
         }
         if ((closed ? volume : upward) >= 0) continue;
-        for (const std::int32_t t : part)
+        for (const std::int32_t t : component)
             reverse(t);
     }
 }
 
 /// Where the border turns back at a vertex, nearly into its own direction: the direction beyond it
 /// of a tip, 0 where it is a slit.
-Position SurfaceInput::beyond_tip(NodeId from, const CutterBorderEdge& next) const {
+Position CutterInput::beyond_tip(NodeId from, const CutterBorderEdge& next) const {
     const Position way = unit(minus(at(next.from), at(from))),
                    next_way = unit(minus(at(next.to), at(next.from)));
     const Position inward = minus(at(next.corner), at(next.from));
@@ -342,13 +342,13 @@ Position SurfaceInput::beyond_tip(NodeId from, const CutterBorderEdge& next) con
 
 /// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
 /// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
-void SurfaceInput::extend_border() {
-    const std::vector<CutterBorderEdge> border = border_of(surface_);
-    const double width = 256 * rounding_of(surface_.vertices);
-    std::vector<Position> outward(surface_.vertices.size(), Position{0, 0, 0});
+void CutterInput::extend_border() {
+    const std::vector<CutterBorderEdge> border = border_of(cutter_);
+    const double width = 256 * rounding_of(cutter_.vertices);
+    std::vector<Position> outward(cutter_.vertices.size(), Position{0, 0, 0});
     std::vector<std::vector<NodeId>> before(outward.size());  // along the border
     for (const CutterBorderEdge& edge : border) {
-        const Position away = away_from(surface_, edge);
+        const Position away = away_from(cutter_, edge);
         for (const NodeId v : {edge.from, edge.to})
             outward[index(v)] = plus(outward[index(v)], away);
         before[index(edge.to)].push_back(edge.from);
@@ -362,36 +362,36 @@ void SurfaceInput::extend_border() {
     for (std::size_t v = 0; v < outward.size(); ++v) {
         const double size = length(outward[v]);
         if (size == 0) continue;
-        Position p = surface_.vertices[v];
+        Position p = cutter_.vertices[v];
         for (std::size_t k = 0; k < 3; ++k)
             p[k] += width * outward[v][k] / size;
-        beyond[v] = static_cast<NodeId>(surface_.vertices.size());
-        surface_.vertices.push_back(p);
+        beyond[v] = static_cast<NodeId>(cutter_.vertices.size());
+        cutter_.vertices.push_back(p);
     }
     for (const auto& [a, b, c] : border) {
         const NodeId at_a = beyond[index(a)], at_b = beyond[index(b)];
-        if (at_a >= 0) surface_.triangles.push_back({b, a, at_a});
-        if (at_b >= 0) surface_.triangles.push_back({b, at_a < 0 ? a : at_a, at_b});
+        if (at_a >= 0) cutter_.triangles.push_back({b, a, at_a});
+        if (at_b >= 0) cutter_.triangles.push_back({b, at_a < 0 ? a : at_a, at_b});
     }
 }
 
-CutterSurface SurfaceInput::ready(bool with_seam) && {
-    surface_.is_closed = drop_repeated();
-    if (!surface_.is_closed) {
+Cutter CutterInput::ready(bool with_seam) && {
+    cutter_.is_closed = drop_repeated();
+    if (!cutter_.is_closed) {
         divide_borders();
-        surface_.is_closed = drop_repeated();
+        cutter_.is_closed = drop_repeated();
     }
-    if (!surface_.is_closed) {
+    if (!cutter_.is_closed) {
         orient_upward();
         if (with_seam) extend_border();
     }
-    return std::move(surface_);
+    return std::move(cutter_);
 }
 
 }  // namespace
 
-CutterSurface oriented_surface(const TriangleView& surface, bool with_seam) {
-    return SurfaceInput(surface).ready(with_seam);
+Cutter oriented_cutter(const TriangleView& cutter, bool with_seam) {
+    return CutterInput(cutter).ready(with_seam);
 }
 
 }  // namespace realmodel::cutting
