@@ -12,7 +12,8 @@ namespace realmodel::exact {
 namespace {
 
 int side_by_filter(LocalArrangement& scope, const DirectedEdge& edge, PointId point) {
-    return side_of(scope, reach_filter(scope, edge), edge.line, point);
+    return side_of(scope, reach_filter(scope, edge), edge.line, point,
+                   position_in_reach(scope, point));
 }
 
 /// Twelve points on, above and below the diagonal from the origin, some of them by a unit in the

@@ -29,7 +29,7 @@ inline int TilingWalk::side(TilingEdge edge, PointId id) {
     const Corner &from = at[edge.corner], &to = at[after(edge.corner)];
     const auto filter = exact::reach_filter_between(shared.reach(), shared.point(from.point),
                                                     shared.point(to.point));
-    return side_of(scope_, filter, from.line, id);
+    return side_of(scope_, filter, from.line, id, exact::position_in_reach(scope_, id));
 }
 
 /// Walks along an edge from triangle t, which has its first point; false where something coincides
@@ -39,7 +39,8 @@ bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
     if (t == goal) return true;
     const exact::ReachFilter line = exact::reach_filter(scope_, edge);
     const auto side_of_corner = [&](std::uint32_t corner) {
-        return side_of(scope_, line, edge.line, triangle(t)[corner].point);
+        const PointId id = triangle(t)[corner].point;
+        return side_of(scope_, line, edge.line, id, exact::position_in_reach(scope_, id));
     };
     // it goes out where the corners pass from its right to its left
     const std::array sides{side_of_corner(0), side_of_corner(1), side_of_corner(2)};

@@ -23,19 +23,28 @@ void Clipper::begin(PolygonView subject) {
     filters_.clear();
     for (std::size_t i = 0; i < subject.size(); ++i)
         filters_.push_back(filter_of(subject, i));
+    find_positions(subject, subject_positions_);
+}
+
+void Clipper::find_positions(PolygonView polygon, std::vector<exact::Point>& positions) const {
+    positions.clear();
+    for (const Corner& corner : polygon)
+        positions.push_back(exact::position_in_reach(scope_, corner.point));
 }
 
 /// Whether some corner of a polygon lies to the left of each edge of another one; two polygons
 /// share an area where that is so both ways.
 template <class FilterOf>
-bool Clipper::reaches_inside(PolygonView polygon, PolygonView window,
-                             const FilterOf& filter_of_edge, SidesOfCorners& sides) {
+bool Clipper::reaches_inside(PolygonView polygon, const std::vector<exact::Point>& positions,
+                             PolygonView window, const FilterOf& filter_of_edge,
+                             SidesOfCorners& sides) {
     sides.clear();
     for (std::size_t j = 0; j < window.size(); ++j) {
-        const exact::ReachFilter filter = filter_of_edge(j);
+        const exact::ReachFilter& filter = filter_of_edge(j);
         bool any_left = false;
-        for (const Corner& corner : polygon) {
-            const int side = exact::side_of(scope_, filter, window[j].line, corner.point);
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const int side =
+                exact::side_of(scope_, filter, window[j].line, polygon[i].point, positions[i]);
             any_left |= side > 0;
             sides.push_back(static_cast<std::int8_t>(side));
         }
@@ -45,11 +54,14 @@ bool Clipper::reaches_inside(PolygonView polygon, PolygonView window,
 }
 
 bool Clipper::overlaps(PolygonView window) {
+    find_positions(window, window_positions_);
     return reaches_inside(
-               window, subject_, [&](std::size_t i) { return filters_[i]; }, window_sides_) &&
+               window, window_positions_,
+               subject_, [&](std::size_t i) -> const auto& { return filters_[i]; },
+               window_sides_) &&
            reaches_inside(
-               subject_, window, [&](std::size_t j) { return filter_of(window, j); },
-               subject_sides_);
+               subject_, subject_positions_, window,
+               [&](std::size_t j) { return filter_of(window, j); }, subject_sides_);
 }
 
 PolygonView Clipper::intersect(PolygonView window) {

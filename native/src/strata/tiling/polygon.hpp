@@ -92,9 +92,10 @@ private:
     exact::ReachFilter filter_of(PolygonView polygon, std::size_t edge) const {
         return exact::reach_filter(scope_, edge_of(polygon, edge));
     }
+    void find_positions(PolygonView polygon, std::vector<exact::Point>& positions) const;
     template <class FilterOf>
-    bool reaches_inside(PolygonView polygon, PolygonView window, const FilterOf& filter_of_edge,
-                        SidesOfCorners& sides);
+    bool reaches_inside(PolygonView polygon, const std::vector<exact::Point>& positions,
+                        PolygonView window, const FilterOf& filter_of_edge, SidesOfCorners& sides);
     void follow(PolygonView window);
     void cut_by_lines(PolygonView window);
     void rotate(PolygonView window);
@@ -102,6 +103,7 @@ private:
     LocalArrangement& scope_;
     PolygonView subject_;
     std::vector<exact::ReachFilter> filters_;  ///< of its edges
+    std::vector<exact::Point> subject_positions_, window_positions_;
     SidesOfCorners subject_sides_,
         window_sides_;      ///< of the corners, for each line of the other polygon
     SidesOfCorners sides_;  ///< of what is left
