@@ -15,7 +15,8 @@ from bpy.props import (
 from . import props_series, props_surface
 from .bl import changes
 from .bl.project import plan_mesh, settings
-from .core.settings.schema import ROCK, SIZE
+from .core.project.project import ROCK
+from .core.settings.mesh_sizes import SIZE
 from .props_schema import settings_of
 
 _AT = (

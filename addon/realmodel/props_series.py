@@ -6,7 +6,7 @@ from bpy.props import StringProperty
 
 from .bl import changes
 from .bl.project import choices, series_settings, settings
-from .core.settings.schema import SERIES
+from .core.project.series import SERIES
 from .props_schema import settings_of
 
 

@@ -6,8 +6,9 @@ from bpy.props import CollectionProperty, EnumProperty, PointerProperty, StringP
 
 from .bl import changes
 from .bl.project import choices, settings
+from .core.project.structure_entries import BODY, FAULT
 from .core.readers.meshes.mesh_file import MESH_FORMATS
-from .core.settings.schema import BODY, FAULT, READING
+from .core.settings.point_file import READING
 from .props_schema import settings_of
 from .props_surface import RealModelFilter, interface_properties
 

@@ -6,9 +6,10 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerPro
 
 from .bl import changes
 from .bl.project import choices, settings
+from .core.project.project import SURFACE
 from .core.readers.meshes.mesh_file import MESH_FORMATS
 from .core.settings.methods import STRUCTURE
-from .core.settings.schema import READING, SURFACE
+from .core.settings.point_file import READING
 from .props_schema import settings_of
 
 SOURCES = (

@@ -14,9 +14,9 @@ from realmodel.bl.display import shown_models
 from realmodel.bl.project import method_settings, region_size, results, surface_statistics
 from realmodel.core import load_library, load_project
 from realmodel.core.exporters import FORMATS
+from realmodel.core.project.project import ROCK, SURFACE
 from realmodel.core.project.project_writer import off_text, points_text
 from realmodel.core.settings.methods import METHODS, NEIGHBOURS_OF_FITTED
-from realmodel.core.settings.schema import ROCK, SURFACE
 
 POINTS = np.array([(x, y, 5.0 + 0.05 * x) for x in range(0, 101, 25) for y in range(0, 101, 25)], float)
 SQUARE = [(0, 0), (100, 0), (100, 100), (0, 100)]

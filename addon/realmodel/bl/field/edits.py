@@ -7,7 +7,14 @@ import numpy as np
 
 from ...core import InputRefused
 from ..objects import stored_arrays
-from ..project import borehole_picks, observed_blocks, reading_text, series_settings, settings, surface_dips
+from ..project import (
+    borehole_picks,
+    method_settings,
+    observed_blocks,
+    series_settings,
+    settings,
+    surface_dips,
+)
 from ..scene import borehole_points
 from . import data
 
@@ -116,7 +123,7 @@ def _keep_points(row, points, stays_of_file=False):
         row.stored = stored_arrays.pack(**arrays)
         if row.filepath and not stays_of_file:
             row.source, row.filepath, row.stored_stamp = "POINTS_FILE", "", ""
-            reading_text.fill(row, {})
+            method_settings.fill_reading(row)
 
 
 def _switched(observations, first, used):

@@ -6,13 +6,14 @@ import re
 from pathlib import Path
 
 from ...core.base.errors import number_list
-from ...core.settings.schema import BODY, FAULT, ROCK, SERIES, SURFACE
+from ...core.project.project import ROCK, SURFACE
+from ...core.project.series import SERIES
+from ...core.project.structure_entries import BODY, FAULT
 from ...core.settings.variogram import RANGE_BEYOND
 
 # By the keys of project files: settings that the panel shows, and the labels of those of several parts.
 _SETTINGS = {key: setting for each in (SERIES, BODY, FAULT, ROCK, SURFACE) for key, setting in each.items()}
 _LABELS = {key: setting.label for key, setting in _SETTINGS.items() if setting.label}
-_LABELS |= {"columns": "Columns", "where": "Filters", "ends_at": "Ends At", "rocks": "Rock Masses"}
 _KEY = "|".join(sorted(_LABELS, key=len, reverse=True))
 _GIVEN = re.compile(
     rf"(?:\b(?:say|write|give|set) )?\b({_KEY})"

@@ -5,9 +5,9 @@ import numpy as np
 
 from ...core import Dips, InputRefused, Rock, Series, SpaceDips, Surface
 from ...core.base.errors import naming
+from ...core.project.project import ROCK
 from ...core.project.series_checks import check_level_set, check_series
-from ...core.settings.schema import ROCK, SERIES
-from ...core.settings.series import AUTO, FIELD
+from ...core.settings.series import FIELD
 from ..objects import stored_arrays
 from . import method_settings, settings
 
@@ -20,10 +20,7 @@ def fill(rock, series):
     rock.active_series = 0
     for each in series:
         row = rock.series.add()
-        resolution = None if each.resolution == AUTO else each.resolution
-        method_settings.set_value(row, "resolution", SERIES, resolution)
-        for key in ("name", "kind", "thickness"):
-            method_settings.set_value(row, key, SERIES, getattr(each, key))
+        method_settings.set_values(row, Series, each)
         keep_dips(row, each.dips)
 
 
@@ -33,12 +30,9 @@ def of_rock(rock):
 
 
 def _series(row):
-    given = {}  # what sheets do not have is kept, but has no effect
-    if row.kind == FIELD:
-        values = {key: method_settings.value(row, key, SERIES) for key in ("resolution", "thickness")}
-        given = {key: value for key, value in values.items() if value is not None}
+    values = method_settings.values(row, Series, row.kind)  # what sheets do not have is kept
     with naming(f"series '{row.name}'"):
-        return Series(row.name, row.kind, dips_of(row), **given)
+        return Series(**values, dips=dips_of(row))
 
 
 def keep_dips(row, dips):

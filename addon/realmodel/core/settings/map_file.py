@@ -5,12 +5,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass
 from pathlib import Path
+from typing import Any
 
-from .map_layer import MapLayer
-from .method_options import OptionRefused
-from .point_file import MeshFile, PointFile
+from .map_layer import LAYER, UNIT, WHERE, MapLayer
+from .method_options import OptionRefused, check_fields
+from .point_file import FILE, MeshFile, PointFile
+from .setting import Setting, declared
+
+
+def _check_attribute(key: str, name: Any) -> None:
+    if not (isinstance(name, str) and name.strip()):
+        what = f"'{key}' must name an attribute, not {name!r}"
+        raise OptionRefused(what, key, f'write {key} = "FORMATION"')
+
+
+def _check_accuracy(key: str, accuracy: Any) -> None:
+    if accuracy is not None and not 0 <= accuracy < math.inf:
+        advice = "give how far its lines may be off, or 0 where they are exact"
+        raise OptionRefused(f"'{key}' must be 0 or more, not {accuracy!r}", key, advice)
 
 
 @dataclass(frozen=True)
@@ -25,14 +39,14 @@ class MapFile:
     two-hundredth of the diagonal of the region, but contacts are off by a tenth of the relief at most.
     """
 
-    file: str | Path
-    block: str
-    layer: str | None = None
-    where: Mapping = field(default_factory=dict)
-    units: str | None = None
-    ground: str | Path | PointFile | MeshFile | None = None
-    faults: str | Path | MapLayer | None = None
-    accuracy: float | None = None
+    file: str | Path = declared(FILE, default=MISSING)
+    block: str = declared(Setting(kind="line", check=_check_attribute), default=MISSING)
+    layer: str | None = declared(LAYER)
+    where: Mapping = declared(WHERE, default_factory=dict)
+    units: str | None = declared(UNIT)
+    ground: str | Path | PointFile | MeshFile | None = declared(Setting(kind="ground"))
+    faults: str | Path | MapLayer | None = declared(Setting(kind="layer_file", of=MapLayer))
+    accuracy: float | None = declared(Setting(kind="finite", check=_check_accuracy))
 
     @property
     def polygons(self) -> MapLayer:
@@ -41,12 +55,6 @@ class MapFile:
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if not (isinstance(self.block, str) and self.block.strip()):
-            advice = 'write block = "FORMATION"'
-            raise OptionRefused(f"'block' must name an attribute, not {self.block!r}", "block", advice)
-        if self.accuracy is not None and not 0 <= self.accuracy < math.inf:
-            advice = "give how far its lines may be off, or 0 where they are exact"
-            raise OptionRefused(f"'accuracy' must be 0 or more, not {self.accuracy!r}", "accuracy", advice)
-        self.polygons.check()
+        check_fields(self)
         if isinstance(self.ground, (PointFile, MeshFile)):
             self.ground.check()
