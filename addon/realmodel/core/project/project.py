@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import builtins
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.rules import DEFAULT_RULE, RULES
 from ..settings.series import FIELD
-from ..settings.setting import Setting, declared, settings_of
+from ..settings.setting import declared, described, settings_of
 from .entry import Compared, Entry
 from .library import Library
 from .plan_input import files_of_sizes, layer_files, map_layer
@@ -90,115 +90,93 @@ class Surface(Shaped):
     """
 
     kind = "surface"
-    name: str = declared(Setting(kind="name", label="Name", tip="Name of the surface"), default=MISSING)
+    name: str = declared(kind="name", label="Name", tip="Name of the surface", is_needed=True)
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
-    points: np.ndarray | str | Path | PointFile | None = declared(POINTS)
+    points: np.ndarray | str | Path | PointFile | None = described(POINTS)
     method: str | None = declared(
-        Setting(
-            DEFAULT_METHOD,
-            kind="method",
-            label="Method",
-            tip="How elevations are interpolated from the points",
-            words=_labels(METHODS),
-            shapes=OF_SHEETS,
-        ),
-        default=None,
+        DEFAULT_METHOD,
+        kind="method",
+        label="Method",
+        tip="How elevations are interpolated from the points",
+        words=_labels(METHODS),
+        shapes=OF_SHEETS,
+        absent=None,
     )
     options: dict = declared(
-        Setting(  # those of a new row are those of a surface that names no method
-            kind="options",
-            shapes=OF_SHEETS,
-            parts=OPTIONS
-            | {key: replace(OPTIONS[key], default=word) for key, word in DEFAULT_OPTIONS.items()},
-        ),
-        default_factory=dict,
+        kind="options",
+        shapes=OF_SHEETS,
+        parts=OPTIONS | {key: replace(OPTIONS[key], default=word) for key, word in DEFAULT_OPTIONS.items()},
+        factory=dict,
     )
     rule: str = declared(
-        Setting(
-            DEFAULT_RULE,
-            kind="word",
-            label="Rule",
-            tip="What the surface does to the rock that was there before",
-            words=_labels(RULES),
-            more="See [Rules](#rules)",
-        )
+        DEFAULT_RULE,
+        kind="word",
+        label="Rule",
+        tip="What the surface does to the rock that was there before",
+        words=_labels(RULES),
+        more="See [Rules](#rules)",
     )
-    property: int = declared(library_id("deposited beneath this surface"))
+    property: int = described(library_id("deposited beneath this surface"))
     block: str | None = declared(
-        Setting(
-            kind="text",
-            label="Block",
-            tip='Name of the block beneath this surface; empty: the name of the surface and "block"',
-            more='The block on the base is "base block"',
-        )
+        kind="text",
+        label="Block",
+        tip='Name of the block beneath this surface; empty: the name of the surface and "block"',
+        more='The block on the base is "base block"',
     )
-    mesh: str | Path | MeshFile | None = declared(MESH)
-    dips: Dips | DipFile | str | Path | None = declared(replace(DIPS, shapes=OF_SHEETS))
-    left_out: np.ndarray | Sequence | None = declared(Setting(kind="places", shapes=OF_POINTS))
+    mesh: str | Path | MeshFile | None = described(MESH)
+    dips: Dips | DipFile | str | Path | None = described(replace(DIPS, shapes=OF_SHEETS))
+    left_out: np.ndarray | Sequence | None = declared(kind="places", shapes=OF_POINTS)
     series: str | None = declared(
-        Setting(
-            kind="series",
-            label="Series",
-            tip="Name of the series that the surface belongs to; empty: none",
-            more="See [Series](#series)",
-        )
+        kind="series",
+        label="Series",
+        tip="Name of the series that the surface belongs to; empty: none",
+        more="See [Series](#series)",
     )
     minimum_thickness: float | None = declared(
-        Setting(
-            kind="length",
-            label="Minimum Thickness",
-            tip="Minimum distance above the next older surface",
-            low=0.0,
-            more="For interpolated surfaces; points that contradict it are listed",
-            switch=("Thickness ≥", "Keep the surface at least this far above the next older one"),
-            shapes=OF_SHEETS,
-        )
+        kind="length",
+        label="Minimum Thickness",
+        tip="Minimum distance above the next older surface",
+        low=0.0,
+        more="For interpolated surfaces; points that contradict it are listed",
+        switch=("Thickness ≥", "Keep the surface at least this far above the next older one"),
+        shapes=OF_SHEETS,
     )
     true_thickness: bool = declared(
-        Setting(
-            False,
-            kind="truth",
-            label="True Thickness",
-            tip="Measure the minimum thickness, and the thickness of a parallel surface, perpendicular to "
-            "the other surface, not vertically",
-            more="Default `false`; see [true thickness](methods.md#true-thickness)",
-            shapes=OF_SHEETS,
-        )
+        False,
+        kind="truth",
+        label="True Thickness",
+        tip="Measure the minimum thickness, and the thickness of a parallel surface, perpendicular to "
+        "the other surface, not vertically",
+        more="Default `false`; see [true thickness](methods.md#true-thickness)",
+        shapes=OF_SHEETS,
     )
     tie: bool = declared(
-        Setting(
-            True,
-            kind="truth",
-            label="Tie",
-            tip="The surface passes through all its points, also within the triangles of the planar mesh",
-            more="Default `true`, for interpolated surfaces; see [ties](methods.md#ties). `false` leaves the "
-            "elevations as the method interpolates them",
-            shapes=OF_POINTS,
-        )
+        True,
+        kind="truth",
+        label="Tie",
+        tip="The surface passes through all its points, also within the triangles of the planar mesh",
+        more="Default `true`, for interpolated surfaces; see [ties](methods.md#ties). `false` leaves the "
+        "elevations as the method interpolates them",
+        shapes=OF_POINTS,
     )
     observed: bool = declared(
-        Setting(
-            False,
-            kind="truth",
-            label="Observed",
-            tip="The points were seen in the rock: no younger surface cuts below them",
-            more="Default `false`; picks of boreholes and points of a [series](#series) always are. See "
-            "[observed contacts](#observed-contacts)",
-            shapes=OF_POINTS,
-        )
+        False,
+        kind="truth",
+        label="Observed",
+        tip="The points were seen in the rock: no younger surface cuts below them",
+        more="Default `false`; picks of boreholes and points of a [series](#series) always are. See "
+        "[observed contacts](#observed-contacts)",
+        shapes=OF_POINTS,
     )
     correlation: float | None = declared(
-        Setting(
-            label="Correlation",
-            tip="Correlation of the errors of its elevations with those of the next older surface, in "
-            "ensembles",
-            low=-1.0,
-            high=1.0,
-            more="-1 to 1, for interpolated surfaces; see [ensembles](../ensembles.md)",
-            switch=("Correlation", "In ensembles, draw its elevations with those of the next older surface"),
-            shapes=OF_SHEETS,
-        )
+        label="Correlation",
+        tip="Correlation of the errors of its elevations with those of the next older surface, in ensembles",
+        low=-1.0,
+        high=1.0,
+        more="-1 to 1, for interpolated surfaces; see [ensembles](../ensembles.md)",
+        switch=("Correlation", "In ensembles, draw its elevations with those of the next older surface"),
+        shapes=OF_SHEETS,
     )
     rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
@@ -350,80 +328,66 @@ class Rock(Entry):
     """
 
     kind = "rock"
-    name: str = declared(Setting(kind="name", label="Name", tip="Name of the rock mass"), default=MISSING)
-    surfaces: list[Surface] = declared(Setting(kind="tables", key="surface", of=Surface), default=MISSING)
-    region: np.ndarray | Sequence | str | Path | MapLayer | None = declared(
-        Setting(kind="region", of=MapLayer)
-    )
-    holes: Sequence = declared(Setting((), kind="rings"))
+    name: str = declared(kind="name", label="Name", tip="Name of the rock mass", is_needed=True)
+    surfaces: list[Surface] = declared(kind="tables", key="surface", of=Surface, is_needed=True)
+    region: np.ndarray | Sequence | str | Path | MapLayer | None = declared(kind="region", of=MapLayer)
+    holes: Sequence = declared((), kind="rings")
     edge_length: float | str | None = declared(
-        Setting(
-            kind="length",
-            label="Edge Length",
-            tip="Edge length of the triangles on which surfaces are interpolated. Half the length gives four "
-            "times as many triangles",
-            low=0.0,
-            check=without(edge_length_fault),
-            zero_is_none=True,
-            needed="if a surface has `points`, unless `triangles` is given",
-            more="Where points lie much closer together than it is long, they become [nodes "
-            'themselves](methods.md#ties). `"auto"`: half the spacing of the points of the surfaces, '
-            "where they lie",
-        )
+        kind="length",
+        label="Edge Length",
+        tip="Edge length of the triangles on which surfaces are interpolated. Half the length gives four "
+        "times as many triangles",
+        low=0.0,
+        check=without(edge_length_fault),
+        zero_is_none=True,
+        needed="if a surface has `points`, unless `triangles` is given",
+        more="Where points lie much closer together than it is long, they become [nodes "
+        'themselves](methods.md#ties). `"auto"`: half the spacing of the points of the surfaces, '
+        "where they lie",
     )
     triangles: int | None = declared(
-        Setting(
-            kind="whole",
-            label="Triangles",
-            tip="Number of triangles of the planar mesh, within 5 %",
-            start=10_000,
-            low=1,
-            check=without(triangles_fault),
-            more='Instead of `edge_length`; with `edge_length = "auto"` it scales the point spacing',
-            switch=(
-                "Scale to Triangles",
-                "Scale the point spacing so that the mesh has a number of triangles",
-            ),
-        )
+        kind="whole",
+        label="Triangles",
+        tip="Number of triangles of the planar mesh, within 5 %",
+        start=10_000,
+        low=1,
+        check=without(triangles_fault),
+        more='Instead of `edge_length`; with `edge_length = "auto"` it scales the point spacing',
+        switch=(
+            "Scale to Triangles",
+            "Scale the point spacing so that the mesh has a number of triangles",
+        ),
     )
     mesher: str = declared(
-        Setting(
-            DEFAULT_MESHER,
-            kind="word",
-            label="Mesher",
-            tip="Algorithm that divides the region into triangles",
-            words=_labels(MESHERS),
-            more="See [meshing](../dev/meshing.md)",
-        )
+        DEFAULT_MESHER,
+        kind="word",
+        label="Mesher",
+        tip="Algorithm that divides the region into triangles",
+        words=_labels(MESHERS),
+        more="See [meshing](../dev/meshing.md)",
     )
-    size: Sequence[Mapping] = declared(Setting((), kind="sizes", of=MapLayer))
+    size: Sequence[Mapping] = declared((), kind="sizes", of=MapLayer)
     base_elevation: float | None = declared(
-        Setting(
-            kind="length",
-            label="Base Elevation",
-            tip="Elevation of the flat base of the oldest block; surfaces that reach below are cut off there",
-            more="It adds a block beneath the oldest surface; see [Base](#base)",
-            switch=("Base", "Add a block between the oldest surface and the base elevation"),
-            switch_name="use_base",
-        )
+        kind="length",
+        label="Base Elevation",
+        tip="Elevation of the flat base of the oldest block; surfaces that reach below are cut off there",
+        more="It adds a block beneath the oldest surface; see [Base](#base)",
+        switch=("Base", "Add a block between the oldest surface and the base elevation"),
+        switch_name="use_base",
     )
-    constraints: Sequence = declared(Setting((), kind="constraints", of=MapLayer))
+    constraints: Sequence = declared((), kind="constraints", of=MapLayer)
     boreholes: Boreholes | None = declared(
-        Setting(
-            kind="table_file",
-            of=Boreholes,
-            example='{ collars = "collars.csv", picks = "picks.csv" }',
-        )
+        kind="table_file", of=Boreholes, example='{ collars = "collars.csv", picks = "picks.csv" }'
     )
     observations: str | Path | ObservationFile | Observations | None = declared(
-        Setting(kind="table_file", of=ObservationFile, example='"outcrops.csv"')
+        kind="table_file", of=ObservationFile, example='"outcrops.csv"'
     )
-    dips: Dips | DipFile | str | Path | None = declared(DIPS)
-    names: Mapping[str, str] = declared(Setting(kind="meanings"), default_factory=dict)
+    dips: Dips | DipFile | str | Path | None = described(DIPS)
+    names: Mapping[str, str] = declared(kind="meanings", factory=dict)
     map: MapFile | None = declared(
-        Setting(kind="table_file", of=MapFile, example='{ file = "geology.gpkg", block = "UNIT" }')
+        kind="table_file", of=MapFile, example='{ file = "geology.gpkg", block = "UNIT" }'
     )
-    series: list[Series] = declared(Setting(kind="tables", of=Series), default_factory=list)
+    series: list[Series] = declared(kind="tables", of=Series, factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     hole_ends: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
@@ -552,22 +516,20 @@ class Project(Compared):
     for it name.
     """
 
-    name: str = declared(Setting(kind="name"), default=MISSING)
-    rocks: list[Rock] = declared(Setting(kind="tables", key="rock", of=Rock), default=MISSING)
-    library: Library | None = declared(Setting(kind="library"))
+    name: str = declared(kind="name", is_needed=True)
+    rocks: list[Rock] = declared(kind="tables", key="rock", of=Rock, is_needed=True)
+    library: Library | None = declared(kind="library")
     path: Path | None = None
-    units: str = declared(Setting(MODEL_UNIT, kind="line", check=_checked_unit))
-    faults: list[Fault] = declared(Setting(kind="tables", key="fault", of=Fault), default_factory=list)
-    bodies: list[Body] = declared(Setting(kind="tables", key="body", of=Body), default_factory=list)
+    units: str = declared(MODEL_UNIT, kind="line", check=_checked_unit)
+    faults: list[Fault] = declared(kind="tables", key="fault", of=Fault, factory=list)
+    bodies: list[Body] = declared(kind="tables", key="body", of=Body, factory=list)
     crs: str | None = declared(
-        Setting(
-            kind="text",
-            label="CRS",
-            tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
-            check=checked_crs,
-            more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 "
-            "and OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
-        )
+        kind="text",
+        label="CRS",
+        tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
+        check=checked_crs,
+        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 "
+        "and OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
     )
 
     def input_files(self) -> list[Path]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..base.stored_objects import NOT_STORED
@@ -11,7 +11,7 @@ from ..base.toml_table import Source
 from ..settings.dips import DIPS, DipFile, Dips, SpaceDips, dip_file_of
 from ..settings.method_options import without
 from ..settings.series import AUTO, FIELD, KINDS, PARALLEL, THICKNESSES, resolution_fault
-from ..settings.setting import Setting, declared, settings_of
+from ..settings.setting import declared, described, settings_of
 from .entry import Entry
 
 
@@ -27,34 +27,28 @@ class Series(Entry):
     field away from the data: "parallel", they keep it; "free"; or "auto", what the data say.
     """
 
-    name: str = declared(Setting(kind="name", label="Name", tip="Name of the series"), default=MISSING)
-    kind: str = declared(
-        Setting(FIELD, kind="word", label="Kind", tip="How its surfaces are made", words=KINDS)
-    )
-    dips: SpaceDips | Dips | DipFile | str | Path | None = declared(DIPS)
+    name: str = declared(kind="name", label="Name", tip="Name of the series", is_needed=True)
+    kind: str = declared(FIELD, kind="word", label="Kind", tip="How its surfaces are made", words=KINDS)
+    dips: SpaceDips | Dips | DipFile | str | Path | None = described(DIPS)
     resolution: float | str = declared(
-        Setting(
-            AUTO,
-            kind="length",
-            label="Resolution",
-            tip="Edge length of the lattice of the field",
-            low=0.0,
-            check=without(resolution_fault),
-            zero_is_none=True,
-            shapes=(FIELD,),
-            unset="auto",
-            more='`"auto"` (default): by the spacing of the contacts and the size of the rock mass',
-        )
+        AUTO,
+        kind="length",
+        label="Resolution",
+        tip="Edge length of the lattice of the field",
+        low=0.0,
+        check=without(resolution_fault),
+        zero_is_none=True,
+        shapes=(FIELD,),
+        unset="auto",
+        more='`"auto"` (default): by the spacing of the contacts and the size of the rock mass',
     )
     thickness: str = declared(
-        Setting(
-            AUTO,
-            kind="word",
-            label="Thickness",
-            tip="How thick the beds of a field are away from the data",
-            words=THICKNESSES,
-            shapes=(FIELD,),
-        )
+        AUTO,
+        kind="word",
+        label="Thickness",
+        tip="How thick the beds of a field are away from the data",
+        words=THICKNESSES,
+        shapes=(FIELD,),
     )
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import MISSING, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from ..settings.directions import checked_direction
 from ..settings.map_layer import is_wkt
 from ..settings.method_options import OptionRefused, surface
 from ..settings.point_file import MeshFile, PointFile
-from ..settings.setting import Setting, declared, settings_of
+from ..settings.setting import Setting, declared, described, settings_of
 from .entry import Entry
 
 POINTS = Setting(kind="points", of=PointFile)
@@ -111,85 +111,71 @@ class Fault(Shaped):
     """
 
     kind = "fault"
-    name: str = declared(Setting(kind="name", label="Name", tip="Name of the fault"), default=MISSING)
+    name: str = declared(kind="name", label="Name", tip="Name of the fault", is_needed=True)
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
     youngest: str | None = declared(
-        Setting(
-            kind="any_surface",
-            label="Youngest",
-            tip="Youngest surface that the fault displaces; empty: all surfaces",
-            more="Younger surfaces ignore the fault",
-        )
+        kind="any_surface",
+        label="Youngest",
+        tip="Youngest surface that the fault displaces; empty: all surfaces",
+        more="Younger surfaces ignore the fault",
     )
-    ends_at: Sequence[str] = declared(_names("Ends At"))
+    ends_at: Sequence[str] = described(_names("Ends At"))
     dies_out: bool = declared(
-        Setting(
-            False,
-            kind="truth",
-            label="Dies Out",
-            tip="The fault ends inside the rock; its displacement vanishes there",
-            more="Default `false`: its border must lie outside the rock that it displaces",
-        )
+        False,
+        kind="truth",
+        label="Dies Out",
+        tip="The fault ends inside the rock; its displacement vanishes there",
+        more="Default `false`: its border must lie outside the rock that it displaces",
     )
-    rocks: Sequence[str] = declared(_names("Rock Masses"))
-    points: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = declared(POINTS)
+    rocks: Sequence[str] = described(_names("Rock Masses"))
+    points: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = described(POINTS)
     stick: str | int | None = declared(
-        Setting(
-            kind="column",
-            label="Stick Column",
-            tip="Column of a table that numbers or names the fault sticks",
-            more="Without it, and without a column named `stick`, the points are scattered",
-            check=_checked_stick,
-            shapes=("points",),
-        )
+        kind="column",
+        label="Stick Column",
+        tip="Column of a table that numbers or names the fault sticks",
+        more="Without it, and without a column named `stick`, the points are scattered",
+        check=_checked_stick,
+        shapes=("points",),
     )
     extend: float = declared(
-        Setting(
-            0.0,
-            kind="length",
-            label="Extend",
-            tip="Distance by which the mesh continues beyond its border, the fitted surface beyond its "
-            "points, or the trace beyond its ends",
-            low=0.0,
-            more="In its own plane; of a fault that dies out up and down the dip only, of its trace along "
-            "that. Default 0; a trace goes through the rock then, unless the fault dies out",
-        )
+        0.0,
+        kind="length",
+        label="Extend",
+        tip="Distance by which the mesh continues beyond its border, the fitted surface beyond its "
+        "points, or the trace beyond its ends",
+        low=0.0,
+        more="In its own plane; of a fault that dies out up and down the dip only, of its trace along "
+        "that. Default 0; a trace goes through the rock then, unless the fault dies out",
     )
-    mesh: str | Path | MeshFile | None = declared(MESH)
+    mesh: str | Path | MeshFile | None = described(MESH)
     trace: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = declared(
-        Setting(kind="trace", of=PointFile)
+        kind="trace", of=PointFile
     )
     dip: float | None = declared(
-        Setting(
-            label="Dip",
-            tip="Angle below the horizontal, in degrees; 0: the attribute of the file",
-            low=0.0,
-            high=90.0,
-            above=0.0,
-            zero_is_none=True,
-            shapes=OF_TRACES,
-        )
+        label="Dip",
+        tip="Angle below the horizontal, in degrees; 0: the attribute of the file",
+        low=0.0,
+        high=90.0,
+        above=0.0,
+        zero_is_none=True,
+        shapes=OF_TRACES,
     )
     dip_direction: float | str | None = declared(
-        Setting(
-            kind="direction",
-            label="Dip Direction",
-            tip="Degrees clockwise from north (+Y), or the side of the trace: N, NE, E, ... Not needed for a "
-            "vertical fault",
-            check=checked_direction,
-            shapes=OF_TRACES,
-        )
+        kind="direction",
+        label="Dip Direction",
+        tip="Degrees clockwise from north (+Y), or the side of the trace: N, NE, E, ... Not needed for a "
+        "vertical fault",
+        check=checked_direction,
+        shapes=OF_TRACES,
     )
     elevation: float | str | None = declared(
-        Setting(
-            kind="surface",
-            label="Elevation",
-            tip="Elevation of the trace, or the surface that it is on. Empty: z of the trace, or the "
-            "youngest surface where it has none",
-            check=_checked_elevation,
-            shapes=OF_TRACES,
-        )
+        kind="surface",
+        label="Elevation",
+        tip="Elevation of the trace, or the surface that it is on. Empty: z of the trace, or the "
+        "youngest surface where it has none",
+        check=_checked_elevation,
+        shapes=OF_TRACES,
     )
     traced: Fault | None = field(default=None, repr=False, compare=False)  # as it was, with the line as read
     shape_file: Path | None = field(default=None, repr=False, compare=False)
@@ -228,38 +214,30 @@ class Body(Shaped):
     """
 
     kind = "body"
-    name: str = declared(
-        Setting(kind="name", label="Name", tip="Name of the body, and of its block"), default=MISSING
-    )
+    name: str = declared(kind="name", label="Name", tip="Name of the body, and of its block", is_needed=True)
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
     after: str | None = declared(
-        Setting(
-            kind="any_surface",
-            label="After",
-            tip="Surface after which the body came; empty: the youngest",
-            more="Younger surfaces erode and bury the body",
-        )
+        kind="any_surface",
+        label="After",
+        tip="Surface after which the body came; empty: the youngest",
+        more="Younger surfaces erode and bury the body",
     )
-    property: int = declared(library_id("of the body"))
+    property: int = described(library_id("of the body"))
     void: bool = declared(
-        Setting(
-            False,
-            kind="truth",
-            label="Void",
-            tip="The body takes rock away and leaves nothing, as a tunnel does",
-            more="Default `false`",
-        )
+        False,
+        kind="truth",
+        label="Void",
+        tip="The body takes rock away and leaves nothing, as a tunnel does",
+        more="Default `false`",
     )
     rock: str | None = declared(
-        Setting(
-            kind="rock_mass",
-            label="Rock Mass",
-            tip="Rock mass that the body is in; empty: all",
-            more="Default: all that have the surface `after`",
-        )
+        kind="rock_mass",
+        label="Rock Mass",
+        tip="Rock mass that the body is in; empty: all",
+        more="Default: all that have the surface `after`",
     )
-    mesh: str | Path | MeshFile | None = declared(MESH)
+    mesh: str | Path | MeshFile | None = described(MESH)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 

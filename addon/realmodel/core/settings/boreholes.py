@@ -10,7 +10,7 @@ from typing import Any
 
 from .method_options import OptionRefused, check_fields
 from .point_file import FILE, check_name, check_units
-from .setting import Setting, declared
+from .setting import Setting, declared, described
 
 COLUMNS = (
     *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
@@ -63,16 +63,16 @@ class Boreholes:
     tables.
     """
 
-    picks: str | Path | None = declared(FILE)
-    collars: str | Path | None = declared(FILE)
-    columns: Mapping = declared(Setting(kind="named_columns"), default_factory=dict)
-    separator: str | None = declared(SIGN)
-    decimal: str | None = declared(SIGN)
-    units: str | Mapping | None = declared(Setting(kind="units", check=check_units))
-    survey: str | Path | None = declared(FILE)
-    downward_dip: str | None = declared(Setting(kind="sense", check=_check_sense))
-    intervals: str | Path | None = declared(FILE)
-    layer: str | None = declared(Setting(kind="layer", check=check_name))
+    picks: str | Path | None = described(FILE)
+    collars: str | Path | None = described(FILE)
+    columns: Mapping = declared(kind="named_columns", factory=dict)
+    separator: str | None = described(SIGN)
+    decimal: str | None = described(SIGN)
+    units: str | Mapping | None = declared(kind="units", check=check_units)
+    survey: str | Path | None = described(FILE)
+    downward_dip: str | None = declared(kind="sense", check=_check_sense)
+    intervals: str | Path | None = described(FILE)
+    layer: str | None = declared(kind="layer", check=check_name)
 
     @property
     def only_for_tables(self) -> list[str]:

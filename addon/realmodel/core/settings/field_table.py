@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from .boreholes import SIGN, check_column_names
 from .method_options import check_fields
 from .point_file import FILE, check_units
-from .setting import Setting, declared
+from .setting import declared, described
 
 
 @dataclass(frozen=True)
@@ -24,11 +24,11 @@ class FieldTable:
 
     known: ClassVar[tuple[str, ...]] = ()
 
-    file: str | Path = declared(FILE, default=MISSING)
-    columns: Mapping = declared(Setting(kind="named_columns"), default_factory=dict)
-    separator: str | None = declared(SIGN)
-    decimal: str | None = declared(SIGN)
-    units: str | Mapping | None = declared(Setting(kind="units", check=check_units))
+    file: str | Path = described(FILE, is_needed=True)
+    columns: Mapping = declared(kind="named_columns", factory=dict)
+    separator: str | None = described(SIGN)
+    decimal: str | None = described(SIGN)
+    units: str | Mapping | None = declared(kind="units", check=check_units)
 
     @property
     def files(self) -> list[Path]:

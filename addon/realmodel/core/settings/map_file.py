@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from .map_layer import LAYER, UNIT, WHERE, MapLayer
 from .method_options import OptionRefused, check_fields
 from .point_file import FILE, MeshFile, PointFile
-from .setting import Setting, declared
+from .setting import declared, described
 
 
 def _check_attribute(key: str, name: Any) -> None:
@@ -39,14 +39,14 @@ class MapFile:
     two-hundredth of the diagonal of the region, but contacts are off by a tenth of the relief at most.
     """
 
-    file: str | Path = declared(FILE, default=MISSING)
-    block: str = declared(Setting(kind="line", check=_check_attribute), default=MISSING)
-    layer: str | None = declared(LAYER)
-    where: Mapping = declared(WHERE, default_factory=dict)
-    units: str | None = declared(UNIT)
-    ground: str | Path | PointFile | MeshFile | None = declared(Setting(kind="ground"))
-    faults: str | Path | MapLayer | None = declared(Setting(kind="layer_file", of=MapLayer))
-    accuracy: float | None = declared(Setting(kind="finite", check=_check_accuracy))
+    file: str | Path = described(FILE, is_needed=True)
+    block: str = declared(kind="line", check=_check_attribute, is_needed=True)
+    layer: str | None = described(LAYER)
+    where: Mapping = described(WHERE, factory=dict)
+    units: str | None = described(UNIT)
+    ground: str | Path | PointFile | MeshFile | None = declared(kind="ground")
+    faults: str | Path | MapLayer | None = declared(kind="layer_file", of=MapLayer)
+    accuracy: float | None = declared(kind="finite", check=_check_accuracy)
 
     @property
     def polygons(self) -> MapLayer:

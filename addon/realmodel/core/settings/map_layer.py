@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from .method_options import check_fields
 from .point_file import FILE, check_name, check_unit, check_where
-from .setting import Setting, declared
+from .setting import Setting, described
 
 _WKT = re.compile(
     r"\s*(?:SRID\s*=\s*\d+\s*;\s*)?(?:MULTI)?(?:POLYGON|LINESTRING|POINT|GEOMETRYCOLLECTION)(?:ZM?|M)?\b",
@@ -41,10 +41,10 @@ class MapLayer:
     features that hold it count. units: of the file's coordinates; None: those of the model.
     """
 
-    file: str | Path = declared(FILE, default=MISSING)
-    layer: str | None = declared(LAYER)
-    where: Mapping = declared(WHERE, default_factory=dict)
-    units: str | None = declared(UNIT)
+    file: str | Path = described(FILE, is_needed=True)
+    layer: str | None = described(LAYER)
+    where: Mapping = described(WHERE, factory=dict)
+    units: str | None = described(UNIT)
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""

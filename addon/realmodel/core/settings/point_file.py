@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..base.units import METERS, UNIT_NAMES, factors
 from .method_options import OptionRefused, check_fields
-from .setting import Setting, declared, settings_of
+from .setting import Setting, declared, described, settings_of
 
 
 def list_of(value: Any) -> list:
@@ -160,71 +160,57 @@ class PointFile:
     columns, separator and decimal are for tables only, height and layer for shapes and objects.
     """
 
-    file: str | Path = declared(FILE, default=MISSING)
+    file: str | Path = described(FILE, is_needed=True)
     columns: Sequence[str | int] | None = declared(
-        Setting(
-            kind="columns",
-            label="Columns",
-            parts={
-                axis: Setting(
-                    kind="column",
-                    label=f"{axis.upper()} Column",
-                    tip=f"Column of {axis}, by name or by number from 1; all three empty: detected from "
-                    "their names, else the first three",
-                    name=f"column_{axis}",
-                )
-                for axis in "xyz"
-            },
-            check=_check_columns,
-        )
+        kind="columns",
+        label="Columns",
+        parts={
+            axis: Setting(
+                kind="column",
+                label=f"{axis.upper()} Column",
+                tip=f"Column of {axis}, by name or by number from 1; all three empty: detected from "
+                "their names, else the first three",
+                name=f"column_{axis}",
+            )
+            for axis in "xyz"
+        },
+        check=_check_columns,
     )
-    where: Mapping = declared(
-        Setting(kind="where", label="Filters", name="filters", check=check_where), default_factory=dict
-    )
+    where: Mapping = declared(kind="where", label="Filters", name="filters", check=check_where, factory=dict)
     separator: str | None = declared(
-        Setting(
-            kind="separator",
-            label="Separator",
-            tip="Character between the columns, or tab, or blank; empty: detected from the file",
-            check=_check_separator,
-        )
+        kind="separator",
+        label="Separator",
+        tip="Character between the columns, or tab, or blank; empty: detected from the file",
+        check=_check_separator,
     )
     decimal: str | None = declared(
-        Setting(
-            kind="word",
-            label="Decimal Separator",
-            tip="Decimal separator of the numbers in the file",
-            words={
-                "": ("Automatic", "Detected from the file, except for commas that could separate thousands"),
-                ".": ("Point", "1234.5"),
-                ",": ("Comma", "1234,5"),
-            },
-            check=_check_decimal,
-        )
+        kind="word",
+        label="Decimal Separator",
+        tip="Decimal separator of the numbers in the file",
+        words={
+            "": ("Automatic", "Detected from the file, except for commas that could separate thousands"),
+            ".": ("Point", "1234.5"),
+            ",": ("Comma", "1234,5"),
+        },
+        check=_check_decimal,
     )
     nodata: Sequence | float | str = declared(
-        Setting(
-            (),
-            kind="values",
-            label="NoData Value",
-            tip="Value that marks missing data, such as -9999, or several with commas; such points are "
-            "skipped",
-            check=_check_nodata,
-        )
+        (),
+        kind="values",
+        label="NoData Value",
+        tip="Value that marks missing data, such as -9999, or several with commas; such points are skipped",
+        check=_check_nodata,
     )
-    units: str | Mapping | None = declared(_FILE_UNITS)
-    z_axis: str = declared(_Z_AXIS)
+    units: str | Mapping | None = described(_FILE_UNITS)
+    z_axis: str = described(_Z_AXIS)
     height: str | None = declared(
-        Setting(
-            kind="attribute",
-            label="Elevation Field",
-            tip="Attribute with the elevation of each feature, as of a contour line; empty: z of its "
-            "coordinates",
-            name="height_attribute",
-            check=check_name,
-        )
+        kind="attribute",
+        label="Elevation Field",
+        tip="Attribute with the elevation of each feature, as of a contour line; empty: z of its coordinates",
+        name="height_attribute",
+        check=check_name,
     )
-    layer: str | None = declared(_LAYER)
+    layer: str | None = described(_LAYER)
 
     @property
     def nodata_values(self) -> list:
@@ -263,10 +249,10 @@ class MeshFile:
     """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the model.
     layer: the name of the surface in a file of several objects (OMF, geoh5)."""
 
-    file: str | Path = declared(FILE, default=MISSING)
-    units: str | Mapping | None = declared(_FILE_UNITS)
-    z_axis: str = declared(_Z_AXIS)
-    layer: str | None = declared(_LAYER)
+    file: str | Path = described(FILE, is_needed=True)
+    units: str | Mapping | None = described(_FILE_UNITS)
+    z_axis: str = described(_Z_AXIS)
+    layer: str | None = described(_LAYER)
 
     def check(self) -> None:
         """Raises OptionRefused for a unit, an axis or a name that makes no sense."""

@@ -71,14 +71,29 @@ Settings = Mapping[str, Setting]
 
 FILE_KINDS = ("points", "mesh", "trace")  # the keys that say how such a file is read are beside its own
 _DECLARED = "setting"  # in the metadata of a field
+UNSAID = object()
 
 
-def declared(setting: Setting, **given: Any) -> Any:
-    """The field of a dataclass that a setting describes. given: as of dataclasses.field; without a default it
-    has that of the setting."""
-    if not given.keys() & {"default", "default_factory"}:
-        given["default"] = setting.default
-    return field(metadata={_DECLARED: setting}, **given)
+def described(setting: Setting, is_needed: bool = False, absent: Any = UNSAID, factory: Any = MISSING) -> Any:
+    """A field of a dataclass that a setting describes. is_needed: it has no default; else it has that of the
+    setting, or `absent`, or what `factory` makes."""
+    default = setting.default if absent is UNSAID else absent
+    if is_needed or factory is not MISSING:
+        default = MISSING
+    return field(default=default, default_factory=factory, metadata={_DECLARED: setting})
+
+
+def declared(
+    default: Any = None,
+    kind: str = "number",
+    *,
+    is_needed: bool = False,
+    absent: Any = UNSAID,
+    factory: Any = MISSING,
+    **words: Any,
+) -> Any:
+    """A field of a dataclass with the Setting that describes it alone; see `described`."""
+    return described(Setting(default, kind, **words), is_needed, absent, factory)
 
 
 class Declaration(NamedTuple):
