@@ -284,6 +284,7 @@ READ: Mapping[str, Read] = {
     "name": _Key.text,
     "line": _line,
     "method": _Key.text,
+    "finite": lambda key: key.table.number(key.name),
     "file": _Key.path,
     "points": _Key.path,
     "mesh": _Key.path,

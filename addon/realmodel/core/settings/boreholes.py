@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .method_options import OptionRefused, check_fields
-from .point_file import FILE, check_name, check_units
+from .point_file import FILE, checked_name, checked_units
 from .setting import Setting, declared, described
 
 COLUMNS = (
@@ -35,9 +35,10 @@ def check_column_names(columns: Any, known: Sequence[str]) -> None:
             raise OptionRefused(what, "columns")
 
 
-def _check_sense(key: str, sense: Any) -> None:
+def _checked_sense(key: str, sense: Any) -> Any:
     if sense is not None and sense not in DOWNWARD_DIPS:
         raise OptionRefused(f'\'{key}\' must be "negative" or "positive", not {sense!r}', key)
+    return sense
 
 
 @dataclass(frozen=True)
@@ -68,11 +69,11 @@ class Boreholes:
     columns: Mapping = declared(kind="named_columns", factory=dict)
     separator: str | None = described(SIGN)
     decimal: str | None = described(SIGN)
-    units: str | Mapping | None = declared(kind="units", check=check_units)
+    units: str | Mapping | None = declared(kind="units", check=checked_units)
     survey: str | Path | None = described(FILE)
-    downward_dip: str | None = declared(kind="sense", check=_check_sense)
+    downward_dip: str | None = declared(kind="sense", check=_checked_sense)
     intervals: str | Path | None = described(FILE)
-    layer: str | None = declared(kind="layer", check=check_name)
+    layer: str | None = declared(kind="layer", check=checked_name)
 
     @property
     def only_for_tables(self) -> list[str]:

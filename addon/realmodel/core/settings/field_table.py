@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from .boreholes import SIGN, check_column_names
 from .method_options import check_fields
-from .point_file import FILE, check_units
+from .point_file import FILE, checked_units
 from .setting import declared, described
 
 
@@ -28,7 +28,7 @@ class FieldTable:
     columns: Mapping = declared(kind="named_columns", factory=dict)
     separator: str | None = described(SIGN)
     decimal: str | None = described(SIGN)
-    units: str | Mapping | None = declared(kind="units", check=check_units)
+    units: str | Mapping | None = declared(kind="units", check=checked_units)
 
     @property
     def files(self) -> list[Path]:

@@ -15,16 +15,18 @@ from .point_file import FILE, MeshFile, PointFile
 from .setting import declared, described
 
 
-def _check_attribute(key: str, name: Any) -> None:
+def _checked_attribute(key: str, name: Any) -> Any:
     if not (isinstance(name, str) and name.strip()):
         what = f"'{key}' must name an attribute, not {name!r}"
         raise OptionRefused(what, key, f'write {key} = "FORMATION"')
+    return name
 
 
-def _check_accuracy(key: str, accuracy: Any) -> None:
+def _checked_accuracy(key: str, accuracy: Any) -> Any:
     if accuracy is not None and not 0 <= accuracy < math.inf:
         advice = "give how far its lines may be off, or 0 where they are exact"
         raise OptionRefused(f"'{key}' must be 0 or more, not {accuracy!r}", key, advice)
+    return accuracy
 
 
 @dataclass(frozen=True)
@@ -40,13 +42,13 @@ class MapFile:
     """
 
     file: str | Path = described(FILE, is_needed=True)
-    block: str = declared(kind="line", check=_check_attribute, is_needed=True)
+    block: str = declared(kind="line", check=_checked_attribute, is_needed=True)
     layer: str | None = described(LAYER)
     where: Mapping = described(WHERE, factory=dict)
     units: str | None = described(UNIT)
     ground: str | Path | PointFile | MeshFile | None = declared(kind="ground")
     faults: str | Path | MapLayer | None = declared(kind="layer_file", of=MapLayer)
-    accuracy: float | None = declared(kind="finite", check=_check_accuracy)
+    accuracy: float | None = declared(kind="finite", check=_checked_accuracy)
 
     @property
     def polygons(self) -> MapLayer:

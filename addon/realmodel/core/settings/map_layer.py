@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .method_options import check_fields
-from .point_file import FILE, check_name, check_unit, check_where
+from .point_file import FILE, checked_name, checked_unit, checked_where
 from .setting import Setting, described
 
 _WKT = re.compile(
@@ -28,9 +28,9 @@ def is_wkt(text: str) -> bool:
     return begins_as_wkt(text) and ("(" in text or text.rstrip().upper().endswith("EMPTY"))
 
 
-LAYER = Setting(kind="line", check=check_name)
-WHERE = Setting(kind="where", check=check_where)
-UNIT = Setting(kind="unit", check=check_unit)
+LAYER = Setting(kind="line", check=checked_name)
+WHERE = Setting(kind="where", check=checked_where)
+UNIT = Setting(kind="unit", check=checked_unit)
 
 
 @dataclass(frozen=True)

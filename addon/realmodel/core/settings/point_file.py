@@ -19,9 +19,9 @@ def list_of(value: Any) -> list:
     return list(value) if isinstance(value, (list, tuple)) else [value]
 
 
-def _check_columns(key: str, columns: Any) -> None:
+def _checked_columns(key: str, columns: Any) -> Any:
     if columns is None:
-        return
+        return None
     said = f"'{key}' must be the names or numbers of three columns"
     advice = f'write {key} = ["X", "Y", "Z"]'
     if not isinstance(columns, (list, tuple)) or len(columns) != 3:
@@ -31,9 +31,10 @@ def _check_columns(key: str, columns: Any) -> None:
             continue
         if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
             raise OptionRefused(f"{said}, not {column!r}", key, "column numbers start at 1")
+    return columns
 
 
-def check_where(key: str, where: Any) -> None:
+def checked_where(key: str, where: Any) -> Any:
     """Refuses what is no table of columns and values. Raises OptionRefused."""
     advice = f"write {key} = {{ val = 60 }}"
     if not isinstance(where, Mapping):
@@ -42,9 +43,10 @@ def check_where(key: str, where: Any) -> None:
         if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
             what = f"'{key}' must give a number or text for '{column}', not {values!r}"
             raise OptionRefused(what, key, advice)
+    return where
 
 
-def _check_separator(key: str, sign: Any) -> None:
+def _checked_separator(key: str, sign: Any) -> Any:
     if sign is not None and not (
         isinstance(sign, str)
         and len(sign) == 1
@@ -53,43 +55,50 @@ def _check_separator(key: str, sign: Any) -> None:
         and sign not in '.+-"#\n\r'
     ):
         raise OptionRefused(f"'{key}' must be one character, not {sign!r}", key)
+    return sign
 
 
-def _check_decimal(key: str, sign: Any) -> None:
+def _checked_decimal(key: str, sign: Any) -> Any:
     if sign not in (None, ".", ","):
         raise OptionRefused(f'\'{key}\' must be "." or ",", not {sign!r}', key)
+    return sign
 
 
-def _check_nodata(key: str, values: Any) -> None:
+def _checked_nodata(key: str, values: Any) -> Any:
     if not all(_is_value(value) for value in list_of(values)):
         raise OptionRefused(f"'{key}' must be a number or text, not {values!r}", key)
+    return values
 
 
-def check_name(key: str, name: object) -> None:
+def checked_name(key: str, name: Any) -> Any:
     """Raises OptionRefused for a name that is none; None is no name."""
     if name is not None and not (isinstance(name, str) and name.strip()):
         raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
+    return name
 
 
-def check_units(key: str, units: object) -> None:
+def checked_units(key: str, units: Any) -> Any:
     """Refuses unknown units. Raises OptionRefused."""
     parts = dict(units) if isinstance(units, Mapping) else {"xy": units}
     for part, unit in parts.items():
         if part not in ("xy", "z"):
             what = f"'{key}' has a part {part!r}"
             raise OptionRefused(what, key, f'its parts are xy and z: {key} = {{ z = "ft" }}')
-        check_unit(key, unit)
+        checked_unit(key, unit)
+    return units
 
 
-def check_unit(key: str, unit: object) -> None:
+def checked_unit(key: str, unit: Any) -> Any:
     """Refuses an unknown unit; None is that of the model. Raises OptionRefused."""
     if unit is not None and unit not in METERS:
         raise OptionRefused(f"unknown unit {unit!r}", key, f"there are {', '.join(METERS)}")
+    return unit
 
 
-def _check_z_axis(key: str, axis: object) -> None:
+def _checked_z_axis(key: str, axis: Any) -> Any:
     if axis not in ("up", "down"):
         raise OptionRefused(f'\'{key}\' must be "up" or "down", not {axis!r}', key)
+    return axis
 
 
 def _is_value(value: object) -> bool:
@@ -106,7 +115,7 @@ FILE = Setting(kind="file")  # the path of a file
 _FILE_UNITS = Setting(
     kind="units",
     label="Units",
-    check=check_units,
+    check=checked_units,
     parts={
         "xy": Setting(
             kind="word",
@@ -133,13 +142,13 @@ _Z_AXIS = Setting(
         "up": ("Up", "Z is an elevation"),
         "down": ("Down", "Z is a depth: it changes its sign"),
     },
-    check=_check_z_axis,
+    check=_checked_z_axis,
 )
 _LAYER = Setting(
     kind="layer",
     label="Layer",
     tip="Layer of a GeoPackage, or object of an OMF or geoh5 file; needed where there are several",
-    check=check_name,
+    check=checked_name,
 )
 
 
@@ -174,14 +183,16 @@ class PointFile:
             )
             for axis in "xyz"
         },
-        check=_check_columns,
+        check=_checked_columns,
     )
-    where: Mapping = declared(kind="where", label="Filters", name="filters", check=check_where, factory=dict)
+    where: Mapping = declared(
+        kind="where", label="Filters", name="filters", check=checked_where, factory=dict
+    )
     separator: str | None = declared(
         kind="separator",
         label="Separator",
         tip="Character between the columns, or tab, or blank; empty: detected from the file",
-        check=_check_separator,
+        check=_checked_separator,
     )
     decimal: str | None = declared(
         kind="word",
@@ -192,14 +203,14 @@ class PointFile:
             ".": ("Point", "1234.5"),
             ",": ("Comma", "1234,5"),
         },
-        check=_check_decimal,
+        check=_checked_decimal,
     )
     nodata: Sequence | float | str = declared(
         (),
         kind="values",
         label="NoData Value",
         tip="Value that marks missing data, such as -9999, or several with commas; such points are skipped",
-        check=_check_nodata,
+        check=_checked_nodata,
     )
     units: str | Mapping | None = described(_FILE_UNITS)
     z_axis: str = described(_Z_AXIS)
@@ -208,7 +219,7 @@ class PointFile:
         label="Elevation Field",
         tip="Attribute with the elevation of each feature, as of a contour line; empty: z of its coordinates",
         name="height_attribute",
-        check=check_name,
+        check=checked_name,
     )
     layer: str | None = described(_LAYER)
 
