@@ -213,7 +213,6 @@ class PointFile:
         check=_checked_nodata,
     )
     units: str | Mapping | None = described(_FILE_UNITS)
-    z_axis: str = described(_Z_AXIS)
     height: str | None = declared(
         kind="attribute",
         label="Elevation Field",
@@ -222,6 +221,7 @@ class PointFile:
         check=checked_name,
     )
     layer: str | None = described(_LAYER)
+    z_axis: str = described(_Z_AXIS)
 
     @property
     def nodata_values(self) -> list:
