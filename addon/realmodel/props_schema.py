@@ -23,7 +23,7 @@ _TEXTS = ("name", "text", "separator", "values")
 _ROWS = ("names", "where")  # several rows, of a class of their own
 
 
-def settings_of(settings, update=changes.setting, **updates):
+def properties_of(settings, update=changes.setting, **updates):
     """A base of a property group with the properties of settings. update: what follows on a change; updates:
     what else, by key or switch."""
     properties = dict(_all(settings, update, updates))

@@ -7,7 +7,7 @@ from bpy.props import StringProperty
 from .bl import changes
 from .bl.project import choices, series_settings, settings
 from .core.project.series import SERIES
-from .props_schema import settings_of
+from .props_schema import properties_of
 
 
 def _end(name, description, at):
@@ -39,7 +39,7 @@ def _end(name, description, at):
     )
 
 
-class RealModelSeries(settings_of(SERIES, name=changes.name), bpy.types.PropertyGroup):
+class RealModelSeries(properties_of(SERIES, name=changes.name), bpy.types.PropertyGroup):
     """A series: level sets of one field in space, or sheets that are interpolated together."""
 
     known_name: StringProperty(options={"HIDDEN"})

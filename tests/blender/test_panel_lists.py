@@ -268,13 +268,14 @@ class Surfaces(PanelCase):
         """Of a file of points and of methods, each is a property or several, and keeps what it is set to."""
         ops.surface_add(name="S0")
         row = self.rock().surfaces[0]
-        examples = {"word": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        examples = {"method": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        examples["word"] = examples["method"]
         examples["truth"] = lambda s: not s.default
         examples["number"] = examples["length"] = lambda s: 7.25 if s.high is None else s.high - 0.25
         for settings in (ROCK, SURFACE):
             target = self.rock() if settings is ROCK else row
             for key, setting in settings.items():
-                if setting.kind in ("other", "columns") or setting.parts:
+                if not setting.label or setting.parts or setting.kind == "where":
                     continue
                 given = examples.get(setting.kind, lambda s: "7")
                 method_settings.set_value(target, key, settings, given(setting))

@@ -36,7 +36,7 @@ def value(row, key, settings):
         return None
     if setting.parts:
         parts = {part: value(row, part, setting.parts) for part in setting.parts}
-        parts = {part: given for part, given in parts.items() if given is not None}
+        parts = {part: content for part, content in parts.items() if content is not None}
         return texts.columns(parts) if setting.kind == "columns" else parts or None
     if setting.kind in ("number", "length"):
         given = number(row, name)
@@ -50,10 +50,10 @@ def values(row, entry, shape=None):
     """The settings of a row that the panel shows of a dataclass, by its fields. shape: those with an effect
     on it alone."""
     return {
-        part.name: given
+        part.name: content
         for part in declarations(entry)
         if is_shown(part.setting) and (shape is None or part.setting.fits(shape))
-        if (given := value(row, part.key, settings_of(entry))) is not None
+        if (content := value(row, part.key, settings_of(entry))) is not None
     }
 
 
@@ -78,12 +78,12 @@ def set_value(row, key, settings, given):
         setattr(row, name, given)
 
 
-def set_values(row, entry, given):
+def set_values(row, entry, source):
     """Sets the settings of a row that the panel shows of a dataclass, from one; those that it lacks are
     unset."""
     for part in declarations(entry):
         if is_shown(part.setting):
-            set_value(row, part.key, settings_of(entry), getattr(given, part.name, part.default))
+            set_value(row, part.key, settings_of(entry), getattr(source, part.name, part.default))
 
 
 def point_file(row, path):

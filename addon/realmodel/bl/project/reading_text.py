@@ -50,14 +50,14 @@ def columns(parts):
     return list(parts.values()) or None
 
 
-def parts_of(setting, given):
+def parts_of(setting, content):
     """The values of the parts of a setting. Columns are a list, and one unit is that of all coordinates."""
     if setting.kind == "columns":
-        return dict(zip(setting.parts, given or (None,) * 3, strict=True))
+        return dict(zip(setting.parts, content or (None,) * 3, strict=True))
     if setting.kind == "units":
-        of_all = {} if isinstance(given, dict) else dict.fromkeys(setting.parts, given)
-        return {**dict.fromkeys(setting.parts), **(of_all or given)}
-    return given or {}
+        of_all = {} if isinstance(content, dict) else dict.fromkeys(setting.parts, content)
+        return {**dict.fromkeys(setting.parts), **(of_all or content)}
+    return content or {}
 
 
 def _number_or_text(text):
@@ -90,23 +90,23 @@ def _names(rows):
 
 def _set_text(text_of):
     """Sets a text from what stands for it; None is no text."""
-    return lambda row, name, given: setattr(row, name, "" if given is None else text_of(given))
+    return lambda row, name, content: setattr(row, name, "" if content is None else text_of(content))
 
 
 def _fill_filters(row, name, where):
     rows = getattr(row, name)
     rows.clear()
     for column_name, wanted in (where or {}).items():
-        for each in list_of(wanted):
+        for text in map(value_text, list_of(wanted)):
             entry = rows.add()
-            entry.column, entry.value = column_name, value_text(each)
+            entry.column, entry.value = column_name, text
 
 
-def _fill_names(row, name, names):
-    rows = getattr(row, name)
+def _fill_names(row, key, names):
+    rows = getattr(row, key)
     rows.clear()
-    for each in names or ():
-        rows.add().name = each
+    for name in names or ():
+        rows.add().name = name
 
 
 def named_columns(given):
@@ -131,11 +131,11 @@ READ = {
     "names": _names,
 }
 FILL = {
-    "surface": _set_text(lambda given: given if isinstance(given, str) else repr(given)),
-    "direction": _set_text(lambda given: given if isinstance(given, str) else repr(given)),
+    "surface": _set_text(lambda content: content if isinstance(content, str) else repr(content)),
+    "direction": _set_text(lambda content: content if isinstance(content, str) else repr(content)),
     "column": _set_text(column_text),
     "separator": _set_text(lambda sign: next((w for w, s in _SEPARATORS.items() if s == sign), sign)),
-    "values": _set_text(lambda given: ", ".join(map(value_text, list_of(given)))),
+    "values": _set_text(lambda content: ", ".join(map(value_text, list_of(content)))),
     "where": _fill_filters,
     "names": _fill_names,
 }

@@ -36,7 +36,7 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def given_values(entry: Any) -> list[tuple[Declaration, Any]]:
+def changed_values(entry: Any) -> list[tuple[Declaration, Any]]:
     """The fields of a dataclass that settings describe, with their values, without those at their default."""
     kind: type = type(entry)
     values = [(part, getattr(entry, part.name)) for part in declarations(kind)]
@@ -46,7 +46,7 @@ def given_values(entry: Any) -> list[tuple[Declaration, Any]]:
 def keys_without_effect(entry: Any) -> list[str]:
     """The keys that are given for a surface or a fault and have no effect on its kind of shape."""
     keys: list[str] = []
-    for part, value in given_values(entry):
+    for part, value in changed_values(entry):
         if not part.setting.fits(entry.shape_kind):
             keys += value if part.setting.kind == "options" else [part.key]
     return keys

@@ -22,7 +22,7 @@ from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..readers import UnitNames
 from ..settings.dips import Dips, SpaceDips, as_given
-from .entry import given_values
+from .entry import changed_values
 from .library import Library, Property
 from .plan_input import map_layer
 from .project import Project, Rock, Surface
@@ -116,24 +116,24 @@ def _entry_lines(
 ) -> list[str]:
     """The lines of a project, rock mass, surface, series, fault or body."""
     lines: list[str] = []
-    for part, value in given_values(entry):
-        given = _Value(value, part.key, entry, names, rock, tables, files)
+    for part, value in changed_values(entry):
+        item = _Value(value, part.key, entry, names, rock, tables, files)
         if part.setting.kind == "tables":
-            lines += _tables(given)
+            lines += _tables(item)
         elif part.setting.kind == "options":
             lines += _lines(value)
-        elif (text := WRITE.get(part.setting.kind, _Value.text)(given)) is not None:
+        elif (text := WRITE.get(part.setting.kind, _Value.text)(item)) is not None:
             lines.append(f"{part.key} = {text}")
     return lines
 
 
-def _tables(given: _Value) -> list[str]:
-    lines, tables = [], f"{given.tables}.{given.key}".strip(".")
-    for entry in given.value:
-        rock = entry if isinstance(entry, Rock) else given.rock
-        names = (*given.names, entry.name) if rock else (given.key, entry.name)
+def _tables(item: _Value) -> list[str]:
+    lines, tables = [], f"{item.tables}.{item.key}".strip(".")
+    for entry in item.value:
+        rock = entry if isinstance(entry, Rock) else item.rock
+        names = (*item.names, entry.name) if rock else (item.key, entry.name)
         _require_read(entry)
-        lines += ["", f"[[{tables}]]", *_entry_lines(_as_written(entry), given.files, names, tables, rock)]
+        lines += ["", f"[[{tables}]]", *_entry_lines(_as_written(entry), item.files, names, tables, rock)]
     return lines
 
 
@@ -178,23 +178,23 @@ def _as_written(entry: Any) -> Any:
     return entry
 
 
-def _library(given: _Value) -> str:
-    return toml_value(given.files.write(("library",), ".toml", library_text(given.value).encode()))
+def _library(item: _Value) -> str:
+    return toml_value(item.files.write(("library",), ".toml", library_text(item.value).encode()))
 
 
-def _points(given: _Value) -> str | None:
-    if not len(given.value):
+def _points(item: _Value) -> str | None:
+    if not len(item.value):
         return None
-    return toml_value(given.files.write(given.names, ".csv", points_text(given.value)))
+    return toml_value(item.files.write(item.names, ".csv", points_text(item.value)))
 
 
-def _mesh(given: _Value) -> str:
-    return toml_value(given.files.write(given.names, ".off", off_text(*given.value)))
+def _mesh(item: _Value) -> str:
+    return toml_value(item.files.write(item.names, ".off", off_text(*item.value)))
 
 
-def _table_file(given: _Value) -> str | None:
+def _table_file(item: _Value) -> str | None:
     """Dips, or observations."""
-    table, rock = given.value, given.rock
+    table, rock = item.value, item.rock
     if not len(table):
         return None
     assert rock is not None
@@ -202,19 +202,19 @@ def _table_file(given: _Value) -> str | None:
         text = space_dips_text(table)
     else:
         text = _named_dips_text(rock, table) if isinstance(table, Dips) else observations_text(rock)
-    return toml_value(given.files.write((*given.names, given.key), ".csv", text))
+    return toml_value(item.files.write((*item.names, item.key), ".csv", text))
 
 
-def _places(given: _Value) -> str | None:
-    return toml_value(np.asarray(given.value, np.float64).tolist()) if len(given.value) else None
+def _places(item: _Value) -> str | None:
+    return toml_value(np.asarray(item.value, np.float64).tolist()) if len(item.value) else None
 
 
-def _region(given: _Value) -> str:
-    return _rings_text(given.value) if is_several(given.value) else _ring_text(given.value)
+def _region(item: _Value) -> str:
+    return _rings_text(item.value) if is_several(item.value) else _ring_text(item.value)
 
 
-def _trace(given: _Value) -> str:
-    line = given.value
+def _trace(item: _Value) -> str:
+    line = item.value
     return _rings_text(line) if len(line) and np.ndim(line[0]) > 1 else _ring_text(line)
 
 
@@ -245,8 +245,8 @@ WRITE: Mapping[str, Callable[[_Value], str | None]] = {
     "table_file": _table_file,
     "places": _places,
     "region": _region,
-    "rings": lambda given: _rings_text(given.value) if len(given.value) else None,
-    "constraints": lambda given: _rings_text(given.value) if len(given.value) else None,
+    "rings": lambda item: _rings_text(item.value) if len(item.value) else None,
+    "constraints": lambda item: _rings_text(item.value) if len(item.value) else None,
     "trace": _trace,
 }
 
