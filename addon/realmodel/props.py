@@ -36,7 +36,7 @@ from .bl.project import library_rows, results, units
 from .bl.scene import data_objects, quality
 from .bl.shading import looks
 from .core.base.units import MODEL_UNIT
-from .core.settings.schema import PROJECT
+from .core.project.project import PROJECT
 from .registration import classes
 
 

@@ -34,7 +34,7 @@ from ..core.readers import (
     table_kind,
 )
 from ..core.readers.objects.object_file import is_object_file
-from ..core.settings.schema import READING
+from ..core.settings.point_file import READING
 from ..core.settings.series import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..base.algebra import ascending
 from ..base.errors import InputRefused, place_text
 from .field_table import FieldTable
+from .setting import Setting
 
 NORMAL = ("normal_x", "normal_y", "normal_z")
 COLUMNS = (
@@ -39,6 +40,9 @@ class DipFile(FieldTable):
     """
 
     known = COLUMNS
+
+
+DIPS = Setting(kind="table_file", of=DipFile, example='"dips.csv"')
 
 
 @dataclass(frozen=True, eq=False)
