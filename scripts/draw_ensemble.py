@@ -18,8 +18,7 @@ import numpy as np
 from realmodel.core import build, load_project
 from realmodel.core.drawing import save_drawing
 from realmodel.core.drawing.drawing import Drawing, Text
-from realmodel.core.ensembles import Realizer, blocks_at, draw_probabilities, section_samples
-from realmodel.core.ensembles.places import Probabilities
+from realmodel.core.ensembles import Probabilities, Realizer, blocks_at, draw_probabilities, section_samples
 from realmodel.core.results.sections.section_drawing import block_outlines, flattened
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -17,6 +17,7 @@ DOCUMENTS = [
     ROOT / "docs" / name
     for name in (
         "reference/project_file.md",
+        "reference/output_files.md",
         "reference/operators.md",
         "guide/sculpted_strata.md",
         "guide/tour.md",
@@ -80,6 +81,38 @@ def _rule_labels():
     from realmodel.core.settings.rules import RULES
 
     return _table(["rule", ""], [[f"**{rule.label}**", rule.tip] for rule in RULES.values()])
+
+
+def _written_formats():
+    from realmodel.core import exporters
+    from realmodel.core.exporters.formats import FORMATS
+
+    exported = {
+        "model": exporters.MODEL,
+        "surfaces": exporters.SURFACES,
+        "section": exporters.SECTION,
+        "mesh for simulation": exporters.MESH,
+        "borehole": exporters.BOREHOLE,
+        "planned hole": exporters.PLANNED_HOLE,
+        "fields": exporters.FIELDS,
+        "report": exporters.REPORT,
+        **{f"probabilities of a {kind}": exporter for kind, exporter in exporters.SAMPLES.items()},
+    }
+    rows = []
+    for known in FORMATS:
+        names = [name for name, exporter in exported.items() if known in exporter.formats()]
+        rows.append([f"`{known.ending}`", known.label, ", ".join(names), known.tip])
+    return _table(["extension", "format", "written of", ""], sorted(rows, key=lambda row: row[0]))
+
+
+def _read_formats():
+    from realmodel.core.readers.formats import FORMATS
+
+    rows = {}
+    for known in FORMATS:
+        endings = ", ".join(f"`{ending}`" for ending in known.endings)
+        rows.setdefault(known.holds, []).append(f"{known.label} ({endings})")
+    return _table(["files of", "formats"], [[holds, ", ".join(texts)] for holds, texts in rows.items()])
 
 
 def _classes(pattern):
@@ -157,6 +190,8 @@ def written(text):
         "options": _options,
         "rule_labels": _rule_labels,
         "operators": _operators,
+        "written_formats": _written_formats,
+        "read_formats": _read_formats,
     }
     keys = {
         "project": PROJECT,

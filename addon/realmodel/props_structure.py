@@ -9,15 +9,14 @@ from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
 from .core.project.structure_entries import BODY, FAULT
-from .core.readers.meshes.mesh_file import MESH_FORMATS
+from .core.readers.formats import MESH, labels
 from .core.settings.point_file import READING
 from .props_schema import properties_of
 from .props_surface import Interface, RealModelFilter
 
-_FORMATS = ", ".join(known.name for known in MESH_FORMATS)
 _MESH_SOURCES = (
     ("MESH_OBJECT", "Mesh Object", "A mesh object, with its modifiers"),
-    ("MESH_FILE", "Mesh File", f"File with its triangles ({_FORMATS})"),
+    ("MESH_FILE", "Mesh File", f"File with its triangles ({labels(MESH)})"),
 )
 _POINTS_SOURCE = (
     "POINTS_FILE",

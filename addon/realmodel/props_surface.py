@@ -9,7 +9,7 @@ from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
 from .core.project.project import SURFACE
-from .core.readers.meshes.mesh_file import MESH_FORMATS
+from .core.readers.formats import MESH, labels
 from .core.settings.methods import STRUCTURE
 from .core.settings.point_file import READING
 from .props_schema import properties_of
@@ -21,7 +21,7 @@ SOURCES = (
     (
         "MESH_FILE",
         "Mesh File",
-        f"File with the triangles of the surface ({', '.join(known.name for known in MESH_FORMATS)})",
+        f"File with the triangles of the surface ({labels(MESH)})",
     ),
     ("NONE", "No Points", "For the methods that need no points: Constant and Parallel"),
 )

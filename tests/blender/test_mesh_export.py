@@ -8,8 +8,8 @@ from realmodel.bl.display import shown_models
 from realmodel.bl.jobs.export_job import ExportJob
 from realmodel.bl.jobs.mesh_job import MeshJob
 from realmodel.core import Cancelled, OutputFailed, UsageError, build, load_project
+from realmodel.core.exporters import MESH, save_mesh
 from realmodel.core.exporters.mesh_request import MeshRequest
-from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
 
 PROJECT = SAMPLES / "two_layers" / "project.toml"
 OPTIONS = {"edge_length": 8.0, "minimum_thickness": 1.0, "layer_thickness": 4.0}
@@ -23,7 +23,8 @@ class MeshExport(PanelCase):
     def test_every_format_is_what_the_core_writes(self):
         self.open_two_layers()
         mesh = build(load_project(PROJECT)).simulation_mesh(8.0, 1.0, layer_thickness=4.0)
-        for ending, known in MESH_FORMATS.items():
+        for known in MESH.formats():
+            ending = known.ending
             path, expected = self.folder / f"panel{ending}", self.folder / f"core{ending}"
             self.assertEqual(ops.export_mesh(filepath=str(path), **OPTIONS), {"FINISHED"})
             save_mesh(mesh, expected)

@@ -13,7 +13,7 @@ from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl.display import shown_models
 from realmodel.bl.project import method_settings, region_size, results, surface_statistics
 from realmodel.core import load_library, load_project
-from realmodel.core.exporters import FORMATS
+from realmodel.core.exporters import MODEL
 from realmodel.core.project.project import ROCK, SURFACE
 from realmodel.core.project.project_writer import off_text, points_text
 from realmodel.core.settings.methods import METHODS, NEIGHBOURS_OF_FITTED
@@ -502,14 +502,14 @@ class Results(PanelCase):
     def test_every_format_of_models_is_exported(self):
         stack(0.0, 10.0)
         ops.build()
-        for ending, known in FORMATS.items():
-            file = self.folder / f"m{ending}"
+        for known in MODEL.formats():
+            file = self.folder / f"m{known.ending}"
             if known.needs is not None and importlib.util.find_spec(known.needs[0]) is None:
                 said = f"needs {known.needs[0]}, .* -m pip install {known.needs[0]}"
                 self.refused(ops.export, said, filepath=str(file))
                 continue
             ops.export(filepath=str(file))
-            self.assertTrue(file.exists(), ending)
+            self.assertTrue(file.exists(), known.ending)
         self.assertTrue((self.folder / "m.foam" / "constant" / "polyMesh" / "owner").is_file())
 
     def test_export_after_opening_and_of_whole_blocks(self):

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 from realmodel.core import UsageError
-from realmodel.core.drawing import WRITERS, Drawing, save_drawing
+from realmodel.core.drawing import DRAWINGS, Drawing, save_drawing
 from realmodel.core.drawing.charts import Axes, color_bar, legend, round_length, tick_texts, ticks
 from realmodel.core.drawing.drawing import Text
 from realmodel.core.drawing.glyphs import text_width
@@ -106,7 +106,7 @@ def test_names_beside_a_color_bar_do_not_overlap():
     assert heights == pytest.approx([20.0, 60.5 - 4.4, 60.5 + 4.4, 100.0])
 
 
-@pytest.mark.parametrize("ending", WRITERS)
+@pytest.mark.parametrize("ending", [known.ending for known in DRAWINGS])
 def test_the_same_drawing_gives_the_same_bytes(ending, tmp_path):
     save_drawing(chart(), tmp_path / f"a{ending}")
     save_drawing(chart(), tmp_path / f"b{ending}")

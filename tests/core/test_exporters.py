@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import Fault, OutputFailed, Project, Rock, Surface, UsageError, build
-from realmodel.core.exporters import FORMATS, format_for, save_model
+from realmodel.core.exporters import MODEL
 from realmodel.core.exporters.npz import model_arrays
 from realmodel.core.exporters.report import SCHEMA, model_report
 from stacks import places
@@ -52,7 +52,10 @@ def contents(path):
     return {str(file.relative_to(path)): file.read_bytes() for file in files}
 
 
-@pytest.mark.parametrize("ending", sorted(FORMATS))
+ENDINGS = [known.ending for known in MODEL.formats()]
+
+
+@pytest.mark.parametrize("ending", sorted(ENDINGS))
 def test_the_same_model_gives_the_same_bytes(model, tmp_path, ending):
     first, second = tmp_path / "a" / f"m{ending}", tmp_path / "b" / f"m{ending}"
     first.parent.mkdir()
@@ -74,7 +77,7 @@ def test_npz_knows_no_clock(model, tmp_path):
 def test_a_model_without_cells_can_be_written(tmp_path):
     empty = build(Project("one", [Rock("rock", crossing_surfaces(count=1))]))
     assert (len(empty.cell_block), empty.volume) == (0, 0.0)
-    for ending in FORMATS:
+    for ending in ENDINGS:
         empty.save(tmp_path / f"m{ending}")
     with np.load(tmp_path / "m.npz", allow_pickle=False) as read:
         assert len(read["vertices"]) == len(read["block_names"]) == 0
@@ -85,17 +88,17 @@ def test_unknown_endings_are_refused_with_those_known(model, tmp_path):
     with pytest.raises(UsageError, match=r"'\.xyz' are not supported; use one of \.npz, \.vtu, "):
         model.save(tmp_path / "m.xyz")
     with pytest.raises(UsageError, match="no extension"):
-        format_for("model")
-    assert format_for("M.NPZ") is FORMATS[".npz"]
+        MODEL.format("model")
+    assert MODEL.format("M.NPZ") is MODEL.format("m.npz")
     with pytest.raises(OutputFailed, match="no folder"):
         model.save(tmp_path / "none" / "m.npz")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_progress_is_the_share_written(model, tmp_path):
-    for ending in FORMATS:
+    for ending in ENDINGS:
         shares = []
-        save_model(model, tmp_path / f"m{ending}", shares.append)
+        MODEL.save(model, tmp_path / f"m{ending}", shares.append)
         assert shares == sorted(shares)
         assert shares[-1] == pytest.approx(1.0)
 

@@ -17,7 +17,7 @@ from realmodel.core import (
     build,
     load_project,
 )
-from realmodel.core.exporters.meshes import save_mesh
+from realmodel.core.exporters import save_mesh
 from realmodel.core.simulation.element_faces import ElementFaces
 from realmodel.core.simulation.filled import smallest_dihedral_angle
 from realmodel.core.simulation.patches import boundary_patches

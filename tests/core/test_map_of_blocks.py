@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, MapFile, Project, Rock, Surface, build, load_project
 from realmodel.core.project.project_writer import save_project
-from realmodel.core.readers.maps.unit_polygons import UnitPolygon
+from realmodel.core.readers.unit_polygons import UnitPolygon
 from realmodel.core.surfaces.field_data import read_field_data
 from realmodel.core.surfaces.observed.polygon_borders import border_lines
 from structure_cases import heights_at, plane_fault

@@ -265,7 +265,7 @@ def test_our_own_readers_take_them(two_layers, tmp_path):
         two_layers.save(tmp_path / f"m{ending}")
     areas = geological_map(two_layers)
     first = read_shapes(MapLayer(tmp_path / "m.gpkg", "geology", {"block": "Sand"})).polygons
-    second = read_geojson(tmp_path / "m.geojson", {"block": "Sand"}).polygons
+    second = read_geojson(MapLayer(tmp_path / "m.geojson", where={"block": "Sand"})).polygons
     assert len(first) == len(second) == len(areas[1].polygons)
     for one, two, rings in zip(first, second, areas[1].polygons, strict=True):
         assert np.array_equal(one.rings[0], two.rings[0])

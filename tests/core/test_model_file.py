@@ -23,7 +23,7 @@ from realmodel.core import (
 )
 from realmodel.core.cells.model_record import record_arrays
 from realmodel.core.ensembles.realization import Realizer
-from realmodel.core.exporters import FORMATS
+from realmodel.core.exporters import MODEL
 from realmodel.core.exporters.npz import write_arrays
 from realmodel.core.exporters.report import model_report
 from realmodel.core.readers import read_mesh
@@ -76,12 +76,12 @@ def side(model):
 
 
 def saved(model, tmp_path):
-    for ending, known in FORMATS.items():
-        size = {"cell_size": side(model) / 20} if known.has_cell_size else {}
+    for known in MODEL.formats():
+        size = {"cell_size": side(model) / 20} if "cell_size" in known.options else {}
         try:
-            model.save(tmp_path / f"m{ending}", **size)
+            model.save(tmp_path / f"m{known.ending}", **size)
         except UsageError as error:
-            assert ending == ".disu" and "is inclined" in str(error)
+            assert known.ending == ".disu" and "is inclined" in str(error)
     return files_of(tmp_path)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from object_models import assert_closed, assert_shared, crossing_model, logged_model, volume
 from realmodel.core import Project, Rock, Surface, UsageError, build
-from realmodel.core.exporters import format_for
+from realmodel.core.exporters import MODEL
 from realmodel.core.results.regular_cells import regular_cells
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -223,7 +223,7 @@ def test_geoh5_has_cells_where_their_size_is_given(model, tmp_path):
 def test_a_missing_library_is_named_before_anything_is_made(tmp_path, monkeypatch, module, ending, extra):
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(UsageError, match=rf'needs {module}.*pip install "realmodel\[{extra}\]"'):
-        format_for(f"m{ending}")
+        MODEL.format(f"m{ending}")
     level = [Surface(f"S{z}", *square(z)) for z in (0.0, 1.0)]
     small = build(Project("x", [Rock("r", level)]))
     with pytest.raises(UsageError, match=f"needs {module}"):

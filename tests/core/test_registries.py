@@ -2,16 +2,14 @@
 """What is in the add-on's registries is there: functions of methods, rules and meshers of the native part."""
 
 import re
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Project, Rock, Surface, build, mesh_region
-from realmodel.core.exporters import FORMATS
-from realmodel.core.exporters.meshes import MESH_FORMATS
-from realmodel.core.exporters.sections import SECTION_WRITERS
-from realmodel.core.readers.meshes.mesh_file import read_mesh
+from realmodel.core import InputRefused, Project, Rock, Surface, build, exporters, mesh_region
+from realmodel.core.exporters.formats import FORMATS
+from realmodel.core.heights.methods import FUNCTIONS
+from realmodel.core.readers.mesh_input import read_mesh
 from realmodel.core.settings.meshers import MESHERS
 from realmodel.core.settings.methods import METHODS, OPTIONS
 from realmodel.core.settings.rules import RULES
@@ -20,10 +18,16 @@ PLAN = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
 
 
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.run])
-def test_a_method_has_its_function(method):
-    module, _, function = METHODS[method].run.rpartition(".")
-    assert callable(getattr(import_module(f"realmodel.core.heights.{module}"), function))
+def test_each_method_that_chooses_no_other_has_its_function():
+    assert set(FUNCTIONS) == {name for name, method in METHODS.items() if not method.chooses}
+
+
+def test_each_format_is_written_by_an_exporter_and_is_the_only_one_there():
+    values = [*vars(exporters).values(), *exporters.SAMPLES.values()]
+    views = {view for value in values if isinstance(value, exporters.Exporter) for view in value.views}
+    pairs = [(known.ending, content) for known in FORMATS for content in known.takes]
+    assert {content for _, content in pairs} == views
+    assert len(set(pairs)) == len(pairs)
 
 
 def test_options_of_one_name_look_alike():
@@ -75,8 +79,8 @@ def test_the_document_names_the_program_that_checks_each_format():
     root = Path(__file__).resolve().parents[2]
     text = (root / "docs" / "dev" / "formats.md").read_text(encoding="utf-8")
     written = text[text.index("## Written") : text.index("## Read")]
-    for ending in (*FORMATS, *MESH_FORMATS, *SECTION_WRITERS):
-        assert f"`{ending}`" in written, ending
+    for known in FORMATS:
+        assert f"`{known.ending}`" in written, known.ending
     for line in text.splitlines():
         if line.startswith("| ") and not line.startswith(("| format", "|---")):
             tests = re.findall(r"`(test_\w+\.py)`", line)

@@ -20,7 +20,7 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.base.packages import vendored
-from realmodel.core.exporters import save_model
+from realmodel.core.exporters import MODEL
 from realmodel.core.readers import read_point_file
 from realmodel.core.results.regular_cells import plan_grids, regular_cells
 
@@ -216,6 +216,6 @@ def test_a_table_stops_while_it_is_written(model, tmp_path):
             raise Cancelled("cancelled")
 
     with pytest.raises(Cancelled):
-        save_model(model, tmp_path / "m.csv", step, cell_size=1.0)
+        MODEL.save(model, tmp_path / "m.csv", step, cell_size=1.0)
     assert 0.5 < shares[-1] < 1.0 and shares == sorted(shares)
     assert not list(tmp_path.iterdir())

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build, load_project
-from realmodel.core.exporters.meshes import save_mesh
+from realmodel.core.exporters import save_mesh
 from realmodel.core.simulation.element_faces import ElementFaces
 from solver_meshes import check_solver_mesh, least_angles
 from solvers import (

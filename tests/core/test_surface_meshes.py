@@ -6,7 +6,8 @@ import struct
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build
-from realmodel.core.readers import MESH_ENDINGS, read_mesh
+from realmodel.core.readers import read_mesh
+from realmodel.core.readers.formats import MESH, endings
 
 SQUARE = np.array([[0.5, 0, 1], [1.5, 0, 2], [1.5, 1, 3], [0.5, 1, 4]])
 
@@ -142,4 +143,4 @@ def test_a_project_takes_such_meshes(write):
     surfaces = [Surface("floor", mesh=floor), Surface("top", mesh=write("top.ts", TSURF))]
     model = build(Project("p", [Rock("r", surfaces)]))
     assert model.volume > 0
-    assert {".obj", ".stl", ".ply", ".ts"} <= set(MESH_ENDINGS)
+    assert {".obj", ".stl", ".ply", ".ts"} <= set(endings(MESH))

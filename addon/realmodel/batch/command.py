@@ -38,11 +38,10 @@ def main(arguments: list[str]) -> int:
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # exceeding the size limit of files becomes an OSError
     try:
         options = parse(arguments)
-    except SystemExit as leaving:
-        return leaving.code or DONE
-    try:
         from ..core import RealModelError, UsageError
         from .run import run
+    except SystemExit as leaving:
+        return leaving.code or DONE
     except ImportError as error:
         return say(_not_importable(error), REFUSED)
     try:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,31 +12,28 @@ import numpy as np
 
 from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
-from ..core.exporters import ExportOptions, format_for, write_model
-from ..core.exporters.boreholes import borehole_writer, planned_hole_writer
+from ..core.exporters import BOREHOLE, MODEL, PLANNED_HOLE, SECTION, Exporter
 from ..core.exporters.mesh_request import cleaned_line
-from ..core.exporters.sections import section_writer
 from ..core.model.section import Section
-from ..core.readers import MESH_ENDINGS, read_mesh
+from ..core.readers import read_mesh
+from ..core.readers.formats import MESH, endings
 from ..core.results.model_boreholes import Interval
 from ..core.results.planned_holes import HoleAxis, HoleInterval
 from ..core.settings.point_file import MeshFile
 from .sources import ENDINGS, OpenedFile
 
-Writer = Callable[[Path | str], Callable]
-
 
 @dataclass
 class SectionRequest:
     """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2).
-    exaggeration, hole_width: of drawings, as of Section.save."""
+    exaggeration, hole_width: of drawings, as of Section.save. exporter: writes the file."""
 
     option: str
     file: Path
     what: np.ndarray | Path
+    exporter: Exporter = SECTION
     exaggeration: float = 1.0
     hole_width: float = 0.0
-    kind = "section"
 
     @property
     def outputs(self) -> list[Path]:
@@ -60,8 +57,8 @@ class SectionRequest:
         """Makes the section and stages its file. Returns the summary for the terminal."""
         progress(1.0, f"cutting {self.file.name}")
         found = self.cut(model, threads)
-        with outputs.file(self.file) as file:
-            section_writer(self.file, self.exaggeration, self.hole_width)(found, file)
+        drawn = {"exaggeration": self.exaggeration, "hole_width": self.hole_width}
+        self.exporter.write(found, self.file, outputs, **drawn)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(found)} polygons, area {found.area:.2f}"
 
@@ -69,11 +66,11 @@ class SectionRequest:
 @dataclass
 class BoreholeRequest:
     """A borehole and its file. what: where it is planned, or the position in plan of one that goes straight
-    down through the whole model."""
+    down through the whole model. exporter: writes the file."""
 
     file: Path
     what: HoleAxis | tuple[float, float]
-    kind = "borehole"
+    exporter: Exporter
 
     @property
     def outputs(self) -> list[Path]:
@@ -91,15 +88,14 @@ class BoreholeRequest:
         progress(1.0, f"writing {self.file.name}")
         found: Sequence[HoleInterval | Interval]
         remarks: Sequence[str] = ()
-        with outputs.file(self.file) as file:
-            if isinstance(self.what, HoleAxis):
-                axis = self.what
-                hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
-                planned_hole_writer(self.file)(hole, file)
-                found, remarks = hole.intervals, hole.remarks
-            else:
-                found = model.borehole(*self.what)
-                borehole_writer(self.file)(model, found, file)
+        if isinstance(self.what, HoleAxis):
+            axis = self.what
+            hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
+            self.exporter.write(hole, self.file, outputs)
+            found, remarks = hole.intervals, hole.remarks
+        else:
+            found = model.borehole(*self.what)
+            self.exporter.write((model, found), self.file, outputs)
         length = sum(interval.length for interval in found)
         line = f"borehole {self.file.name}: {counted(len(found), 'interval')}, {length:.2f} of rock"
         return "\n  ".join([line, *remarks])
@@ -109,7 +105,7 @@ class BoreholeRequest:
 class CutRequest:
     """A cut and the files of its halves; one of them may be left out.
 
-    cell_size, contour_interval, tolerance: as of core.exporters.save_model.
+    cell_size, contour_interval, tolerance: as of Model.save.
     cutter: point and normal of a plane (6,), the file of a surface, or (file of a project or model, or None
     for the model itself, block).
     """
@@ -120,6 +116,7 @@ class CutRequest:
     cell_size: Sequence[float] | None = None
     contour_interval: float | None = None
     tolerance: float | None = None
+    exporter = MODEL
 
     @property
     def outputs(self) -> list[Path]:
@@ -168,50 +165,55 @@ class CutRequest:
             if path is None:
                 continue
             cells = None
-            if self.tolerance is not None and format_for(path).has_cells:
+            if self.tolerance is not None and path.suffix.lower() in MODEL.endings("tolerance"):
                 progress(1.0, f"cleaning cells of {path.name}")
                 cells = half.cleaned_cells(self.tolerance, threads=threads, progress=step)
                 lines.append(f"{path.name}: {cleaned_line(cells)}")
-            write_model(half, path, outputs, ExportOptions(self.cell_size, self.contour_interval, cells))
+            sizes = {"cell_size": self.cell_size, "contour_interval": self.contour_interval}
+            MODEL.write(half, path, outputs, **sizes, cells=cells)
         low, high = ("inside", "outside") if isinstance(self.cutter, tuple) else ("below", "above")
         line = f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
         return "\n".join([line, *lines])
 
 
-def section_request(text: str, writer: Writer = section_writer) -> SectionRequest:
-    """X,Y,Z,NX,NY,NZ=FILE. writer: knows which files there are. Raises UsageError."""
+def section_request(text: str, exporter: Exporter = SECTION) -> SectionRequest:
+    """X,Y,Z,NX,NY,NZ=FILE. Raises UsageError."""
     what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")
-    writer(file)
-    return SectionRequest("--section", Path(file), _plane("--section", what))
+    exporter.format(file)
+    return SectionRequest("--section", Path(file), _plane("--section", what), exporter)
 
 
-def fence_request(text: str, writer: Writer = section_writer) -> SectionRequest:
-    """X,Y,X,Y,...=FILE or LINE.csv=FILE, as section_request. Raises UsageError."""
+def fence_request(text: str, exporter: Exporter = SECTION) -> SectionRequest:
+    """X,Y,X,Y,...=FILE or LINE.csv=FILE. Raises UsageError."""
     what, file = _divided("--fence", text, "X,Y,X,Y,...=FILE or LINE.csv=FILE")
-    writer(file)
+    exporter.format(file)
     numbers = _numbers(what)
     if numbers is None:
-        return SectionRequest("--fence", Path(file), Path(what))
+        return SectionRequest("--fence", Path(file), Path(what), exporter)
     if len(numbers) < 4 or len(numbers) % 2:
         raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
     line = _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError)
-    return SectionRequest("--fence", Path(file), line)
+    return SectionRequest("--fence", Path(file), line, exporter)
 
 
-def borehole_request(text: str, writer: Writer = borehole_writer) -> BoreholeRequest:
-    """X,Y=FILE or X,Y,Z,AZIMUTH,DIP,LENGTH=FILE, as section_request. Raises UsageError."""
+def borehole_request(text: str, exporter: Exporter | None = None) -> BoreholeRequest:
+    """X,Y=FILE or X,Y,Z,AZIMUTH,DIP,LENGTH=FILE. exporter: None: that of the model's holes. Raises
+    UsageError."""
     what, file = _divided("--borehole", text, "X,Y=FILE or X,Y,Z,AZIMUTH,DIP,LENGTH=FILE")
-    writer(file)
     numbers = _numbers(what)
+    if exporter is None:
+        exporter = BOREHOLE if numbers is not None and len(numbers) == 2 else PLANNED_HOLE
+    exporter.format(file)
     if numbers is None or len(numbers) not in (2, 6):
         raise UsageError(
             f"--borehole {text}: a position in plan is two numbers, X,Y, and a planned hole six, "
             "X,Y,Z,AZIMUTH,DIP,LENGTH"
         )
     if len(numbers) == 2:
-        return BoreholeRequest(Path(file), tuple(numbers.tolist()))
+        return BoreholeRequest(Path(file), tuple(numbers.tolist()), exporter)
     try:
-        return BoreholeRequest(Path(file), HoleAxis(tuple(numbers[:3].tolist()), *numbers[3:].tolist()))
+        axis = HoleAxis(tuple(numbers[:3].tolist()), *numbers[3:].tolist())
+        return BoreholeRequest(Path(file), axis, exporter)
     except UsageError as error:
         raise UsageError(f"--borehole {text}: {error}") from error
 
@@ -227,7 +229,7 @@ def cut_request(text: str) -> CutRequest:
     below, above = (Path(half) if half else None for half in (*halves, "")[:2])
     for path in (below, above):
         if path is not None:
-            format_for(path)
+            MODEL.format(path)
     if _numbers(what) is not None:
         return CutRequest(_plane("--cut", what), below, above)
     project, colon, block = what.rpartition(":")
@@ -235,10 +237,10 @@ def cut_request(text: str) -> CutRequest:
         if not block:
             raise UsageError(f"--cut {text}: the block is missing; write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
-    if Path(what).suffix.lower() not in MESH_ENDINGS and not Path(what).is_file():
+    if Path(what).suffix.lower() not in endings(MESH) and not Path(what).is_file():
         raise UsageError(
             f"--cut {text}: '{what}' is not a cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
-            f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK or "
+            f"FILE{' or FILE'.join(endings(MESH))}, or a block PROJECT.toml:BLOCK or "
             "MODEL.npz:BLOCK (:BLOCK for one of the model's own)"
         )
     return CutRequest(Path(what), below, above)

@@ -84,8 +84,24 @@ def _groups(text: str) -> int:
     return number
 
 
+class _Parser(argparse.ArgumentParser):
+    """Fills endings from the table of formats into the help, for which alone the table is imported."""
+
+    def print_help(self, file=None):
+        from ..core.exporters import BOREHOLE, MESH, MODEL, SECTION
+
+        exporters = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE}
+        endings = {name: [f.ending for f in exporter.formats()] for name, exporter in exporters.items()}
+        for option in ("cell_size", "contour_interval", "tolerance", "origin"):
+            endings[option] = MODEL.endings(option)
+        texts = {name: ", ".join(listed) for name, listed in endings.items()}
+        for action in self._actions:
+            action.help = action.help.format(**texts)
+        super().print_help(file)
+
+
 class Option(NamedTuple):
-    """An option of the command line.
+    """An option of the command line. help: with names of `_Parser` in the place of endings.
 
     value: how the help shows its value, or the values to choose from; "" where it has none. default: [] where
     it may be given several times. needs: it goes with one of these options only. ending: of its file.
@@ -133,7 +149,7 @@ OPTIONS = (
     Option(
         "export",
         "F",
-        "write the model to F, whose ending says the format; may be given several times",
+        "write the model to F, whose ending says the format ({model}); may be given several times",
         Path,
         [],
     ),
@@ -147,27 +163,26 @@ OPTIONS = (
     Option(
         "cell-size",
         "X[,Y[,Z]]",
-        "the cells of regular grids by --export and --cut (.csv, .vti, .tif, .asc, and beside the blocks in "
-        ".omf, .geoh5)",
+        "the cells of regular grids by --export and --cut ({cell_size})",
         _sizes,
     ),
     Option(
         "contour-interval",
         "H",
-        "the distance of contours in maps by --export and --cut (.gpkg, .geojson)",
+        "the distance of contours in maps by --export and --cut ({contour_interval})",
         _length,
     ),
     Option(
         "cell-tolerance",
         "T",
-        "clean the cells by --export and --cut (.vtu, .foam, .exo, .disu): T is the least size",
+        "clean the cells by --export and --cut ({tolerance}): T is the least size",
         _length,
     ),
     Option(
         "origin",
         "X,Y,Z",
-        "the place from which the coordinates of shapes by --export count (.obj, .ply, .stl, .glb, .dxf), "
-        "for programs with short numbers",
+        "the place from which the coordinates of shapes by --export count ({origin}), for programs with "
+        "short numbers",
         _place,
         needs=("export",),
     ),
@@ -176,8 +191,8 @@ OPTIONS = (
     Option(
         "section",
         "X,Y,Z,NX,NY,NZ=F",
-        "write the section by a plane (point, normal) to F, a drawing (.svg, .dxf, .png) or polygons "
-        "(.vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz); any number of times",
+        "write the section by a plane (point, normal) to F, a drawing or polygons ({section}); any number of "
+        "times",
         default=[],
     ),
     Option(
@@ -189,7 +204,7 @@ OPTIONS = (
     Option(
         "borehole",
         "X,Y=F",
-        "write what a vertical borehole at a position in plan meets to F (.csv); "
+        "write what a vertical borehole at a position in plan meets to F ({borehole}); "
         "X,Y,Z,AZIMUTH,DIP,LENGTH=F: what a planned hole meets, by depth along it",
         default=[],
     ),
@@ -220,8 +235,8 @@ OPTIONS = (
     Option(
         "mesh",
         "FILE",
-        "write a mesh for simulation to FILE, whose ending says the format (.foam, .vtu, .msh, ...); may be "
-        "given several times",
+        "write a mesh for simulation to FILE, whose ending says the format ({mesh}); may be given several "
+        "times",
         Path,
         [],
     ),
@@ -327,7 +342,7 @@ OPTIONS = (
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     """Raises SystemExit with status 2 where they are wrong."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog=PROGRAM,
         usage=_USAGE,
         description="Builds a model of sedimentary rock from a project file.",

@@ -4,7 +4,6 @@ block along them, or on a regular grid."""
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,11 +15,11 @@ from ..core.ensembles import (
     borehole_samples,
     grid_samples,
     hole_samples,
-    sample_writer,
     section_samples,
 )
-from ..core.ensembles.samples import Samples
+from ..core.exporters import SAMPLES
 from ..core.results.planned_holes import HoleAxis
+from ..core.results.samples import Samples
 from .cuts import BoreholeRequest, SectionRequest, borehole_request, fence_request, section_request
 
 
@@ -38,9 +37,9 @@ class ProbabilityRequests:
         """Raises UsageError."""
         return cls(
             [
-                *(section_request(text, writer=_writer("section")) for text in options.section),
-                *(fence_request(text, writer=_writer("section")) for text in options.fence),
-                *(borehole_request(text, writer=_writer("borehole")) for text in options.borehole),
+                *(section_request(text, SAMPLES["section"]) for text in options.section),
+                *(fence_request(text, SAMPLES["section"]) for text in options.fence),
+                *(borehole_request(text, SAMPLES["borehole"]) for text in options.borehole),
                 *(GridRequest(path) for path in options.export),
             ],
             options.cell_size,
@@ -67,14 +66,9 @@ class ProbabilityRequests:
         begin = 0
         for request, samples in zip(self.made, self._samples, strict=True):
             end = begin + len(samples.places)
-            writer = sample_writer(request.file, request.kind, self.exaggeration)
-            with outputs.file(request.file) as file:
-                writer(samples, found.at(begin, end), file)
+            asked = samples, found.at(begin, end)
+            request.exporter.write(asked, request.file, outputs, exaggeration=self.exaggeration)
             begin = end
-
-
-def _writer(kind: str):
-    return functools.partial(sample_writer, kind=kind)
 
 
 @dataclass
@@ -82,10 +76,10 @@ class GridRequest:
     """The cells of a regular grid, and their file."""
 
     file: Path
-    kind = "grid"
+    exporter = SAMPLES["grid"]
 
     def __post_init__(self):
-        sample_writer(self.file, self.kind)
+        self.exporter.format(self.file)
         self.outputs, self.inputs = [self.file], []
 
     def read(self) -> None:

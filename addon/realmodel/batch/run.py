@@ -17,12 +17,11 @@ from ..core import (
     build_surfaces,
     estimate,
 )
-from ..core.base.atomic import Outputs, make_folder
-from ..core.exporters import FORMATS, ExportOptions, format_for, output_target, write_model
-from ..core.exporters.fields import write_fields
+from ..core.base.atomic import Outputs, make_folder, writable_target
+from ..core.exporters import FIELDS, MODEL, SURFACES
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import hole_entries, model_report, write_report
-from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
+from ..core.exporters.surfaces import write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from ..core.surfaces.prepare import with_arrays
 from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
@@ -73,8 +72,8 @@ def run(options: argparse.Namespace) -> None:
             cells = _cleaned_cells(options, model, progress)
             _export(options, model, outputs, progress, cells)
             if options.export_field is not None:
-                with outputs.file(options.export_field) as file:
-                    write_fields([entry.fields for entry in model.rock_inputs], file)
+                fields = [entry.fields for entry in model.rock_inputs]
+                FIELDS.write(fields, options.export_field, outputs)
             if options.blend is not None or options.render is not None:
                 _write_with_blender(options, project, model, outputs, progress)
             if options.report is not None:
@@ -94,7 +93,7 @@ def run(options: argparse.Namespace) -> None:
     if holes is not None:
         lines += [f"cross-validation: {holes.summary()}", left_out_table(holes)]
     if options.origin is not None:
-        names = [str(path) for path in options.export if FORMATS[path.suffix.lower()].has_origin]
+        names = map(str, _with_option(options.export, "origin"))
         lines.append(f"{', '.join(names)}: coordinates count from {', '.join(map(str, options.origin))}")
     lines += [wanted.line(mesh) for wanted in mesh_requests]
     if cells is not None:
@@ -122,9 +121,8 @@ def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
         try:
             surfaces = build_surfaces(project, options.threads, progress, stage=options.stage)
             for path in options.export:
-                with outputs.file(path) as file:
-                    progress(1.0, f"writing {path.name}")
-                    surface_writer_for(path)(surfaces, file)
+                progress(1.0, f"writing {path.name}")
+                SURFACES.write(surfaces, path, outputs)
             if options.report is not None:
                 with outputs.file(options.report) as file:
                     write_surfaces_report(surfaces, file)
@@ -169,8 +167,7 @@ def _tiles(options: argparse.Namespace, project, progress) -> None:
             project, options.out, options.tiles, client, cells=options.cells, progress=progress
         )
     if options.export_field is not None:
-        with Outputs() as outputs, outputs.file(options.export_field) as file:
-            write_fields([rock.fields for rock in found.rock_fields()], file)
+        FIELDS.save([rock.fields for rock in found.rock_fields()], options.export_field)
     _print(options, found.warnings, [tiles_table(found)])
 
 
@@ -254,9 +251,15 @@ def _requests(options: argparse.Namespace) -> list:
     ]
 
 
+def _with_option(paths: list[Path], option: str) -> list[Path]:
+    """The files of models on which a setting has an effect."""
+    able = MODEL.endings(option)
+    return [path for path in paths if path.suffix.lower() in able]
+
+
 def _cleaned_cells(options: argparse.Namespace, model, progress):
     """The cells of the model for --cell-tolerance, or None."""
-    if options.cell_tolerance is None or not any(format_for(path).has_cells for path in options.export):
+    if options.cell_tolerance is None or not _with_option(options.export, "tolerance"):
         return None
     return model.cleaned_cells(
         options.cell_tolerance,
@@ -283,25 +286,21 @@ def _mesh_requests(options: argparse.Namespace) -> list[MeshRequest]:
 def _checked_targets(options: argparse.Namespace, requests: list, meshes: list[MeshRequest]) -> list[Path]:
     """The paths of the outputs. Refuses wrong ones before anything is built."""
     exported = [] if options.ensemble is not None else options.export  # else they are requests
-    for path in exported:
-        surface_writer_for(path) if options.surfaces_only else format_for(path)
+    exporter = SURFACES if options.surfaces_only else MODEL
+    targets = [exporter.target(path) for path in exported]
     if options.cell_tolerance is not None:
-        able = [known.ending for known in FORMATS.values() if known.has_cells]
         cut = [path for request in requests if isinstance(request, CutRequest) for path in request.outputs]
-        if not any(path.suffix.lower() in able for path in (*options.export, *cut)):
-            raise UsageError(
-                f"--cell-tolerance goes with --export or --cut to a file with cells: {', '.join(able)}"
-            )
-    if options.origin is not None:
-        able = [known.ending for known in FORMATS.values() if known.has_origin]
-        if options.surfaces_only or not any(path.suffix.lower() in able for path in exported):
-            raise UsageError(f"--origin goes with --export of blocks to {', '.join(able)}")
+        if not _with_option([*options.export, *cut], "tolerance"):
+            able = ", ".join(MODEL.endings("tolerance"))
+            raise UsageError(f"--cell-tolerance goes with --export or --cut to a file with cells: {able}")
+    if options.origin is not None and (options.surfaces_only or not _with_option(exported, "origin")):
+        raise UsageError(f"--origin goes with --export of blocks to {', '.join(MODEL.endings('origin'))}")
     single = (options.export_field, options.report, options.blend, options.render)
     paths = [*exported, *(p for p in single if p is not None)]
-    paths += [path for request in requests for path in request.outputs]
-    targets = [output_target(path) for path in paths]
-    paths += [mesh.path for mesh in meshes]
-    targets += [mesh.target() for mesh in meshes]
+    targets += [writable_target(path) for path in paths[len(exported) :]]
+    for request in (*requests, *meshes):
+        paths += request.outputs
+        targets += [request.exporter.target(path) for path in request.outputs]
     for path, target in zip(paths, targets, strict=True):
         if targets.count(target) > 1:
             raise UsageError(f"{path}: two outputs have this name")
@@ -316,10 +315,16 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
 
 
 def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
-    given = ExportOptions(options.cell_size, options.contour_interval, cells, options.origin)
     for path in options.export:
-        write_model(
-            model, path, outputs, given, lambda share, path=path: progress(1.0, f"writing {path.name}")
+        MODEL.write(
+            model,
+            path,
+            outputs,
+            lambda share, path=path: progress(1.0, f"writing {path.name}"),
+            cell_size=options.cell_size,
+            contour_interval=options.contour_interval,
+            cells=cells,
+            origin=options.origin,
         )
 
 

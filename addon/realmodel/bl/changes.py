@@ -6,7 +6,7 @@ import contextlib
 from pathlib import PurePath
 
 from ..core import RealModelError
-from ..core.readers import RASTER_ENDINGS
+from ..core.readers.formats import RASTER, endings
 from . import display
 from .field import handle, hole_validation
 from .objects import viewports
@@ -127,7 +127,7 @@ def ground(rock, context):
     if settings.is_filling():
         return
     rock.ground_stored, rock.ground_stamp = {}, ""
-    rock.ground_is_raster = PurePath(rock.ground).suffix.lower() in RASTER_ENDINGS
+    rock.ground_is_raster = PurePath(rock.ground).suffix.lower() in endings(RASTER)
     setting(rock, context)
 
 

@@ -12,7 +12,7 @@ from .base.errors import (
     UsageError,
 )
 from .cells.blocks import Block, BlockBoundary
-from .exporters.meshes import save_mesh
+from .exporters import save_mesh
 from .exporters.report import Report
 from .fields import Lattice, ScalarField
 from .filling import Strata, fill_with_strata

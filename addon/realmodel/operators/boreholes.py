@@ -25,15 +25,12 @@ from ..bl.scene import borehole_points, data_objects, live
 from ..core import InputRefused, RealModelError
 from ..core.base.errors import counted
 from ..core.readers import (
-    MAP_ENDINGS,
-    OBJECT_ENDINGS,
-    RASTER_ENDINGS,
-    TABLE_ENDINGS,
     contents,
     table_contents,
     table_kind,
 )
-from ..core.readers.objects.object_file import is_object_file
+from ..core.readers.formats import OBJECTS, RASTER, SHAPES, TABLE, endings
+from ..core.readers.object_input import is_object_file
 from ..core.settings.point_file import READING
 from ..core.settings.series import FIELD
 from ..core.surfaces.field_data import left_out_texts
@@ -78,7 +75,7 @@ def _rasters(properties):
     """The names of the rasters beside the first of the chosen maps."""
     path = _first_map(properties)
     beside = sorted(path.parent.iterdir()) if path is not None and os.path.isdir(path.parent) else []
-    return [each.name for each in beside if each.suffix.lower() in RASTER_ENDINGS]
+    return [each.name for each in beside if each.suffix.lower() in endings(RASTER)]
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
@@ -94,7 +91,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     filepath: StringProperty(
         name="File", description="One of the tables", subtype="FILE_PATH", options={"SKIP_SAVE"}
     )
-    filter_glob: file_filter(*TABLE_ENDINGS, *OBJECT_ENDINGS, *MAP_ENDINGS)
+    filter_glob: file_filter(*endings(TABLE, OBJECTS, SHAPES))
     map_layer: StringProperty(
         name="Map Layer",
         description="Layer of a GeoPackage that has the polygons; empty: its only one",

@@ -20,59 +20,30 @@ from ..bl.jobs.mesh_job import MeshJob
 from ..bl.project import results, settings
 from ..bl.scene import live, scene_export
 from ..core import BuildFailed, InputRefused, UsageError
-from ..core.base.atomic import Outputs
 from ..core.base.build_warning import BuildWarning
-from ..core.exporters import FORMATS
+from ..core.exporters import MESH, MODEL, REPORT
 from ..core.exporters.mesh_request import MeshRequest
-from ..core.exporters.meshes import MESH_FORMATS
-from ..core.exporters.report import model_report, write_report
+from ..core.exporters.report import model_report
 from .background import InBackground
 from .reporting import Reporting, a_model, chosen_path, file_filter, not_building, object_mode
 from .start import invoke
 
-_MODELS = tuple(
-    (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
-    for known in FORMATS.values()
-)
-_MESHES = tuple(
-    (known.ending[1:].upper(), f"{known.label} ({known.ending})", f"A mesh for {known.label}")
-    for known in MESH_FORMATS.values()
-)
-_REPORTS = (
-    ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),
-    ("CSV", "Table of Blocks (.csv)", "Volumes, shares, and counts of the blocks, for a spreadsheet"),
-)
 _OUTDATED = "The model is out of date: what it is made from was changed since it was built"
-DRAWINGS = (
-    ("SVG", "SVG (.svg)", "Scalable drawing, for documents and web pages"),
-    ("PNG", "PNG (.png)", "Picture, 200 dots per inch"),
-    ("DXF", "DXF (.dxf)", "Lines on layers, for CAD programs"),
-)
-
-SECTIONS = (
-    *DRAWINGS,
-    ("VTU", "VTK Unstructured Grid (.vtu)", "Polygons that know their block, for ParaView"),
-    ("OBJ", "Wavefront OBJ (.obj)", "Polygons, a group for each block"),
-    ("PLY", "PLY (.ply)", "Triangles that know their block"),
-    ("STL", "STL (.stl)", "Triangles, a solid for each block"),
-    ("GLB", "glTF Binary (.glb)", "Triangles in the colors of the properties, for the web"),
-    ("TS", "GOCAD TSurf (.ts)", "Triangles, an object for each block"),
-    ("CSV", "Table of Corners (.csv)", "The corners of the polygons"),
-    ("NPZ", "NumPy (.npz)", "All arrays of the section, for Python"),
-)
 
 
-def format_menu(formats):
+def format_menu(formats, default=None):
+    items = [(known.ending[1:].upper(), f"{known.label} ({known.ending})", known.tip) for known in formats]
     return EnumProperty(
         name="Format",
         description="Format of the file; its ending follows",
-        items=formats,
+        items=items,
+        default=default or items[0][0],
         options={"SKIP_SAVE"},
     )
 
 
 def format_filter(formats):
-    return file_filter(*(f".{identifier.lower()}" for identifier, *_ in formats))
+    return file_filter(*(known.ending for known in formats))
 
 
 class Exporting(Reporting, ExportHelper):
@@ -166,8 +137,8 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     command = "export"
     needs = (a_model, not_building)
 
-    format: format_menu(_MODELS)
-    filter_glob: format_filter(_MODELS)
+    format: format_menu(MODEL.formats())
+    filter_glob: format_filter(MODEL.formats())
     cell_size: FloatVectorProperty(
         name="Cell Size",
         description="Of regular grids (block models, GeoTIFF, ESRI ASCII; OMF and geoh5), in model units; 0: "
@@ -222,8 +193,8 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     command = "export_mesh"
     needs = (a_model, not_building)
 
-    format: format_menu(_MESHES)
-    filter_glob: format_filter(_MESHES)
+    format: format_menu(MESH.formats())
+    filter_glob: format_filter(MESH.formats())
     edge_length: FloatProperty(
         name="Edge Length",
         description="Length in plan, in model units; smaller details are lost. 0: a fiftieth of the model",
@@ -310,14 +281,10 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
     bl_label = "Write Report"
     needs = (a_model,)
 
-    format: format_menu(_REPORTS)
-    filter_glob: format_filter(_REPORTS)
+    format: format_menu(REPORT.formats())
+    filter_glob: format_filter(REPORT.formats())
 
     def write(self, context, path):
         is_table = path.suffix.lower() == ".csv"
-        model = None if is_table else self.model(context)
-        with Outputs() as outputs, outputs.file(path) as file:
-            if is_table:
-                file.write(results.as_text(context.scene).encode())
-            else:
-                write_report(model_report(model), file)
+        content = results.as_text(context.scene) if is_table else model_report(self.model(context))
+        REPORT.save(content, path)

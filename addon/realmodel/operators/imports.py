@@ -19,11 +19,6 @@ from ..core import InputRefused, MeshFile, PointFile
 from ..core.base.errors import HeightsMissing, counted
 from ..core.base.triangles import open_edges
 from ..core.readers import (
-    MAP_ENDINGS,
-    MESH_ENDINGS,
-    OBJECT_ENDINGS,
-    RASTER_ENDINGS,
-    TABLE_ENDINGS,
     is_mesh_file,
     objects_in,
     preview_table,
@@ -31,6 +26,7 @@ from ..core.readers import (
     read_point_file,
 )
 from ..core.readers.contents import column_values
+from ..core.readers.formats import ARRAY, MESH, OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
@@ -41,7 +37,7 @@ from .start import invoke
 
 _SHOWN = 8  # columns of a preview
 _PREVIEWED = 3  # files
-_ENDINGS = (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS, *OBJECT_ENDINGS)
+_ENDINGS = endings(MESH, TABLE, RASTER, ARRAY, SHAPES, OBJECTS)
 
 
 @dataclass
@@ -79,7 +75,7 @@ class FilesImportHelper(ImportHelper):
 def _looked_at(properties):
     """Previews of the tables among the chosen files."""
     for path in chosen_files(properties):
-        if os.path.isfile(path) and path.suffix.lower() in TABLE_ENDINGS:
+        if os.path.isfile(path) and path.suffix.lower() in endings(TABLE):
             with contextlib.suppress(InputRefused):  # files that are no tables are refused when they are read
                 if not is_mesh_file(path):
                     yield preview_table(path)
@@ -233,10 +229,10 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
         if is_mesh_file(path):
             return [_Given(path.stem, "MESH_FILE", path)]
         reading = {}
-        if self.columns.strip() and path.suffix.lower() in TABLE_ENDINGS:
+        if self.columns.strip() and path.suffix.lower() in endings(TABLE):
             reading["columns"] = [reading_text.column(name) for name in self.columns.split(",")]
         whole = _Given(path.stem, "POINTS_FILE", path, reading=reading)
-        if not (self.split or self.split_column) or path.suffix.lower() not in TABLE_ENDINGS:
+        if not (self.split or self.split_column) or path.suffix.lower() not in endings(TABLE):
             return [whole]
         if not self.split and self.options.is_invoke:  # unticked in the dialog
             return [whole]

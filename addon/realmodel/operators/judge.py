@@ -7,8 +7,8 @@ from bpy.props import EnumProperty, IntProperty
 from ..bl.project import project_settings, settings
 from ..bl.scene import quality
 from ..core import UsageError
-from ..core.drawing import save_drawing
-from .files import DRAWINGS, Exporting, format_filter, format_menu
+from ..core.drawing import DRAWINGS, save_drawing
+from .files import Exporting, format_filter, format_menu
 from .reporting import Reporting, a_model, a_surface, not_building
 
 

@@ -8,7 +8,7 @@ from bpy_extras.io_utils import ImportHelper
 from ..bl.project import plan_mesh, settings
 from ..bl.scene import live
 from ..core.project.plan_input import read_constraints
-from ..core.readers import MAP_ENDINGS
+from ..core.readers.formats import SHAPES, endings
 from .reporting import (
     Reporting,
     a_rock,
@@ -89,7 +89,7 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
     needs = (a_rock,)
 
     filename_ext = ""
-    filter_glob: file_filter(*MAP_ENDINGS, ".txt")
+    filter_glob: file_filter(*endings(SHAPES), ".txt")
 
     def act(self, context):
         rock = settings.active_rock(context.scene)

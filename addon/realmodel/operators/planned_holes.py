@@ -11,11 +11,11 @@ from ..bl.project import project_settings, settings
 from ..bl.scene import planned_holes
 from ..core import InputRefused
 from ..core.base.errors import counted
+from ..core.exporters import PLANNED_HOLE
 from .background import InBackground
 from .files import Exporting, format_filter, format_menu
 from .reporting import Reporting, a_model, not_building
 
-_TABLES = (("CSV", "Table (.csv)", "The intervals with depths and probabilities, for a spreadsheet"),)
 _LONGER = 1.1  # a new hole goes so far below the model
 
 
@@ -107,8 +107,8 @@ class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):
     bl_label = "Save Planned Hole"
     needs = (a_model, a_planned_hole)
 
-    format: format_menu(_TABLES)
-    filter_glob: format_filter(_TABLES)
+    format: format_menu(PLANNED_HOLE.formats())
+    filter_glob: format_filter(PLANNED_HOLE.formats())
 
     def of_what(self, context):
         return (planned_holes.active(context.scene).name,)

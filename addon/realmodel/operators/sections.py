@@ -12,8 +12,9 @@ from ..bl.objects import exaggeration, viewports, visible
 from ..bl.project import project_settings, settings
 from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
+from ..core.exporters import SECTION
 from ..core.results.sections.section_drawing import MOST_EXAGGERATION
-from .files import SECTIONS, Exporting, format_filter, format_menu
+from .files import Exporting, format_filter, format_menu
 from .in_viewport import InViewport
 from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property
 
@@ -202,8 +203,8 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     bl_label = "Save Section"
     needs = (a_model,)
 
-    format: format_menu(SECTIONS)
-    filter_glob: format_filter(SECTIONS)
+    format: format_menu(SECTION.formats(), "SVG")
+    filter_glob: format_filter(SECTION.formats())
     location: _PLACE
     normal: _NORMAL
     along: EnumProperty(

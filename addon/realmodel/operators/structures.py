@@ -13,16 +13,13 @@ from ..core import InputRefused, MapLayer, MeshFile
 from ..core.base.errors import HeightsMissing
 from ..core.base.triangles import open_edges
 from ..core.readers import (
-    MAP_ENDINGS,
-    MESH_ENDINGS,
-    OBJECT_ENDINGS,
-    TABLE_ENDINGS,
     is_mesh_file,
     objects_in,
     read_mesh,
     read_shapes,
 )
 from ..core.readers.fault_sticks import read_fault_points
+from ..core.readers.formats import MESH, OBJECTS, SHAPES, STICKS, TABLE, endings
 from ..core.readers.objects.geo_object import SURFACE
 from ..core.settings.point_file import PointFile
 from ..core.structures.shapes.traces import VERTICAL
@@ -47,7 +44,6 @@ _KINDS = (
     ("FAULT", "Faults", "All are faults"),
     ("BODY", "Bodies", "All are bodies"),
 )
-_STICK_ENDINGS = (".pol",)
 
 
 def _surface_of(row):
@@ -170,7 +166,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
     empty: BoolProperty(
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
-    filter_glob: file_filter(*MESH_ENDINGS, *OBJECT_ENDINGS, *_STICK_ENDINGS, *TABLE_ENDINGS, *MAP_ENDINGS)
+    filter_glob: file_filter(*endings(MESH, OBJECTS, STICKS, TABLE, SHAPES))
 
     def invoke(self, context, event):
         if self.empty or self.paths():
@@ -363,5 +359,5 @@ REALMODEL_FH_faults_and_bodies = drop_handler(
     "REALMODEL_FH_faults_and_bodies",
     "Meshes and fault sticks that are dropped into the viewport become faults and bodies",
     "RealModel faults and bodies",
-    ("realmodel.fault_body_add", (*MESH_ENDINGS, *_STICK_ENDINGS)),
+    ("realmodel.fault_body_add", endings(MESH, STICKS)),
 )

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
 from ...core.readers import (
-    MAP_ENDINGS,
     Picks,
     UnitNames,
     names_units,
@@ -16,7 +15,8 @@ from ...core.readers import (
     read_space_dips,
     table_kind,
 )
-from ...core.readers.objects.object_file import is_object_file
+from ...core.readers.formats import SHAPES, endings
+from ...core.readers.object_input import is_object_file
 from ...core.readers.tables.hole_tables import OBSERVED, joined
 from ...core.readers.tables.interval_values import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
@@ -118,7 +118,7 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
 
 def is_map(path):
     """Whether a file has shapes in plan."""
-    return path.suffix.lower() in MAP_ENDINGS
+    return path.suffix.lower() in endings(SHAPES)
 
 
 def block_attribute(names):

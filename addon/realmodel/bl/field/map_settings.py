@@ -8,8 +8,9 @@ import bpy
 import numpy as np
 
 from ...core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
-from ...core.readers import RASTER_ENDINGS, UnitNames
-from ...core.readers.maps.unit_polygons import read_unit_polygons
+from ...core.readers import UnitNames
+from ...core.readers.formats import RASTER, endings
+from ...core.readers.unit_polygons import read_unit_polygons
 from ...core.surfaces.map_data import DrapedMap, draped_map, map_on_ground, read_map, with_ground
 from ..host import caches
 from ..objects import viewports
@@ -45,7 +46,7 @@ def take_ground(row, given):
     if not given.ground or given.ground in [each.name for each in row.surfaces]:
         return None
     row.ground = str(given.ground)
-    row.ground_is_raster = Path(given.ground).suffix.lower() in RASTER_ENDINGS
+    row.ground_is_raster = Path(given.ground).suffix.lower() in endings(RASTER)
     youngest = row.surfaces[-1] if len(row.surfaces) else None
     return youngest.name if youngest is not None and project_settings.is_of_ground(youngest) else None
 

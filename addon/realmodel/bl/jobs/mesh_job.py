@@ -15,7 +15,7 @@ class MeshJob(ThreadJob):
 
     def __init__(self, model, request, unit):
         """Raises UsageError, OutputFailed where the file cannot be written."""
-        request.target()
+        request.exporter.target(request.path)
         self._model, self._request, self._unit = model, request, unit
 
     def _work(self, job):

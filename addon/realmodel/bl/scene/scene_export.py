@@ -16,18 +16,13 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.base.atomic import Outputs, writable_target
+from ...core.base.formats import Format, by_ending
 from ..display import bodies
 from ..host import versions
 from ..objects import model_tree
 from ..project import library_rows, settings
 from ..shading import looks
 
-FORMATS = (
-    ("GLB", "glTF Binary (.glb)", "For web pages and game engines; pictures are in the file"),
-    ("USDC", "USD (.usdc)", "For film and visualization; pictures are beside the file"),
-    ("USDA", "USD as Text (.usda)", "The same, as text"),
-    ("OBJ", "Wavefront OBJ (.obj)", "For everything else; knows no custom properties"),
-)
 _KEPT = (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.BLOCK, model_tree.PROPERTY)
 _SAMPLES = 2  # of a pixel
 _STEEPEST = 1.15  # radians between the faces of a part of a picture
@@ -52,16 +47,14 @@ def write(context, items, path, size):
     size: of the pictures of looks, pixels; 0: materials have the color of their property. Raises InputRefused
     where this Blender cannot, OutputFailed.
     """
-    path = writable_target(path)
-    ending = path.suffix.lower()
-    export = {".glb": _write_gltf, ".obj": _write_obj}.get(ending, _write_usd)
-    _require_exporter(export)
+    known, path = by_ending(path, FORMATS, "scenes are not written as {}"), writable_target(path)
+    _require_exporter(known.write)
     with tempfile.TemporaryDirectory() as place, Outputs() as outputs:
         target = Path(place) / path.name
         with _copies(context, items, target if size else None, size):
-            export(str(target))
+            known.write(str(target))
         for made in sorted(Path(place).iterdir()):
-            if ending == ".glb" and made != target:
+            if known.write is _write_gltf and made != target:
                 continue  # packed pictures
             with outputs.file(path.parent / made.name) as file:
                 file.write(made.read_bytes())
@@ -95,6 +88,21 @@ def _write_obj(path):
     bpy.ops.wm.obj_export(
         filepath=path, export_selected_objects=True, path_mode="STRIP", check_existing=False
     )
+
+
+_OBJECTS = ("objects",)  # selected ones; Blender writes them to a path
+FORMATS = (
+    Format(
+        ".glb",
+        "glTF Binary",
+        _OBJECTS,
+        "For web pages and game engines; pictures are in the file",
+        _write_gltf,
+    ),
+    Format(".usdc", "USD", _OBJECTS, "For film and visualization; pictures are beside the file", _write_usd),
+    Format(".usda", "USD as Text", _OBJECTS, "The same, as text", _write_usd),
+    Format(".obj", "Wavefront OBJ", _OBJECTS, "For everything else; knows no custom properties", _write_obj),
+)
 
 
 @contextlib.contextmanager

@@ -36,7 +36,7 @@ class FileBytes:
     def __init__(self, file: Path):
         self._file = file
         self._block, self._begin = b"", 0  # the block read last, and its position
-        with _read_of(file):
+        with reading(file):
             self._size = file.stat().st_size
 
     def __len__(self) -> int:
@@ -55,7 +55,7 @@ class FileBytes:
 
     def _read(self, begin: int, end: int) -> bytes:
         found = bytearray()
-        with _read_of(self._file), self._file.open("rb", buffering=0) as opened:
+        with reading(self._file), self._file.open("rb", buffering=0) as opened:
             opened.seek(begin)
             while len(found) < end - begin and (more := opened.read(end - begin - len(found))):
                 found += more
@@ -85,7 +85,8 @@ _BYTES_TO_FIND = 1 << 12  # mostly the end of a line
 
 
 @contextmanager
-def _read_of(file: Path) -> Iterator[None]:
+def reading(file: Path) -> Iterator[None]:
+    """Raises InputRefused in the place of OSError."""
     try:
         yield
     except OSError as error:
@@ -163,7 +164,7 @@ def encoding_of(content: Content) -> str:
 
 def read_bytes(file: Path) -> bytes:
     """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
-    with _read_of(file):
+    with reading(file):
         raw = Path(file).read_bytes()
     if raw[:2] in _UTF_16:
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangles in space: open edges, orientation, crossings."""
+"""Triangles in space: open edges, orientation, crossings; polygons as triangles."""
 
 from __future__ import annotations
 
@@ -249,3 +249,12 @@ def checked_triangulation(vertices: ArrayLike, triangles: ArrayLike) -> tuple[np
         bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
         raise InputRefused(f"vertex {bad} is {place_text(vertices[bad])}, not finite")
     return vertices, np.ascontiguousarray(triangles, np.int32)
+
+
+def fanned(offsets: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Polygons as triangles (T, 3) from their first corners, and the polygon (T,) of each."""
+    size = np.diff(offsets)
+    owner = np.repeat(np.arange(len(size)), np.maximum(size - 2, 0))
+    first = offsets[owner]
+    at = first + np.arange(len(owner)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2) + 1
+    return np.column_stack([corners[first], corners[at], corners[at + 1]]), owner

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.fans import fanned
+from ..base.triangles import fanned
 from .polygon_mesh import PolygonMesh, of_triangles
 
 _UP, _DOWN = 1, 2

@@ -9,23 +9,27 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..base.atomic import Outputs
-from ..base.errors import UsageError
+from ..base.formats import Format, by_ending
+from ..base.text import no_step
 from .drawing import Drawing
 from .dxf import write_dxf
 from .png import write_png
 from .svg import write_svg
 
-WRITERS = {".svg": write_svg, ".dxf": write_dxf, ".png": write_png}
+_OPTIONS = ("exaggeration", "hole_width")
+DRAWINGS = (
+    Format(".svg", "SVG", ("drawing",), "Scalable drawing, for documents and web pages", write_svg, _OPTIONS),
+    Format(".dxf", "DXF", ("drawing",), "Lines on layers, for CAD programs", write_dxf, _OPTIONS),
+    Format(".png", "PNG", ("drawing",), "Picture, 200 dots per inch", write_png, _OPTIONS),
+)
 
 
 def save_drawing(drawing: Drawing, path: str | Path) -> None:
     """Writes a drawing to an SVG, DXF, or PNG file, which appears whole or not at all. Raises UsageError,
     OutputFailed."""
-    ending = Path(path).suffix.lower()
-    if ending not in WRITERS:
-        raise UsageError(f"{path}: drawings are not written as '{ending}'; use one of {', '.join(WRITERS)}")
+    known = by_ending(path, DRAWINGS, "drawings are not written as {}")
     with Outputs() as outputs, outputs.file(path) as file:
-        WRITERS[ending](drawing, file)
+        known.write(drawing, file, no_step)
 
 
 __all__ = ["Drawing", "save_drawing"]

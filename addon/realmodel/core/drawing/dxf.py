@@ -1,54 +1,124 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DXF files (AutoCAD's Drawing Exchange Format, release 12, ASCII), which every program for drawings reads.
+"""DXF files (AutoCAD's Drawing Exchange Format, release 12, ASCII), which every CAD program reads.
 
-Coordinates are those of what is drawn, not of the page. A polygon becomes closed polylines in its color, as
-this release has no hatching; layers are those of the drawing, their names as this release asks for.
+Coordinates of drawings are those of what is drawn, not of the page. A polygon becomes closed polylines in its
+color, as this release has no hatching; layers are those of the drawing, their names as this release asks for.
 """
 
 from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.text import Step
 from .drawing import ANCHORS, BLACK, Color, Drawing, DrawingItem, FilledRings, Line, Text
 
 _LONGEST_NAME = 31
-_ZERO_LAYER = "0"
-CODE_PAGE = "cp1252"
+ZERO_LAYER = "0"
+_CODE_PAGE = "cp1252"
+_HEAD = """0
+SECTION
+2
+HEADER
+9
+$ACADVER
+1
+AC1009
+9
+$DWGCODEPAGE
+3
+ANSI_1252
+9
+$EXTMIN
+{low}
+9
+$EXTMAX
+{high}
+0
+ENDSEC
+0
+SECTION
+2
+TABLES
+0
+TABLE
+2
+LTYPE
+70
+1
+0
+LTYPE
+2
+CONTINUOUS
+70
+0
+3
+Solid line
+72
+65
+73
+0
+40
+0.0
+0
+ENDTAB
+0
+TABLE
+2
+LAYER
+70
+{count}
+{layers}0
+ENDTAB
+0
+ENDSEC
+0
+SECTION
+2
+ENTITIES
+"""
+_LAYER = "0\nLAYER\n2\n{name}\n70\n0\n62\n{color}\n6\nCONTINUOUS\n"
 # AutoCAD's colors with the numbers 10 to 249: hues in steps of 15 degrees, ten of each, from bright to dark.
 _HUES, _VALUES = 15.0 * np.arange(24), (1.0, 0.65, 0.5, 0.3, 0.15)
 
 
-def write_dxf(drawing: Drawing, file: BinaryIO) -> None:
-    layers = {"": _ZERO_LAYER}
+@contextmanager
+def entities(file: BinaryIO, bounds: np.ndarray, layers: Mapping[str, Color]) -> Iterator[None]:
+    """The entities are written within this context, what comes before and after them by it. bounds: (2, 3),
+    the lowest and the highest coordinates. layers: their colors by name."""
+    low, high = (
+        "\n".join(f"{code}\n{value!r}" for code, value in zip((10, 20, 30), corner, strict=True))
+        for corner in bounds.tolist()
+    )
+    rows = "".join(_LAYER.format(name=name, color=_color_number(color)) for name, color in layers.items())
+    file.write(_HEAD.format(low=low, high=high, count=len(layers), layers=rows).encode(_CODE_PAGE))
+    yield
+    file.write(b"0\nENDSEC\n0\nEOF\n")
+
+
+def write_dxf(drawing: Drawing, file: BinaryIO, _step: Step) -> None:
+    layers = {"": ZERO_LAYER}
     for item in drawing.items:
         if item.layer not in layers:
             layers[item.layer] = layer_name(item.layer, layers.values())
     pairs = _Pairs(drawing)
-    low, high = pairs.places([(0.0, 0.0), (drawing.width, drawing.height)])
-    pairs.add(
-        (0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252")
-    )
-    pairs.add((9, "$EXTMIN"), *pairs.place(low), (9, "$EXTMAX"), *pairs.place(high), (0, "ENDSEC"))
-    pairs.add((0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LTYPE"), (70, 1), (0, "LTYPE"))
-    pairs.add((2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0), (0, "ENDTAB"))
-    pairs.add((0, "TABLE"), (2, "LAYER"), (70, len(layers)))
-    for layer, name in layers.items():
-        pairs.add((0, "LAYER"), (2, name), (70, 0), (62, _layer_color(drawing, layer)), (6, "CONTINUOUS"))
-    pairs.add((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
+    bounds = np.zeros((2, 3))
+    bounds[:, :2] = pairs.places([(0.0, 0.0), (drawing.width, drawing.height)])
     for item in drawing.items:
         pairs.item(item, layers[item.layer])
-    pairs.add((0, "ENDSEC"), (0, "EOF"))
-    file.write("".join(pairs.lines).encode(CODE_PAGE))
+    colors = {name: _layer_color(drawing, layer) for layer, name in layers.items()}
+    with entities(file, bounds, colors):
+        file.write("".join(pairs.lines).encode(_CODE_PAGE))
 
 
 class _Pairs:
-    """The lines of a file: group codes and values."""
+    """The lines of the entities of a drawing: group codes and values."""
 
     def __init__(self, drawing: Drawing):
         self.drawing = drawing
@@ -73,11 +143,11 @@ class _Pairs:
             self.text(item, layer)
         else:
             for at, radius in zip(self.places(item.points), item.radii / self.drawing.scale, strict=True):
-                color = (62, color_number(item.color))
+                color = (62, _color_number(item.color))
                 self.add((0, "CIRCLE"), (8, layer), color, *self.place(at), (40, float(radius)))
 
     def polyline(self, points: np.ndarray, layer: str, color: Color, closed: bool) -> None:
-        self.add((0, "POLYLINE"), (8, layer), (62, color_number(color)), (66, 1), *self.place((0.0, 0.0)))
+        self.add((0, "POLYLINE"), (8, layer), (62, _color_number(color)), (66, 1), *self.place((0.0, 0.0)))
         self.add((70, int(closed)))
         for at in self.places(points):
             self.add((0, "VERTEX"), (8, layer), *self.place(at))
@@ -86,7 +156,7 @@ class _Pairs:
     def text(self, item: Text, layer: str) -> None:
         ((x, y),) = self.places([(item.x, item.y)]).tolist()
         height = 0.72 * item.size / self.drawing.scale  # of capital letters
-        self.add((0, "TEXT"), (8, layer), (62, color_number(item.color)), *self.place((x, y)), (40, height))
+        self.add((0, "TEXT"), (8, layer), (62, _color_number(item.color)), *self.place((x, y)), (40, height))
         self.add((1, _escaped(item.text)), (50, item.angle))
         if ANCHORS[item.anchor]:  # then the second point counts
             self.add((72, round(2 * ANCHORS[item.anchor])), (11, x), (21, y), (31, 0.0))
@@ -94,7 +164,7 @@ class _Pairs:
 
 def _escaped(text: str) -> str:
     """The text with AutoCAD's codes for letters that the file's code page lacks."""
-    known = text.encode(CODE_PAGE, "ignore").decode(CODE_PAGE)
+    known = text.encode(_CODE_PAGE, "ignore").decode(_CODE_PAGE)
     return "".join(letter if letter in known else f"\\U+{ord(letter):04X}" for letter in text)
 
 
@@ -110,16 +180,14 @@ def layer_name(layer: str, taken: Collection[str]) -> str:
     return name
 
 
-def _layer_color(drawing: Drawing, layer: str) -> int:
+def _layer_color(drawing: Drawing, layer: str) -> Color:
     for item in drawing.items:
         if item.layer == layer:
-            return color_number(
-                item.fill or item.stroke or BLACK if isinstance(item, FilledRings) else item.color
-            )
-    return color_number(BLACK)
+            return item.fill or item.stroke or BLACK if isinstance(item, FilledRings) else item.color
+    return BLACK
 
 
-def color_number(color: Color) -> int:
+def _color_number(color: Color) -> int:
     """The color of AutoCAD that is most like one; 7 is black on white and white on black."""
     shade = np.asarray(color[:3], np.float64)
     if shade.max() < 0.1:

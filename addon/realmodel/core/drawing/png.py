@@ -9,13 +9,14 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..base.text import Step, no_step
 from .drawing import Drawing
 from .raster import rasterize
 
 _DOTS_PER_INCH = 200
 
 
-def write_png(drawing: Drawing, file: BinaryIO) -> None:
+def write_png(drawing: Drawing, file: BinaryIO, _step: Step = no_step) -> None:
     write_pixels(rasterize(drawing, _DOTS_PER_INCH / 72), file, _DOTS_PER_INCH)
 
 

@@ -9,10 +9,11 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
+from ..base.text import Step, no_step
 from .drawing import Color, Drawing, DrawingItem, FilledRings, Line, Text
 
 
-def write_svg(drawing: Drawing, file: BinaryIO) -> None:
+def write_svg(drawing: Drawing, file: BinaryIO, _step: Step = no_step) -> None:
     """Items of one layer after another become a group that has the layer's name as its title."""
     width, height = (f"{value:.2f}" for value in (drawing.width, drawing.height))
     lines = [

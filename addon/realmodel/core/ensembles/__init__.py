@@ -5,11 +5,12 @@ Comes in: a `Model`, a number of realizations and a seed. Goes out: volumes of e
 heights, probabilities of blocks at samples, and their files.
 """
 
+from ..exporters.samples import draw_probabilities
+from ..results.samples import Probabilities
 from .ensemble import PERCENTILES, Ensemble, ensemble
-from .places import Probabilities, blocks_at
+from .places import blocks_at
 from .realization import Realizer
-from .sample_files import draw_probabilities, sample_writer
-from .samples import borehole_samples, grid_samples, hole_samples, section_samples
+from .samples import borehole_samples, grid_samples, hole_samples, sample_writer, section_samples
 
 __all__ = [
     "PERCENTILES",

@@ -16,9 +16,10 @@ from ..model.build import build
 from ..model.model import Model
 from ..model.planned_hole import PlannedHole
 from ..project.project import Project
+from ..results.samples import Probabilities
 from ..results.volume_uncertainty import missing_deviations, without_deviation
 from .along_holes import hole_of_realizations
-from .places import Probabilities, blocks_at
+from .places import blocks_at
 from .realization import Realizer
 from .surface_heights import differences, heights
 

@@ -5,68 +5,33 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
 from ..base.algebra import dot
 from ..base.errors import UsageError
+from ..base.text import no_step
 from ..cells.model_data import ModelData
+from ..exporters import SAMPLES
 from ..model.section import Fence, Section
 from ..results.planned_holes import HoleAxis
 from ..results.regular_cells import checked_size, frame_of
+from ..results.samples import (
+    BoreholeSamples,
+    GridSamples,
+    HoleSamples,
+    Probabilities,
+    Samples,
+    SectionSamples,
+)
 from ..results.sections.section_drawing import directions, flattened, is_vertical, plane_of
 
 MOST_PLACES = 20_000_000  # times blocks
 _COLUMNS, _ROWS = 200, 100  # of a section, where no size is given
 _BEYOND = 0.05  # of the height of a section: heights that are drawn leave those of the model
-
-
-@dataclass(frozen=True, eq=False)
-class Samples:
-    """places: (N, 3), the middles of cells."""
-
-    places: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class SectionSamples(Samples):
-    """Cells on a section or a fence, in rows from below. section: of the model. corners: (N, 4, 3) of the
-    cells; flat: (N, 4, 2), the same as sections are drawn. columns: cells in a row."""
-
-    section: Section
-    corners: np.ndarray
-    flat: np.ndarray
-    columns: int
-
-    @property
-    def distance(self) -> np.ndarray:
-        """(N,) float64: of the places from the left end of the drawing."""
-        return self.flat[:, :, 0].mean(axis=1)
-
-
-@dataclass(frozen=True, eq=False)
-class BoreholeSamples(Samples):
-    """Cells of a vertical line, from above. height: of a cell."""
-
-    height: float
-
-
-@dataclass(frozen=True, eq=False)
-class HoleSamples(Samples):
-    """Cells along a planned hole, from the collar. depths: (N,) of their middles along it."""
-
-    depths: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class GridSamples(Samples):
-    """Cells of a regular grid; x runs fastest, z slowest. As of regular_cells."""
-
-    origin: np.ndarray
-    size: np.ndarray
-    counts: tuple[int, int, int]
 
 
 def section_samples(
@@ -173,3 +138,16 @@ def _in_space(section: Section, flat: np.ndarray, panels: np.ndarray) -> np.ndar
     u = u + (dot(section.vertices - point, right)).min()
     v = v + (-point[2] if is_vertical(section) else (dot(section.vertices - point, up)).min())
     return point + u[:, :, None] * right + v[:, :, None] * up
+
+
+def sample_writer(path: str | Path, kind: str, exaggeration: float = 1.0) -> Callable[..., None]:
+    """The function (samples, probabilities, file) for files of this ending. kind: "section", "borehole" or
+    "grid". exaggeration: of heights in drawings. Raises UsageError."""
+    exporter = SAMPLES[kind]
+    known = exporter.format(path)
+
+    def write(samples: Samples, probabilities: Probabilities, file: BinaryIO) -> None:
+        content = exporter.view(known, (samples, probabilities), {"exaggeration": exaggeration})
+        known.write(content, file, no_step)
+
+    return write

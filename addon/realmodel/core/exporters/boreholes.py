@@ -5,39 +5,30 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import BinaryIO
 
+from ..base.text import Step
 from ..cells.model_data import ModelData
 from ..results.model_boreholes import Interval
 from ..results.planned_holes import COLUMNS, PlannedHoleData, mean_share
-from .endings import by_ending
 from .shapes.parts import distinct_names
 
 
-def borehole_writer(path: str | Path) -> Callable[..., None]:
-    """The function (model, intervals, file) that writes files of this ending. Raises UsageError."""
-    return by_ending(path, {".csv": _write_csv}, "boreholes are not written as {}")
-
-
-def _write_csv(model: ModelData, found: Sequence[Interval], file: BinaryIO) -> None:
+def write_borehole(borehole: tuple[ModelData, Sequence[Interval]], file: BinaryIO, _step: Step) -> None:
     """block (number), block_name, property, top and bottom (elevations) of each interval, from above."""
+    model, intervals = borehole
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(["block", "block_name", "property", "top", "bottom"])
-    for each in found:
-        block = model.blocks[each.block]
-        rows.writerow([each.block, block.name, block.property, repr(each.top), repr(each.bottom)])
+    for interval in intervals:
+        block = model.blocks[interval.block]
+        ends = repr(interval.top), repr(interval.bottom)
+        rows.writerow([interval.block, block.name, block.property, *ends])
     file.write(text.getvalue().encode("utf-8"))
 
 
-def planned_hole_writer(path: str | Path) -> Callable[..., None]:
-    """The function (hole, file) that writes files of this ending. Raises UsageError."""
-    return by_ending(path, {".csv": _write_planned}, "planned holes are not written as {}")
-
-
-def _write_planned(hole: PlannedHoleData, file: BinaryIO) -> None:
+def write_planned_hole(hole: PlannedHoleData, file: BinaryIO, _step: Step) -> None:
     """The rows of the hole; what is not known is empty. With an ensemble the probability of each block,
     averaged over the interval."""
     text = io.StringIO(newline="")

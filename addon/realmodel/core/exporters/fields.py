@@ -9,6 +9,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..base.errors import UsageError
+from ..base.text import Step, no_step
 from ..fields import ScalarField
 from ..fields.series_field import SeriesField
 from .encodings.vtk_xml import write_grid
@@ -16,7 +17,9 @@ from .encodings.vtk_xml import write_grid
 _TETRAHEDRON = 10  # VTK's number
 
 
-def write_fields(fields_of_rocks: Iterable[Sequence[SeriesField]], file: BinaryIO) -> None:
+def write_fields(
+    fields_of_rocks: Iterable[Sequence[SeriesField]], file: BinaryIO, _step: Step = no_step
+) -> None:
     """Writes the tetrahedra of the lattices of the fields of all rock masses, with the point array `field`, f
     at the nodes, and the cell arrays `series`, the number of the series in the model, and `compartment`, the
     number of the first compartment of its rock mass that has this field. Raises UsageError where there is

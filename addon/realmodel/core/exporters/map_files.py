@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import sqlite3
 import struct
-from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ import numpy as np
 
 from ..base.atomic import Outputs
 from ..base.errors import OutputFailed
+from ..base.text import Step
 from ..cells.model_data import ModelData
 from ..results.contours import contours
 from ..results.geological_map import geological_map, ground_of
@@ -43,12 +43,12 @@ class _Layer:
 
 
 def write_geojson(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], interval: float | None
+    model: ModelData, path: Path, outputs: Outputs, step: Step, contour_interval: float | None = None
 ) -> None:
     """Writes one collection of the features of all layers; `layer` is the name of the layer of each."""
-    layers = _layers(model, step, interval)
+    layers = _layers(model, step, contour_interval)
     with outputs.file(path) as file:
-        head: dict = {"type": "FeatureCollection", "name": model.project.name or Path(path).stem}
+        head: dict = {"type": "FeatureCollection", "name": model.project.name or path.stem}
         if model.project.crs is not None:
             head["crs"] = {"type": "name", "properties": {"name": _urn(model.project.crs)}}
         file.write(json.dumps(head, ensure_ascii=False)[:-1].encode() + b', "features": [')
@@ -80,10 +80,10 @@ def _urn(crs: str) -> str:
 
 
 def write_geopackage(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], interval: float | None
+    model: ModelData, path: Path, outputs: Outputs, step: Step, contour_interval: float | None = None
 ) -> None:
     """A table for each layer."""
-    layers = _layers(model, step, interval)
+    layers = _layers(model, step, contour_interval)
     try:
         with outputs.path(path) as target, closing(sqlite3.connect(target)) as base:
             base.executescript(_SCHEMA)
@@ -96,7 +96,7 @@ def write_geopackage(
     step(1.0)
 
 
-def _layers(model: ModelData, step: Callable[[float], None], interval: float | None) -> list[_Layer]:
+def _layers(model: ModelData, step: Step, interval: float | None) -> list[_Layer]:
     ground = ground_of(model)
     step(0.3)
     library = model.project.library

@@ -13,7 +13,7 @@ from ..base.work import Reporter
 from ..cells.model_data import ModelData
 from ..simulation.cleaned_cells import CleanedCells
 from ..simulation.simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh
-from .meshes import mesh_target, write_mesh
+from . import MESH
 
 EDGES_ACROSS = 50  # of the model, where no edge length is given
 EDGE_OVER_THICKNESS = 10  # where no minimum thickness is given
@@ -30,10 +30,11 @@ class MeshRequest:
     layers: int | None = None
     layer_thickness: float | None = None
     elements: str = "prisms"
+    exporter = MESH
 
-    def target(self) -> Path:
-        """The path of the output. Raises UsageError, OutputFailed."""
-        return mesh_target(self.path)
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.path]
 
     def make(self, model: ModelData, threads: int, progress: Reporter | None = None) -> SimulationMesh:
         """The mesh. Raises as Model.simulation_mesh. Without progress it is a part of the present job."""
@@ -52,7 +53,7 @@ class MeshRequest:
 
     def write(self, mesh: SimulationMesh, outputs: Outputs, unit: str, progress: Reporter) -> None:
         """Writes the mesh in the format of its file's ending."""
-        write_mesh(mesh, self.path, outputs, lambda _: progress(1.0, f"writing {self.path.name}"), unit)
+        MESH.write(mesh, self.path, outputs, lambda _: progress(1.0, f"writing {self.path.name}"), unit=unit)
 
     def line(self, mesh: SimulationMesh) -> str:
         """The printed line about the mesh."""

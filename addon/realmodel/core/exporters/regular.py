@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A model on a regular grid: block models as table (.csv) and VTK image (.vti), heights and thicknesses as
-GeoTIFF
-and ESRI ASCII grids."""
+GeoTIFF and ESRI ASCII grids."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 from xml.sax.saxutils import escape
 
 import numpy as np
 
 from ..base.atomic import Outputs
 from ..base.packages import vendored
+from ..base.text import Step
 from ..cells.model_data import ModelData
-from ..results.regular_cells import plan_grids, regular_cells
+from ..results.regular_cells import CellSize, plan_grids, regular_cells
 from ..settings.crs import epsg_code
 from ..simulation.patches import solver_names
 from .encodings.text_rows import write_rows
@@ -25,13 +25,10 @@ _NO_HEIGHT = -9999.0
 _LARGEST_CODE = 32766  # of systems in GeoTIFF
 
 
-def write_block_table(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
-) -> None:
-    """A row for each cell that has rock: its center, its size, the name of the block with the largest
-    share, and
-    the share of each block in it."""
-    cells = regular_cells(model, size, lambda share: step(0.5 * share))
+def write_block_table(model: ModelData, file: BinaryIO, step: Step, cell_size: CellSize = None) -> None:
+    """A row for each cell that has rock: its center, its size, the name of the block with the largest share,
+    and the share of each block in it."""
+    cells = regular_cells(model, cell_size, lambda share: step(0.5 * share))
     shares = cells.shares
     names = distinct_names(block.name for block in model.blocks)
     z, y, x = np.nonzero(shares.sum(axis=0) > 0)
@@ -40,11 +37,10 @@ def write_block_table(
     columns = ["x", "y", "z", "dx", "dy", "dz", "block", *(f"share {name}" for name in names)]
     quoted = [_quoted(name) for name in names]
     largest = np.array(quoted, object)[own.argmax(axis=0)] if len(names) else np.empty(0, object)
-    with outputs.file(path) as file:
-        file.write((",".join(map(_quoted, columns)) + "\n").encode())
-        form = "%r,%r,%r,%r,%r,%r,%s" + ",%.9g" * len(names)
-        rows = center, np.tile(cells.size, (len(center), 1)), largest, own.T
-        write_rows(file, form, *rows, step=lambda share: step(0.5 + 0.5 * share))
+    file.write((",".join(map(_quoted, columns)) + "\n").encode())
+    form = "%r,%r,%r,%r,%r,%r,%s" + ",%.9g" * len(names)
+    rows = center, np.tile(cells.size, (len(center), 1)), largest, own.T
+    write_rows(file, form, *rows, step=lambda share: step(0.5 + 0.5 * share))
     step(1.0)
 
 
@@ -52,13 +48,11 @@ def _quoted(text: str) -> str:
     return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n') else text
 
 
-def write_vti(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
-) -> None:
+def write_vti(model: ModelData, file: BinaryIO, step: Step, cell_size: CellSize = None) -> None:
     """A VTK image with the cell arrays `block` (number in the model's list of the block with the largest
     share,
     -1: none) and `share NAME` of each block."""
-    cells = regular_cells(model, size, lambda share: step(0.5 * share))
+    cells = regular_cells(model, cell_size, lambda share: step(0.5 * share))
     names = distinct_names(block.name for block in model.blocks)
     shares = cells.shares
     block = (
@@ -68,15 +62,14 @@ def write_vti(
         ("block", block.astype("<i4")),
         *((f"share {n}", s) for n, s in zip(names, shares, strict=True)),
     ]
-    with outputs.file(path) as file:
-        write_image(file, cells.origin, cells.size, cells.counts, arrays)
+    write_image(file, cells.origin, cells.size, cells.counts, arrays)
     step(1.0)
 
 
-def _grids(model: ModelData, size: np.ndarray | None) -> tuple:
+def _grids(model: ModelData, cell_size: CellSize) -> tuple:
     """The grids, and (name, heights (ny, nx)) of each: the ground, then of each block its top and thickness,
     then of each its true thickness."""
-    grids = plan_grids(model, size)
+    grids = plan_grids(model, cell_size)
     bands = [("elevation", grids.top)]
     names = distinct_names(block.name for block in model.blocks)
     for number, name in enumerate(names):
@@ -87,13 +80,12 @@ def _grids(model: ModelData, size: np.ndarray | None) -> tuple:
 
 
 def write_ascii_grids(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+    model: ModelData, path: Path, outputs: Outputs, step: Step, cell_size: CellSize = None
 ) -> None:
     """ESRI ASCII grids: the elevation in the file itself; beside it NAME_top_of_BLOCK,
     NAME_thickness_of_BLOCK and NAME_true_thickness_of_BLOCK."""
-    grids, bands = _grids(model, size)
+    grids, bands = _grids(model, cell_size)
     step(0.5)
-    path = Path(path)
     (west, north), (dx, dy) = grids.north_west, grids.size
     rows, columns = grids.top.shape
     head = f"ncols {columns}\nnrows {rows}\nxllcorner {west!r}\nyllcorner {north - rows * dy!r}\n"
@@ -107,13 +99,11 @@ def write_ascii_grids(
     step(1.0)
 
 
-def write_geotiff(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
-) -> None:
+def write_geotiff(model: ModelData, file: BinaryIO, step: Step, cell_size: CellSize = None) -> None:
     """A GeoTIFF (OGC 19-008) with a band for each grid, 64-bit numbers, uncompressed, named by GDAL's
     metadata. It names the project's coordinate system, where that is one of EPSG's."""
     tifffile = vendored("tifffile", "tifffile", "writing GeoTIFF")
-    grids, bands = _grids(model, size)
+    grids, bands = _grids(model, cell_size)
     step(0.5)
     rows, columns = grids.top.shape
     (west, north), (dx, dy) = grids.north_west, grids.size
@@ -133,19 +123,18 @@ def write_geotiff(
         (42112, "s", len(metadata) + 1, metadata),
         (42113, "s", 4, b"nan"),
     ]
-    with outputs.file(path) as file:
-        tifffile.imwrite(
-            file,
-            (np.ascontiguousarray(values, "<f8") for _, values in bands),
-            shape=(len(bands), rows, columns),
-            dtype="<f8",
-            bigtiff=True,
-            byteorder="<",
-            photometric="minisblack",
-            planarconfig="separate" if len(bands) > 1 else None,
-            rowsperstrip=rows,
-            extratags=[(*tag, True) for tag in tags],
-            metadata=None,
-            software=False,
-        )
+    tifffile.imwrite(
+        file,
+        (np.ascontiguousarray(values, "<f8") for _, values in bands),
+        shape=(len(bands), rows, columns),
+        dtype="<f8",
+        bigtiff=True,
+        byteorder="<",
+        photometric="minisblack",
+        planarconfig="separate" if len(bands) > 1 else None,
+        rowsperstrip=rows,
+        extratags=[(*tag, True) for tag in tags],
+        metadata=None,
+        software=False,
+    )
     step(1.0)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from ..base.errors import UsageError
+from ..base.text import Step, no_step
 from ..base.work import native_module
 from ..cells.model_data import ModelData, UsedSurfaces
 from ..notebook import data_frame
@@ -337,6 +338,6 @@ def _peak_memory() -> int | None:
     return peak if sys.platform == "darwin" else 1024 * peak
 
 
-def write_report(report: dict, file: BinaryIO) -> None:
+def write_report(report: dict, file: BinaryIO, _step: Step = no_step) -> None:
     """Writes a report as UTF-8 JSON."""
     file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

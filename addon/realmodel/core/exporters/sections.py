@@ -3,8 +3,7 @@
 
 .vtu: VTK unstructured grid ("VTK File Formats", XML) of polygon cells, for ParaView, PyVista and meshio.
 .obj: Wavefront OBJ, a group for each block and a material for each property, for any modeller.
-.ply, .stl, .glb, .ts: triangles, a part for each block. .csv: one row for each corner of each polygon.
-.npz: the arrays of Section. .svg, .dxf, .png: drawings with axes and a legend (section_drawing.py).
+.csv: one row for each corner of each polygon. .npz: the arrays of Section.
 """
 
 from __future__ import annotations
@@ -12,54 +11,25 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Callable
-from functools import partial
-from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from .. import drawing
+from ..base.text import Step
 from ..results.sections.section_data import FenceData, SectionData
-from ..results.sections.section_drawing import draw_section
 from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_grid
-from .endings import by_ending
 from .npz import write_arrays
-from .shapes.part_formats import part_writers
-from .shapes.parts import Part, section_parts
+from .shapes.parts import Part
 
 _POLYGON = 7
 
 
-def section_writer(
-    path: str | Path, exaggeration: float = 1.0, hole_width: float = 0.0
-) -> Callable[..., None]:
-    """The function (section, file) that writes files of this ending. exaggeration, hole_width: of drawings,
-    as of draw_section. Raises UsageError."""
-    writer = by_ending(path, SECTION_WRITERS, "sections are not written as {}")
-    if writer is write_section_drawing:
-        draw = drawing.WRITERS[Path(path).suffix.lower()]
-        return partial(writer, write=draw, exaggeration=exaggeration, hole_width=hole_width)
-    return writer
-
-
-def write_section_drawing(
-    section: SectionData,
-    file: BinaryIO,
-    write: Callable[[drawing.Drawing, BinaryIO], None] = drawing.write_svg,
-    exaggeration: float = 1.0,
-    hole_width: float = 0.0,
-) -> None:
-    """A drawing with axes and a legend."""
-    write(draw_section(section, exaggeration, hole_width=hole_width), file)
-
-
-def write_section_npz(section: SectionData, file: BinaryIO) -> None:
+def write_section_npz(section: SectionData, file: BinaryIO, _step: Step) -> None:
     write_arrays(section.arrays(), file)
 
 
-def write_section_vtu(section: SectionData, file: BinaryIO) -> None:
+def write_section_vtu(section: SectionData, file: BinaryIO, _step: Step) -> None:
     """Polygon cells with the cell arrays `block` (number in the model's list), `property` (library id, 0:
     none), `compartment`, `cells` (the model's, below and above; -1: outside), and `panel` of a fence."""
     arrays = [
@@ -77,7 +47,7 @@ def write_section_vtu(section: SectionData, file: BinaryIO) -> None:
     write_grid(file, arrays)
 
 
-def write_section_obj(section: SectionData, file: BinaryIO) -> None:
+def write_section_obj(section: SectionData, file: BinaryIO, _step: Step) -> None:
     """Triangles by block: a group `block_NUMBER_NAME`, and the material `property_ID`."""
     file.write(b"# section of a RealModel model: groups are blocks, materials are library ids\n")
     write_rows(file, "v %r %r %r", section.vertices)
@@ -93,7 +63,7 @@ def write_section_obj(section: SectionData, file: BinaryIO) -> None:
         write_rows(file, "f %d %d %d", part.triangles + 1)
 
 
-def write_section_csv(section: SectionData, file: BinaryIO) -> None:
+def write_section_csv(section: SectionData, file: BinaryIO, _step: Step) -> None:
     """polygon, block (number), block_name, property, x, y, z of every corner; of a fence also panel and the
     distance along it, so that distance and z draw the unrolled picture; of a model that faults divide also
     the name of the compartment."""
@@ -116,17 +86,3 @@ def write_section_csv(section: SectionData, file: BinaryIO) -> None:
             extra += [section.compartment_names[int(section.compartment[k])]] * is_divided
             rows.writerow([*common, *map(repr, place), *extra])
     file.write(text.getvalue().encode("utf-8"))
-
-
-SECTION_WRITERS: dict[str, Callable] = {
-    ".vtu": write_section_vtu,
-    **{
-        ending: writer
-        for ending, writer in part_writers(section_parts, lambda section: section.unit).items()
-        if ending != ".dxf"
-    },
-    ".obj": write_section_obj,
-    ".csv": write_section_csv,
-    ".npz": write_section_npz,
-    **dict.fromkeys(drawing.WRITERS, write_section_drawing),
-}

@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of surfaces with their heights, without a model: .npz, .vtu of triangles, shapes, and a report."""
+"""Files of surfaces with their heights, without a model: .npz, .vtu of triangles, and a report."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from ..base.atomic import Outputs
-from ..base.errors import UsageError
+from ..base.text import Step
 from ..cells.model_data import UsedSurfaces
 from .encodings.vtk_xml import write_grid
 from .npz import joined_attributes, texts, write_arrays
 from .report import SCHEMA, body_entry, fault_entry, surface_entries, versions, warning_entries, write_report
-from .shapes.part_formats import part_writers
-from .shapes.parts import surface_parts
 
 _TRIANGLE = 5  # VTK's number
 ATTRIBUTES = ("height", "variance", "distance")
@@ -43,12 +38,12 @@ def surface_arrays(surfaces: UsedSurfaces) -> dict[str, np.ndarray]:
     }
 
 
-def write_surfaces_npz(surfaces: UsedSurfaces, file: BinaryIO) -> None:
+def write_surfaces_npz(surfaces: UsedSurfaces, file: BinaryIO, _step: Step) -> None:
     """Writes the arrays."""
     write_arrays(surface_arrays(surfaces), file)
 
 
-def write_surfaces_vtu(surfaces: UsedSurfaces, file: BinaryIO) -> None:
+def write_surfaces_vtu(surfaces: UsedSurfaces, file: BinaryIO, _step: Step) -> None:
     """Writes all triangles as one unstructured grid (VTK File Formats, XML), with the point arrays height,
     variance and distance (NaN where there is none) and the cell arrays `surface`, the number of each one's,
     and `sheet`."""
@@ -71,28 +66,6 @@ def write_surfaces_vtu(surfaces: UsedSurfaces, file: BinaryIO) -> None:
             ("CellData", "sheet", arrays["surface_triangle_sheet"].astype("<i4")),
         ],
     )
-
-
-WRITERS: dict[str, Callable[..., None]] = {
-    ".npz": write_surfaces_npz,
-    ".vtu": write_surfaces_vtu,
-    **part_writers(surface_parts, lambda surfaces: surfaces.project.units),
-}
-
-
-def surface_writer_for(path: str | Path) -> Callable[..., None]:
-    """The function (surfaces, file) that writes files of this ending. Raises UsageError."""
-    ending = Path(path).suffix.lower()
-    if ending not in WRITERS:
-        raise UsageError(f"{path}: surfaces are written to {', '.join(WRITERS)} files")
-    return WRITERS[ending]
-
-
-def save_surfaces(surfaces: UsedSurfaces, path: str | Path) -> None:
-    """Writes surfaces, or those of a model, to a file that appears whole or not at all."""
-    writer = surface_writer_for(path)
-    with Outputs() as outputs, outputs.file(path) as file:
-        writer(surfaces, file)
 
 
 def write_surfaces_report(surfaces: UsedSurfaces, file: BinaryIO) -> None:

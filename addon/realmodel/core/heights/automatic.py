@@ -11,8 +11,9 @@ from ..base.algebra import principal_axes
 from ..base.work import native_module
 from ..settings.methods import METHODS, checked_options
 from . import bounded, from_neighbours
-from .interpolation import Result, Task, run_method
+from .interpolation import Result, Task
 from .left_out_places import in_turn, places_of
+from .methods import run_method
 
 _FEW = 10  # points: too few for a variogram
 _LEFT_OUT = 2000  # about as many points are left out and estimated, where there are so many

@@ -21,7 +21,8 @@ from ..base.work import Work, native_module
 from ..readers.tables.observations import Bounds
 from ..settings.methods import METHODS
 from . import from_neighbours
-from .interpolation import Result, Task, run_method
+from .interpolation import Result, Task
+from .methods import run_method
 
 TOLERANCE = 1e-9  # of the height range of points and bounds
 _MOST_DROPS = 2  # of one bound: so the rounds end

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from ..base.work import Result as Value
 from ..notebook import ShortRepr
 from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
-from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 from .companions import Alike, Companions
 
@@ -85,9 +83,3 @@ class Result:
     warnings: list[str] = field(default_factory=list)
     outside: np.ndarray | None = None
     neighbours: int | None = None
-
-
-def run_method(method: str, task: Task) -> Result:
-    """Runs a method that is not "auto"."""
-    module, _, function = str(METHODS[method].run).rpartition(".")
-    return getattr(import_module(f".{module}", __package__), function)(task)

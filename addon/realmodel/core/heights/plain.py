@@ -15,7 +15,7 @@ from ..base.elementary import atan2, cos, sin
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..settings.methods import checked_options
-from .interpolation import Result, Task, run_method
+from .interpolation import Result, Task
 from .surface_reference import heights_of
 from .true_thickness import lifted, measured, stretched
 
@@ -158,9 +158,10 @@ def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) 
     return Plane(center, base, 0.0, 0.0, tuple(shown), spread[0])
 
 
-def parallel(task: Task) -> Result:
+def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     """The surface `to` and a thickness above it: `thickness`, or where it is not given what the points show,
-    spread by `thickness_method`; upward, or perpendicular to that surface where the task says so."""
+    spread by `thickness_method`, which run_method runs; upward, or perpendicular to that surface where the
+    task says so."""
     below = heights_of(task, task.settings["to"], task.nodes, "to")
     thickness = task.settings["thickness"]
     if thickness is not None:

@@ -11,9 +11,8 @@ from ..base.errors import UsageError
 from ..base.work import Cancel, Progress, run
 from ..cells.assembly import build_stage
 from ..cells.model_data import ModelData
-from ..exporters import save_model
+from ..exporters import MODEL, SURFACES, check_tolerance
 from ..exporters.report import Report, model_report
-from ..exporters.surfaces import save_surfaces
 from ..fields import ScalarField
 from ..proof.left_out_holes import cross_validate_holes
 from ..proof.misfits import misfits
@@ -60,8 +59,8 @@ class Model(ModelData):
         contour_interval: float | None = None,
         tolerance: float | None = None,
     ) -> None:
-        """Writes the model to a file or folder, by its ending: those of exporters.FORMATS. It appears whole
-        or not at all.
+        """Writes the model to a file or folder, by its ending (docs/reference/output_files.md). It appears
+        whole or not at all.
 
         cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
         None: a hundredth of the longest side; in .omf and .geoh5 there are cells only where it is given.
@@ -70,7 +69,8 @@ class Model(ModelData):
         exact cells. Raises UsageError for an ending that is not known, or whose library is missing,
         OutputFailed where it cannot be written.
         """
-        save_model(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
+        check_tolerance(path, tolerance)
+        MODEL.save(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
 
     def save_surfaces(self, path: str | Path) -> None:
         """Writes the surfaces, faults and bodies as they were used, by the file's ending (.obj, .ply, .stl,
@@ -78,7 +78,7 @@ class Model(ModelData):
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
-        save_surfaces(self, path)
+        SURFACES.save(self, path)
 
     def field(self, series: str, compartment: str | None = None) -> ScalarField:
         """The field of a series: its lattice, the values of the nodes, and the level of each surface.

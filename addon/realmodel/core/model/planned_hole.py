@@ -5,9 +5,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..base.atomic import Outputs
 from ..cells.model_data import ModelData
-from ..exporters.boreholes import planned_hole_writer
+from ..exporters import PLANNED_HOLE
 from ..results.planned_holes import (
     HoleAxis,
     PlannedHoleData,
@@ -26,9 +25,7 @@ class PlannedHole(PlannedHoleData):
         """Writes the `rows` to a .csv: lengths in model units, empty where nothing is known. With an ensemble
         columns with the probability of each block follow, on average over the interval. The file appears
         whole or not at all. Raises UsageError, OutputFailed."""
-        writer = planned_hole_writer(path)
-        with Outputs() as outputs, outputs.file(path) as file:
-            writer(self, file)
+        PLANNED_HOLE.save(self, path)
 
 
 def planned_hole(

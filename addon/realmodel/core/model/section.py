@@ -6,9 +6,8 @@ from __future__ import annotations
 from io import BytesIO
 from pathlib import Path
 
-from ..base.atomic import Outputs
 from ..drawing.svg import write_svg
-from ..exporters.sections import section_writer
+from ..exporters import SECTION
 from ..results.sections.section_data import FenceData, SectionData
 from ..results.sections.section_drawing import draw_section
 
@@ -21,9 +20,7 @@ class Section(SectionData):
         of them to a .svg, .dxf or .png. exaggeration: of heights in drawings. hole_width: drawings have the
         boreholes within this distance of the section, model units. The file appears whole or not at all.
         Raises UsageError, OutputFailed."""
-        writer = section_writer(path, exaggeration, hole_width)
-        with Outputs() as outputs, outputs.file(path) as file:
-            writer(self, file)
+        SECTION.save(self, path, exaggeration=exaggeration, hole_width=hole_width)
 
     def _repr_svg_(self) -> str | None:
         """The drawing that `save` writes; None where there is none, as of the section by a surface."""

@@ -14,7 +14,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import UsageError
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.work import Cancel, Progress, Work, native_module, run
-from ..exporters.surfaces import save_surfaces
+from ..exporters import SURFACES
 from ..heights import Interpolation
 from ..notebook import ShortRepr
 from ..project.build_options import check_stage
@@ -80,7 +80,7 @@ class SurfaceSet(ShortRepr):
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
-        save_surfaces(self, path)
+        SURFACES.save(self, path)
 
 
 def build_surfaces(

@@ -14,7 +14,7 @@ from ..base.algebra import begins_run
 from ..base.errors import InputRefused, place_text
 from ..base.units import MODEL_UNIT
 from ..readers import read_shapes
-from ..readers.maps.map_input import map_companions, require_polygons
+from ..readers.map_input import map_companions, require_polygons
 from ..readers.maps.shapes import Shapes
 from ..readers.maps.wkt import parse_wkt
 from ..settings.map_layer import MapLayer, is_wkt

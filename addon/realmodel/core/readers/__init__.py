@@ -7,25 +7,20 @@ their line.
 """
 
 from .borehole_input import read_boreholes
-from .maps.map_input import MAP_ENDINGS, read_region, read_shapes
-from .meshes.mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
+from .map_input import read_region, read_shapes
+from .mesh_input import is_mesh_file, read_mesh
 from .meshes.off import read_off
-from .objects.object_file import OBJECT_ENDINGS, objects_in
-from .point_input import RASTER_ENDINGS, read_point_file
+from .object_input import objects_in
+from .point_input import read_point_file
 from .tables.boreholes import Picks
 from .tables.dips import gradient_of, names_units, normal_of, read_dips, read_dips_of_rock, read_space_dips
 from .tables.observed_places import read_observed_places
-from .tables.points import TABLE_ENDINGS, read_points
+from .tables.points import read_points
 from .tables.table_kind import TABLE_KINDS, table_contents, table_kind
 from .tables.table_preview import TablePreview, preview_table
 from .tables.unit_names import UnitNames
 
 __all__ = [
-    "MAP_ENDINGS",
-    "MESH_ENDINGS",
-    "OBJECT_ENDINGS",
-    "RASTER_ENDINGS",
-    "TABLE_ENDINGS",
     "TABLE_KINDS",
     "Picks",
     "TablePreview",

@@ -11,8 +11,8 @@ from ..base.errors import InputRefused
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT, factors
 from ..settings.boreholes import Boreholes
-from .objects.object_file import is_object_file
-from .objects.object_holes import read_hole_objects
+from .object_holes import read_hole_objects
+from .object_input import is_object_file
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, read_borehole_tables
 from .tables.hole_tables import COLLARS, INTERVALS, SURVEY, other_units_in

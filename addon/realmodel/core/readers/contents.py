@@ -10,12 +10,12 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..settings.map_layer import MapLayer
-from .maps.geopackage import UNREADABLE, connect, is_geopackage
-from .maps.map_input import is_map_layer, read_shapes
+from .formats import OBJECTS, RASTER, SHAPES, format_of
+from .map_input import read_shapes
+from .maps.geopackage import UNREADABLE, connect
 from .maps.shapes import NothingSelected
-from .objects.object_file import is_object_file, object_format, objects_in, read_object
-from .objects.object_points import OF_POINTS
-from .point_input import RASTER_FORMATS, head_of
+from .object_input import objects_in, read_object
+from .object_points import OF_POINTS
 from .tables.points import KNOWN, body_rows, open_table
 from .tables.table_layout import Expected
 
@@ -25,12 +25,12 @@ _NOTHING = "\0"  # no attribute is called so, and none has it
 def column_names(file: Path, layer: str | None = None) -> list[str]:
     """The names of the columns of a table, or numbers from 1 where it has no header; or of the attributes of
     the features of a layer, or the points of an object; none of a raster. Raises InputRefused."""
-    head = head_of(file)
-    if any(known.begins(head) for known in RASTER_FORMATS):
+    holds = _holds(file)
+    if holds == RASTER:
         return []
-    if object_format(head) is not None:
+    if holds == OBJECTS:
         return list(read_object(file, layer, OF_POINTS).columns)
-    if is_map_layer(file, head):
+    if holds == SHAPES:
         return list(_nothing_selected(file, layer, _NOTHING).names)
     table = open_table(file, Expected(known=KNOWN))
     row = next(body_rows(table), [])
@@ -40,11 +40,11 @@ def column_names(file: Path, layer: str | None = None) -> list[str]:
 
 def column_values(file: Path, column: str, layer: str | None = None) -> list[str]:
     """The different values of a column, or attribute, in the order of the file. Raises InputRefused."""
-    head = head_of(file)
-    if object_format(head) is not None:
+    holds = _holds(file)
+    if holds == OBJECTS:
         found = read_object(file, layer, OF_POINTS).columns.get(column, np.empty(0))
         return list(dict.fromkeys(str(value) for value in found.tolist() if value != ""))
-    if is_map_layer(file, head):
+    if holds == SHAPES:
         return list(_nothing_selected(file, layer, column).values)
     table = open_table(file, Expected(None, (column,), KNOWN))
     at = table.column(column)
@@ -54,15 +54,21 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
 def layer_names(file: Path) -> list[str]:
     """The layers of a GeoPackage, the objects of an OMF or geoh5 file; none of other files. Raises
     InputRefused."""
-    if is_object_file(file):
-        return [each.name for each in objects_in(file)]
-    if not is_geopackage(head_of(file)):
+    known = format_of(file, OBJECTS, SHAPES)
+    if known is None or not known.has_layers:
         return []
+    if known.holds == OBJECTS:
+        return [each.name for each in objects_in(file)]
     try:
         with closing(connect(file)) as base:
             return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]
     except UNREADABLE as error:
         raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
+
+
+def _holds(file: Path) -> str | None:
+    known = format_of(file, RASTER, OBJECTS, SHAPES)
+    return None if known is None else known.holds
 
 
 def _nothing_selected(file: Path, layer: str | None, attribute: str) -> NothingSelected:

@@ -4,23 +4,21 @@ files that points are read from."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..base.errors import InputRefused
-from ..base.text import LINES_AT_ONCE, Step, no_step, read_bytes, read_text
+from ..base.text import Step, no_step, read_bytes
 from ..base.units import MODEL_UNIT
 from ..settings.point_file import PointFile
-from .maps.map_input import is_map_layer
-from .point_input import RASTER_FORMATS, head_of, in_model, read_point_file
+from .formats import RASTER, SHAPES, STICKS, format_of
+from .point_input import in_model, read_point_file
 from .tables.points import KNOWN, body_rows, open_table
+from .tables.sticks import begins_as_sticks, read_sticks
 from .tables.table_layout import Expected, plain_name
 
-_END_OF_STICK = 999.0  # in all three columns
-_END_LINE = re.compile(rb"^\s*(?:999(?:\.0*)?\s+){2}999(?:\.0*)?\s*$", re.MULTILINE)
 _COLUMN = "stick"  # the column of a stick's name or number, where none is given
 
 
@@ -35,47 +33,17 @@ def read_fault_points(
     lines.
     """
     file = Path(given.file)
-    head = head_of(file)
-    if any(known.begins(head) for known in RASTER_FORMATS) or is_map_layer(file, head):
+    if format_of(file, RASTER, SHAPES):
         if stick is not None:
             raise InputRefused("it is no table, so 'stick' has no effect", file=file, advice="take it out")
         return read_point_file(given, model_unit, step)
-    if file.suffix.lower() == ".pol" or _END_LINE.search(read_bytes(file)):
-        sticks = [in_model(points, given, model_unit) for points in _pol_sticks(file, step)]
+    if format_of(file, STICKS) or begins_as_sticks(read_bytes(file)):  # the first stick may be long
+        sticks = [in_model(points, given, model_unit) for points in read_sticks(file, step)]
         return sticks, []
     column = _stick_column(given, file, stick)
     if column is None:
         return read_point_file(given, model_unit, step)
     return _table_sticks(given, file, column, model_unit)
-
-
-def _pol_sticks(file: Path, step: Step) -> list[np.ndarray]:
-    sticks: list[list[list[float]]] = []
-    points: list[list[float]] = []
-    lines = read_text(file).split("\n")
-    for number, line in enumerate(lines, 1):
-        if number % LINES_AT_ONCE == 0:
-            step(number / len(lines))
-        words = line.partition("#")[0].split()
-        if not words:
-            continue
-        try:
-            point = [float(word) for word in words[:3]]
-        except ValueError:
-            raise InputRefused(f"'{line.strip():.40}' cannot be read", file=file, line=number) from None
-        if len(point) < 3:
-            raise InputRefused(f"3 values are needed, there are {len(point)}", file=file, line=number)
-        if not np.isfinite(point).all():
-            raise InputRefused("a coordinate is not finite", file=file, line=number)
-        if all(value == _END_OF_STICK for value in point):
-            sticks.append(points)
-            points = []
-        else:
-            points.append(point)
-    found = [np.array(stick) for stick in (*sticks, points) if stick]
-    if not found:
-        raise InputRefused("there are no points in it", file=file)
-    return found
 
 
 def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str | None:

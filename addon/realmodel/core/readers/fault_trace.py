@@ -18,7 +18,7 @@ from ..settings.directions import checked_direction
 from ..settings.map_layer import MapLayer
 from ..settings.method_options import OptionRefused
 from ..settings.point_file import PointFile
-from .maps.map_input import read_shapes
+from .map_input import read_shapes
 from .maps.shapes import Heights, Shapes
 from .maps.wkt import parse_wkt
 from .point_input import OFTEN_NO_VALUE, in_model, refuse_keys

@@ -1,62 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points from files; their format is detected from the content. The formats of rasters are one registry
-(docs/dev/extending.md)."""
+"""Points from files; their format is detected from the content."""
 
 from __future__ import annotations
 
-import tokenize
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..base.errors import InputRefused, counted
-from ..base.mapped_arrays import JoinPieces, in_memory, in_pieces
+from ..base.mapped_arrays import JoinPieces, in_memory
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT, factor, other_units
 from ..settings.point_file import PointFile
-from .maps.map_input import is_map_layer, map_companions
-from .maps.map_points import read_map_points
-from .objects.object_file import object_format
-from .objects.object_points import read_object_points
-from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
-from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
-from .rasters.geotiff import is_tiff, read_geotiff, world_file
-from .rasters.irap_grid import is_irap_grid, read_irap_grid
+from .formats import ARRAY, OBJECTS, RASTER, SHAPES, TABLE, FileFormat, format_of
+from .map_input import map_companions
+from .map_points import read_map_points
+from .object_points import read_object_points
+from .rasters.geotiff import world_file
 from .rasters.raster import Raster
-from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
-from .tables.points import read_point_rows
 
-_HEAD = 4096  # bytes; comments may come before the first line of a grid
-
-
-@dataclass(frozen=True)
-class RasterFormat:
-    """begins(head): whether a file that begins with these bytes is of this format. read(file, nodata, step,
-    gather) raises InputRefused; nodata: further numbers that mean no height; gather: where heights are
-    kept."""
-
-    endings: tuple[str, ...]
-    begins: Callable[[bytes], bool]
-    read: Callable[..., Raster]
-
-
-RASTER_FORMATS = (
-    RasterFormat((".tif", ".tiff"), is_tiff, read_geotiff),
-    RasterFormat((".asc",), is_ascii_grid, read_ascii_grid),
-    RasterFormat((".grd",), is_surfer_grid, read_surfer_grid),
-    RasterFormat((".zmap", ".dat"), is_zmap_grid, read_zmap_grid),
-    RasterFormat((".cps3", ".cps"), is_cps3_grid, read_cps3_grid),
-    RasterFormat((".gri", ".irap"), is_irap_grid, read_irap_grid),
-)
-RASTER_ENDINGS = tuple(ending for known in RASTER_FORMATS for ending in known.endings)
-# Errors that NumPy raises for a damaged header, which it parses as Python.
-_DAMAGED_ARRAY = (
-    *(ValueError, OSError, EOFError, SyntaxError, TypeError),
-    *(tokenize.TokenError, OverflowError, MemoryError, RecursionError),
-)
-_NUMPY = b"\x93NUMPY"
 # Values that many programs write for "no data".
 OFTEN_NO_VALUE = (
     -9999.0,
@@ -81,24 +45,24 @@ def read_point_file(
     Raises InputRefused naming the file, and the line where it has lines.
     """
     file = Path(given.file)
-    head = head_of(file)
     kept = _InModel(given, model_unit, gather)
-    raster = next((known for known in RASTER_FORMATS if known.begins(head)), None)
-    if raster is not None:
-        points, warnings = _raster_points(given, file, raster, step, gather, kept)
-    elif head.startswith(_NUMPY):
+    known = format_of(file, RASTER, ARRAY, OBJECTS, SHAPES, TABLE)
+    assert known is not None
+    if known.holds == RASTER:
+        points, warnings = _raster_points(given, file, known, step, gather, kept)
+    elif known.holds == ARRAY:
         chosen = ["where"] if given.where else []
         refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
-        points, warnings = _array_points(file, kept), []
-    elif object_format(head) is not None:
+        points, warnings = known.read(file, kept), []
+    elif known.holds == OBJECTS:
         refuse_keys(file, "has objects", given.only_for_tables)
         points, warnings = read_object_points(given, kept)
-    elif is_map_layer(file, head):
+    elif known.holds == SHAPES:
         refuse_keys(file, "has shapes", given.only_for_tables)
         points, warnings = read_map_points(given, step, kept)
     else:
         refuse_keys(file, "is a table", given.only_for_shapes)
-        rows = read_point_rows(given, step, kept)
+        rows = known.read(given, step, kept)
         points, warnings = rows.points, _other_units(given, file, rows.columns, model_unit)
         if rows.taken_for_xyz:
             names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
@@ -132,29 +96,6 @@ class _InModel:
     def _converted(self, points: np.ndarray) -> np.ndarray:
         self.heights.add(points[:, 2])
         return in_model(points, self._given, self._unit)
-
-
-def _array_points(file: Path, gather: JoinPieces) -> np.ndarray:
-    """(P, 3) float64 of an array of NumPy, rows without a height left out. Raises InputRefused."""
-    try:
-        found = np.load(file, mmap_mode="r", allow_pickle=False)
-        if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iuf":
-            what = f"an array of shape {found.shape} of {found.dtype} is not one of points (x, y, z in a row)"
-            raise InputRefused(what, file=file)
-    except _DAMAGED_ARRAY as error:
-        raise InputRefused(f"a damaged array: {error}", file=file) from error
-
-    def known() -> Iterator[np.ndarray]:
-        for piece in in_pieces(found):
-            points = np.array(piece, np.float64)
-            if not np.isfinite(points[:, :2]).all():
-                raise InputRefused("a place in plan is not finite", file=file)
-            yield points[np.isfinite(points[:, 2])]
-
-    points = gather(known(), np.empty((0, 3)))
-    if not len(points):
-        raise InputRefused("no point of the array has a height", file=file)
-    return points
 
 
 def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarray:
@@ -217,23 +158,13 @@ def companions(file: Path) -> list[Path]:
     return [] if beside is None else [beside]
 
 
-def head_of(file: Path) -> bytes:
-    """The first bytes of a file, which identify its format. Raises InputRefused."""
-    try:
-        with file.open("rb") as opened:
-            return opened.read(_HEAD)
-    except OSError as error:
-        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
-
-
 def read_raster_heights(
     given: PointFile, plan: np.ndarray, model_unit: str = MODEL_UNIT
 ) -> np.ndarray | None:
     """(N,) heights of a raster at places in plan (N, 2), in the model's unit, NaN where there are none; None:
     the file is no raster. Raises InputRefused."""
     file = Path(given.file)
-    head = head_of(file)
-    known = next((each for each in RASTER_FORMATS if each.begins(head)), None)
+    known = format_of(file, RASTER)
     if known is None:
         return None
     raster = _raster(given, file, known, no_step, in_memory)
@@ -243,7 +174,7 @@ def read_raster_heights(
     ]
 
 
-def _raster(given: PointFile, file: Path, known: RasterFormat, step: Step, gather: JoinPieces) -> Raster:
+def _raster(given: PointFile, file: Path, known: FileFormat, step: Step, gather: JoinPieces) -> Raster:
     chosen = ["where"] if given.where else []
     refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
     nodata = [value for value in given.nodata_values if not isinstance(value, str)]
@@ -251,7 +182,7 @@ def _raster(given: PointFile, file: Path, known: RasterFormat, step: Step, gathe
 
 
 def _raster_points(
-    given: PointFile, file: Path, known: RasterFormat, step: Step, gather: JoinPieces, kept: JoinPieces
+    given: PointFile, file: Path, known: FileFormat, step: Step, gather: JoinPieces, kept: JoinPieces
 ) -> tuple[np.ndarray, list[str]]:
     raster = _raster(given, file, known, step, gather)
     warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]

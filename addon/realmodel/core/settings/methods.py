@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The methods that give heights to a planar mesh: one registry (docs/dev/extending.md). From it follow the
 keys of the project file and their checks, the settings and labels of the panel, and the tables of
-docs/reference/project_file.md.
-
-What a method does with its options is in the package `heights`, one module for each kind.
+docs/reference/project_file.md. What runs a method is named in `heights.methods`.
 """
 
 from __future__ import annotations
@@ -27,8 +25,7 @@ NEIGHBOURS_OF_FITTED = 32
 
 @dataclass(frozen=True)
 class Method:
-    """label and tip: in the panel. run: the function of the package `heights` that implements it,
-    "module.function"; None for "auto", which chooses another method. options: by name.
+    """label and tip: in the panel. options: by name.
 
     instead_of_points: the option that takes the place of points, if any. on_mesh: it needs the triangles of
     the nodes. leaves_one_out: it estimates each point from the others in one run. is_local: its heights at a
@@ -36,12 +33,11 @@ class Method:
     the points. spreads_thickness: `parallel` may use it. is_constrained: it uses dips and bounds. has_shape:
     one or two points are too few for its surface. has_contacts: its points are contacts, to which the surface
     is tied, and not the surface itself. tamed_by: the advice where its heights go far beyond those of the
-    points.
+    points. chooses: it runs another method, which suits the data.
     """
 
     label: str
     tip: str
-    run: str | None
     options: Settings
     instead_of_points: str | None = None
     on_mesh: bool = False
@@ -53,11 +49,12 @@ class Method:
     has_shape: bool = True
     has_contacts: bool = True
     tamed_by: str | None = None
+    chooses: bool = False
 
     @property
     def may_be_kriged(self) -> bool:
         """Whether it has a variogram, or chooses a method that may have one."""
-        return self.run is None or "variogram" in self.options
+        return self.chooses or "variogram" in self.options
 
     def needs_points(self, settings: Mapping) -> bool:
         """Whether there is nothing without points, with these settings."""
@@ -217,7 +214,6 @@ METHODS: dict[str, Method] = {
     "kriging": Method(
         "Kriging",
         "Ordinary kriging: the best linear unbiased estimate from the variogram",
-        "from_neighbours.krige",
         {**_NEIGHBOURHOOD_OF_KRIGING, **_VARIOGRAM, **_EXTRAPOLATE},
         leaves_one_out=True,
         is_local=True,
@@ -227,7 +223,6 @@ METHODS: dict[str, Method] = {
     "universal_kriging": Method(
         "Universal Kriging",
         "Kriging with a trend, such as a dip",
-        "from_neighbours.krige",
         {
             "drift": Setting(
                 "linear",
@@ -250,7 +245,6 @@ METHODS: dict[str, Method] = {
     "idw": Method(
         "Inverse Distance",
         "Mean of neighboring points, weighted by inverse distance",
-        "from_neighbours.inverse_distance",
         {
             **_NEIGHBOURHOOD,
             "power": Setting(
@@ -271,7 +265,6 @@ METHODS: dict[str, Method] = {
     "spline": Method(
         "Spline",
         "Thin-plate spline: the smoothest surface through the points",
-        "from_neighbours.thin_plate",
         {
             **_NEIGHBOURHOOD,
             "smoothing": Setting(
@@ -289,7 +282,6 @@ METHODS: dict[str, Method] = {
     "dsi": Method(
         "DSI",
         "Discrete smooth interpolation on the mesh, with constraints",
-        "on_mesh.dsi",
         {
             "weight": Setting(
                 None,
@@ -313,7 +305,6 @@ METHODS: dict[str, Method] = {
     "natural_neighbour": Method(
         "Natural Neighbor",
         "Mean of the surrounding points, weighted by the area of their Voronoi cells",
-        "from_triangulation.natural_neighbour",
         _EXTRAPOLATE,
         is_triangulated=True,
         spreads_thickness=True,
@@ -321,14 +312,12 @@ METHODS: dict[str, Method] = {
     "tin": Method(
         "TIN",
         "Linear in the Delaunay triangles of the points",
-        "from_triangulation.linear",
         _EXTRAPOLATE,
         is_triangulated=True,
     ),
     "grid": Method(
         "Grid",
         "Bilinear between points on a regular grid",
-        "regular_grid.bilinear",
         _EXTRAPOLATE,
         is_local=True,
         has_contacts=False,
@@ -336,7 +325,6 @@ METHODS: dict[str, Method] = {
     "plane": Method(
         "Plane",
         "A plane fitted to the points, or with a fixed dip",
-        "plain.plane",
         {
             "dip": Setting(
                 label="Dip",
@@ -361,7 +349,6 @@ METHODS: dict[str, Method] = {
     "constant": Method(
         "Constant",
         "One elevation everywhere",
-        "plain.constant",
         {
             "value": Setting(
                 None,
@@ -380,7 +367,6 @@ METHODS: dict[str, Method] = {
     "parallel": Method(
         "Parallel",
         "Parallel to another surface, at a thickness",
-        "plain.parallel",
         {
             "to": Setting(
                 None,
@@ -405,8 +391,8 @@ METHODS: dict[str, Method] = {
     "auto": Method(
         "Automatic",
         "Chooses the method with the smallest cross-validation error",
-        None,
         _EXTRAPOLATE,
+        chooses=True,
         is_constrained=True,
     ),
 }

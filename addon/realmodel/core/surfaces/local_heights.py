@@ -15,7 +15,8 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module, refused_as
 from ..heights import from_neighbours
 from ..heights.from_triangulation import hull_border, hull_corners, outside_hull, replace_extrapolated
-from ..heights.interpolation import Result, Task, run_method
+from ..heights.interpolation import Result, Task
+from ..heights.methods import run_method
 from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height
 from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_node_once, require_one_height

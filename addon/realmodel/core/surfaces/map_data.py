@@ -20,9 +20,9 @@ from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
 from ..readers import UnitNames, is_mesh_file
 from ..readers.fault_trace import read_fault_trace
-from ..readers.maps.unit_polygons import UnitPolygon, read_unit_polygons
 from ..readers.point_input import read_raster_heights
 from ..readers.tables.observations import LeftOut, Observations
+from ..readers.unit_polygons import UnitPolygon, read_unit_polygons
 from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer
 from ..settings.methods import CONTINUATION, CONTINUATION_OPTIONS

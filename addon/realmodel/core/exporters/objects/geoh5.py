@@ -8,7 +8,7 @@ Data of triangles, intervals and cells are numbers with names: `surface`, `neigh
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,9 @@ import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import extra
+from ...base.text import Step
 from ...cells.model_data import ModelData
-from ...results.regular_cells import RegularCells, regular_cells
+from ...results.regular_cells import CellSize, RegularCells, regular_cells
 from ...results.sections.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
@@ -26,9 +27,9 @@ _OUTSIDE = 0  # the number that the format keeps for what is not known
 
 
 def write_geoh5(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+    model: ModelData, path: Path, outputs: Outputs, step: Step, cell_size: CellSize = None
 ) -> None:
-    """Writes a model. size: of the cells of a block model, as of regular_cells.checked_size; None: none."""
+    """Writes a model. cell_size: of the cells of a block model, as of Model.save; None: none."""
     library = extra("geoh5py", "writing geoh5", "geoh5")
     contents = Contents.of(model)
     step(0.2)
@@ -41,8 +42,8 @@ def write_geoh5(
             made = _Objects(workspace, model, contents)
             made.write()
             step(0.5)
-            if size is not None:
-                made.cells(regular_cells(model, size, lambda share: step(0.5 + 0.4 * share)))
+            if cell_size is not None:
+                made.cells(regular_cells(model, cell_size, lambda share: step(0.5 + 0.4 * share)))
         plain.replace(target)
     step(1.0)
 

@@ -9,7 +9,6 @@ spaces alone). A borehole is an IfcBorehole of strata.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import extra
+from ...base.text import Step
 from ...cells.model_data import ModelData
 from ...results.sections.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole
@@ -25,7 +25,7 @@ from .ifc_entities import Entities
 _RADIUS = 0.1  # of boreholes, in meters
 
 
-def write_ifc(model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None]) -> None:
+def write_ifc(model: ModelData, path: Path, outputs: Outputs, step: Step) -> None:
     """Writes a model."""
     library = extra("ifcopenshell", "writing IFC", "ifc")
     contents = Contents.of(model)
@@ -45,7 +45,7 @@ class _Writer:
         self._triangles = contents.triangles
         self._materials: dict[int, list] = {}  # elements by the number of their property
 
-    def write(self, step: Callable[[float], None]) -> None:
+    def write(self, step: Step) -> None:
         entities, contents = self.entities, self._contents
         site = entities.site
         geomodel = entities.product("IfcGeomodel", "geomodel", self._model.project.name, site)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import datetime
 import json
 import uuid
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -19,8 +19,9 @@ import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import omf_library, quiet
+from ...base.text import Step
 from ...cells.model_data import ModelData
-from ...results.regular_cells import RegularCells, regular_cells
+from ...results.regular_cells import CellSize, RegularCells, regular_cells
 from ...results.sections.section_data import rgb_bytes
 from ..shapes.parts import Part
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
@@ -28,10 +29,8 @@ from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, s
 _LONG_AGO = datetime.datetime(1970, 1, 1)  # of all that the library dates: the same model has the same bytes
 
 
-def write_omf(
-    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
-) -> None:
-    """Writes a model. size: of the cells of a block model, as of regular_cells.checked_size; None: none."""
+def write_omf(model: ModelData, path: Path, outputs: Outputs, step: Step, cell_size: CellSize = None) -> None:
+    """Writes a model. cell_size: of the cells of a block model, as of Model.save; None: none."""
     omf = omf_library("writing OMF")
     contents = Contents.of(model)
     step(0.2)
@@ -39,8 +38,8 @@ def write_omf(
         elements = _Elements(omf, model, contents)
         found = elements.all()
         step(0.4)
-        if size is not None:
-            cells = regular_cells(model, size, lambda share: step(0.4 + 0.3 * share))
+        if cell_size is not None:
+            cells = regular_cells(model, cell_size, lambda share: step(0.4 + 0.3 * share))
             found.append(elements.cells(cells))
         step(0.7)
         project = omf.Project(

@@ -7,13 +7,16 @@ Both stand for the volumes of the mesh exactly: a cell's thickness is its volume
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
+from ...base.atomic import Outputs
 from ...base.errors import UsageError, place_text
+from ...base.text import Step
+from ...base.units import MODEL_UNIT
 from ...simulation import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 from ...simulation.element_faces import OUTWARD
 from ..encodings.text_rows import write_rows, write_wrapped
@@ -26,13 +29,17 @@ _OTHERS = "write another format, such as .vtu or .foam"
 _UNITS = {"m": "METERS", "cm": "CENTIMETERS", "ft": "FEET", "us-ft": "FEET"}
 
 
-def write_disv(
-    mesh: VolumeMesh, file: BinaryIO, blocks: BinaryIO, step: Callable[[float], None], unit: str = "m"
-) -> None:
+def write_disv(mesh: VolumeMesh, path: Path, outputs: Outputs, step: Step, unit: str = MODEL_UNIT) -> None:
     """Writes the package DISV of a mesh whose elements stand in columns, a cell for each layer and column.
     Where a layer has no element, its cell is a pass-through (idomain -1), where the whole column has none it
-    is inactive (0). blocks: a file for the number of the block (from 1) of each cell, 0 for none, layer after
-    layer, as OPEN/CLOSE reads it. Raises UsageError."""
+    is inactive (0). NAME_block.txt beside it has the number of the block (from 1) of each cell, 0 for none,
+    layer after layer, as OPEN/CLOSE reads it. Raises UsageError."""
+    beside = path.with_name(f"{path.stem}_block.txt")
+    with outputs.file(path) as file, outputs.file(beside) as blocks:
+        _write_disv(mesh, file, blocks, step, unit)
+
+
+def _write_disv(mesh: VolumeMesh, file: BinaryIO, blocks: BinaryIO, step: Step, unit: str) -> None:
     plan = mesh.plan
     if plan is None:
         raise UsageError("DISV needs a mesh of layered columns; write a DISU grid (.disu), or another format")
@@ -106,19 +113,22 @@ def element_volumes(points: np.ndarray, kind: str, elements: np.ndarray) -> np.n
 
 
 def write_disu(
-    mesh: PolyhedralMesh,
-    file: BinaryIO,
-    blocks: BinaryIO,
-    step: Callable[[float], None],
-    unit: str = "m",
+    mesh: PolyhedralMesh, path: Path, outputs: Outputs, step: Step, unit: str = MODEL_UNIT
 ) -> None:
     """Writes the package DISU of polyhedra. Cells that share vertical faces are connected sideways (ihc 1),
     with the width that gives the area of these faces at their mean thickness, others one above the other
     (ihc 0), by the area in plan. Cells are numbered from the top, as MODFLOW 6 wants it: of two that are one
     above the other the upper one comes first. Tops of lower cells may be above bottoms of upper ones by what
-    surfaces rise within a cell, which the option VERTICAL_OFFSET_TOLERANCE allows. blocks: as of write_disv.
+    surfaces rise within a cell, which the option VERTICAL_OFFSET_TOLERANCE allows. NAME_disu_block.txt is as
+    of write_disv, so that both grids may have one name.
 
     Raises UsageError where no such numbers exist, and for faults and bodies that are not vertical."""
+    beside = path.with_name(f"{path.stem}_disu_block.txt")
+    with outputs.file(path) as file, outputs.file(beside) as blocks:
+        _write_disu(mesh, file, blocks, step, unit)
+
+
+def _write_disu(mesh: PolyhedralMesh, file: BinaryIO, blocks: BinaryIO, step: Step, unit: str) -> None:
     cells = mesh.cells
     normals, centers = _face_areas(mesh)
     order = _from_top(mesh, normals)

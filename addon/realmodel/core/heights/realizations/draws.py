@@ -20,7 +20,8 @@ from .. import Interpolation, heights
 from ..bounded import MethodHeights, active_bounds, consistent, holds_bounds, runner
 from ..companions import Companions
 from ..from_neighbours import KrigingStructure, dip_use, structure, thinned
-from ..interpolation import Result, Task, run_method
+from ..interpolation import Result, Task
+from ..methods import run_method
 from ..mis_ties import without_mis_ties
 from ..on_mesh import within_bounds
 from ..run import with_dips

@@ -13,17 +13,25 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.finite import is_number
+from ...base.text import BOM, Step, no_step
+from ...settings.map_layer import MapLayer
 from .shapes import Heights, Selection, Shapes
 
+_RECORD_SEPARATOR = b"\x1e"  # begins each text of a GeoJSON text sequence (RFC 8142)
 _BETWEEN = re.compile(r"[ \t\r\n\x1e]*")
 
 
-def read_geojson(file: str | Path, where: Mapping | None = None, heights: Heights | None = None) -> Shapes:
+def begins_as_geojson(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is JSON."""
+    return head.removeprefix(BOM).lstrip()[:1] in (b"{", b"[", _RECORD_SEPARATOR)
+
+
+def read_geojson(layer: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """What a GeoJSON file holds; heights of positions are left out where they are not wanted.
 
     Raises InputRefused naming the file and the line, or the feature.
     """
-    file = Path(file)
+    file = Path(layer.file)
     try:
         text = file.read_bytes().decode("utf-8-sig")
     except OSError as error:
@@ -40,7 +48,7 @@ def read_geojson(file: str | Path, where: Mapping | None = None, heights: Height
     except (RecursionError, ValueError) as error:
         what = "lists nested too deep" if isinstance(error, RecursionError) else "a number of too many digits"
         raise InputRefused(f"cannot be read: {what}", file=file) from error
-    walk = _Walk(file, where or {}, heights)
+    walk = _Walk(file, layer.where, heights)
     walk.node(content, "")
     walk.selection.require_some()
     return walk.shapes

@@ -15,6 +15,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...settings.crs import is_in_degrees
+from ...settings.map_layer import MapLayer
 from ..tables.table_layout import names_shown
 from .shapes import Heights, Selection, Shapes
 
@@ -31,23 +32,17 @@ _SYSTEMS = """SELECT g.table_name, s.organization_coordsys_id, s.definition FROM
     JOIN gpkg_spatial_ref_sys s ON s.srs_id = g.srs_id ORDER BY g.rowid"""
 
 
-def is_geopackage(head: bytes) -> bool:
+def is_geopackage(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head.startswith(_MAGIC)
 
 
-def read_geopackage(
-    file: str | Path,
-    layer: str | None = None,
-    where: Mapping | None = None,
-    step: Step = no_step,
-    heights: Heights | None = None,
-) -> Shapes:
+def read_geopackage(layer: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """The shapes of one layer, of `layer` or of the only one. Raises InputRefused naming file and layer."""
-    file = Path(file)
+    file = Path(layer.file)
     try:
         with closing(connect(file)) as base:
-            return _read(file, base, layer, where or {}, step, heights)
+            return _read(file, base, layer.layer, layer.where, step, heights)
     except UNREADABLE as error:
         changed = open_changes(file) is not None
         advice = "close it in the program that has it open, so that its last changes are in it"

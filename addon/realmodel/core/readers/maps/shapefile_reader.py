@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import struct
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.packages import vendored
 from ...base.text import Step, no_step
+from ...settings.map_layer import MapLayer
 from .shapes import Heights, Selection, Shapes
 
 _MAGIC = b"\0\0\x27\x0a"
@@ -25,7 +26,7 @@ _STEP = 1000  # features
 _FIRST = 100  # the byte where the shapes begin
 
 
-def is_shapefile(head: bytes) -> bool:
+def is_shapefile(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is the .shp of one."""
     return head.startswith(_MAGIC)
 
@@ -36,16 +37,11 @@ def beside(file: Path) -> list[Path]:
     return [path for ending in endings if (path := file.with_suffix(ending)).is_file()]
 
 
-def read_shapefile(
-    file: str | Path,
-    where: Mapping | None = None,
-    step: Step = no_step,
-    heights: Heights | None = None,
-) -> Shapes:
+def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
     write outlines and holes in the wrong directions.
     Raises InputRefused, and BuildFailed without pyshp."""
-    file, where = Path(file), where or {}
+    file, where = Path(layer.file), layer.where
     shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
     files = {path.suffix.lower(): path for path in beside(file)}
     attribute = heights.attribute if heights else None

@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from .shapes import Shapes
+from ...base.text import BOM, Step, no_step, read_bytes, read_text
+from ...settings.map_layer import MapLayer, begins_as_wkt
+from .shapes import Heights, Shapes
 
 _TOKEN = re.compile(r"\s*(?:([A-Za-z]+)|([(),;])|([-+0-9.][^\s(),;]*)|(\S))")
 _SRID = re.compile(r"\s*SRID\s*=\s*\d+\s*;", re.IGNORECASE)
@@ -24,12 +26,33 @@ _KINDS = (
 )
 _BARE = re.compile(r"\s*\(\s*[-+.\d]")  # points of a MULTIPOINT without brackets of their own
 _DEEPEST = 50
+_HEAD = 4096  # bytes: those of text have no zeros
 
 
 def parse_wkt(text: str, file: Path | None = None, heights: bool = False) -> Shapes:
     """The shapes of a text; Z only where heights are requested, never M. Raises InputRefused naming the line
     of the text."""
     return _Parser(text, file, heights).shapes
+
+
+def begins_as_wkt_file(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is well-known text."""
+    return begins_as_wkt(head.removeprefix(BOM).decode("latin-1"))
+
+
+def read_wkt(layer: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:
+    """The shapes of a file. Raises InputRefused, also for a file of none of the formats of shapes."""
+    file = Path(layer.file)
+    text = "" if b"\0" in read_bytes(file)[:_HEAD] else read_text(file)
+    if not begins_as_wkt(text):
+        what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
+        raise InputRefused(what, file=file, advice="export it in one of these formats")
+    if layer.where:
+        raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
+    if heights and heights.attribute is not None:
+        what = "well-known text has no attributes, so 'height' has no effect"
+        raise InputRefused(what, file=file, advice="write the heights as z")
+    return parse_wkt(text, file, heights is not None)
 
 
 class _Parser:

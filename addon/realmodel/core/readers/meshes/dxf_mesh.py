@@ -20,7 +20,7 @@ _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10:
 _CLOSED_M, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 16, 32, 64
 
 
-def begins_as_dxf(head: bytes) -> bool:
+def begins_as_dxf(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head.startswith(_BINARY) or bool(
         _BEGINNING.match(head.replace(b"\r", b"\n").replace(b"\n\n", b"\n"))

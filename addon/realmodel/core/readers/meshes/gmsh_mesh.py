@@ -20,7 +20,7 @@ _MOST_IN_A_ROW = 1000
 _CORNERS = {2: 3, 9: 3, 3: 4, 10: 4, 16: 4}
 
 
-def begins_as_msh(head: bytes) -> bool:
+def begins_as_msh(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head.lstrip().startswith(b"$MeshFormat")
 

@@ -24,7 +24,7 @@ _UNITS = {
 }
 
 
-def begins_as_landxml(head: bytes) -> bool:
+def begins_as_landxml(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return b"<LandXML" in head
 

@@ -17,7 +17,7 @@ _WHOLE = re.compile(r"-?[0-9]{1,18}")
 _HEADERS = ("OFF", "COFF", "NOFF", "CNOFF")  # colors and normals behind the coordinates are not used
 
 
-def begins_as_off(head: bytes) -> bool:
+def begins_as_off(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins with these bytes is one, comments apart."""
     lines = (line.partition(b"#")[0].split() for line in head.removeprefix(b"\xef\xbb\xbf").splitlines())
     words = next((words for words in lines if words), [b""])

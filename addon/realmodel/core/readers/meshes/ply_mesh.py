@@ -37,7 +37,7 @@ _END = b"end_header"
 _HEAD_BYTES = 1 << 12
 
 
-def begins_as_ply(head: bytes) -> bool:
+def begins_as_ply(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head.startswith((b"ply\n", b"ply\r"))
 

@@ -19,6 +19,11 @@ from .damaged_mesh import UNREADABLE
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 
+def begins_as_tsurf(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is a GOCAD TSurf."""
+    return head.startswith(b"GOCAD TSurf")
+
+
 def begins_as_obj(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is an OBJ: comments apart, its first line is one of that format."""
     lines = (line.partition(b"#")[0].split() for line in head.removeprefix(b"\xef\xbb\xbf").splitlines())

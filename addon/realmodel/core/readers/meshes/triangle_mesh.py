@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from ...base.algebra import begins_run
 from ...base.errors import InputRefused
-from ...base.fans import fanned
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeRows, Rows, in_memory, in_pieces
+from ...base.triangles import fanned
 from ...settings.point_file import MeshFile
 
 _MOST_VERTICES = np.iinfo(np.int32).max

@@ -37,7 +37,7 @@ _APPENDED = re.compile(rb'<AppendedData\s+encoding="(raw|base64)"\s*>\s*_')
 _MOST_COMPRESSED = 1100  # the largest compression ratio of zlib
 
 
-def begins_as_vtk_xml(head: bytes) -> bool:
+def begins_as_vtk_xml(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return bool(_BEGINNING.match(head))
 

@@ -18,7 +18,7 @@ _ENDING = ".geoh5"  # the library takes no other
 _DEPTHS = ("FROM", "TO", "DEPTH")  # data that say where others are
 
 
-def begins_as_geoh5(head: bytes) -> bool:
+def begins_as_geoh5(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one, or another of HDF5."""
     return head.startswith(_MAGIC)
 

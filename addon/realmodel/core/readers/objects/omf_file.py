@@ -18,7 +18,7 @@ _MAGIC = b"\x84\x83\x82\x81"
 _HOLES = "borehole"  # subtype of lines
 
 
-def begins_as_omf(head: bytes) -> bool:
+def begins_as_omf(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one; OMF 2 is a zip file."""
     return head.startswith(_MAGIC)
 

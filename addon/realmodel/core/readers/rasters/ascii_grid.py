@@ -31,7 +31,7 @@ _BEGINNING = re.compile(rb"\s*(?:ncols|nrows)[ \t]", re.IGNORECASE)
 _LONGEST_HEADER = 4096
 
 
-def is_ascii_grid(head: bytes) -> bool:
+def is_ascii_grid(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return bool(_BEGINNING.match(head.removeprefix(b"\xef\xbb\xbf")))
 

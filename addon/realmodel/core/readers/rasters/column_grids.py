@@ -27,12 +27,12 @@ _ZMAP = re.compile(rb"(?:\s*!.*\n)*\s*@[^\n]*,\s*GRID\s*,", re.IGNORECASE)
 _NO_HEIGHT = 1e30  # of CPS-3
 
 
-def is_cps3_grid(head: bytes) -> bool:
+def is_cps3_grid(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return bool(_CPS3.match(head.replace(b"\r", b"\n")))
 
 
-def is_zmap_grid(head: bytes) -> bool:
+def is_zmap_grid(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return bool(_ZMAP.match(head.replace(b"\r", b"\n")))
 

@@ -38,7 +38,7 @@ _BYTES_PER_PIXEL = 40  # of the height, of its point, and of their raw data
 _WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
 
-def is_tiff(head: bytes) -> bool:
+def is_tiff(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head[:4] in _MAGIC
 

@@ -27,7 +27,7 @@ _SECOND = struct.Struct(">2i3fi")
 _THIRD = 9 * 4
 
 
-def is_irap_grid(head: bytes) -> bool:
+def is_irap_grid(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head[:8] == struct.pack(">2i", 32, _MAGIC) or bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
 

@@ -20,7 +20,7 @@ _HEAD_6 = struct.Struct("<4s2h6d")
 _GRID_7 = struct.Struct("<2i8d")
 
 
-def is_surfer_grid(head: bytes) -> bool:
+def is_surfer_grid(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
     return head[:4] in (b"DSAA", b"DSBB", b"DSRB")
 

@@ -30,7 +30,6 @@ from .table_layout import (
     table_layout,
 )
 
-TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
 _MOST_THREADS = 8
 AXES = {
     "x": (

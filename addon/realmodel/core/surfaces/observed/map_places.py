@@ -12,9 +12,9 @@ import numpy as np
 from ...base.algebra import norm, ranks_in_runs
 from ...base.errors import number_list, place_text
 from ...base.work import native_module, on_threads
-from ...readers.maps.unit_polygons import UnitPolygon
 from ...readers.tables.observations import LeftOut, Observations, unknown_block
 from ...readers.tables.unit_names import UnitNames
+from ...readers.unit_polygons import UnitPolygon
 from .polygon_borders import Apart, BorderLine, border_lines, inside, places_along
 
 _NEAR_BORDER = 0.25  # of the spacing: places within polygons are farther from their borders

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.algebra import norm, ranks_in_runs, twice_area
 from ...base.work import native_module, on_threads
-from ...readers.maps.unit_polygons import UnitPolygon
+from ...readers.unit_polygons import UnitPolygon
 
 _ON_EDGE = 0.01  # of the spacing: an end so near to an edge lies on it
 _BESIDE = 0.1  # of the spacing: borders so near are one, which was digitized twice

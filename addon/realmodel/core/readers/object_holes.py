@@ -10,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.algebra import norm
-from ...base.errors import InputRefused, counted
-from ...settings.boreholes import Boreholes
-from ..tables.boreholes import Picks
-from ..tables.hole_tables import INTERVALS, PICKS
-from ..tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
-from ..tables.observations import Observations
-from ..tables.table_layout import names_shown, plain_name
-from ..tables.unit_names import UnitNames
-from .geo_object import HOLE, LINES, POINTS, GeoObject, Values
-from .object_file import read_objects
+from ..base.algebra import norm
+from ..base.errors import InputRefused, counted
+from ..settings.boreholes import Boreholes
+from .object_input import read_objects
+from .objects.geo_object import HOLE, LINES, POINTS, GeoObject, Values
+from .tables.boreholes import Picks
+from .tables.hole_tables import INTERVALS, PICKS
+from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
+from .tables.observations import Observations
+from .tables.table_layout import names_shown, plain_name
+from .tables.unit_names import UnitNames
 
 _KINDS = (HOLE, LINES, POINTS)
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.algebra import begins_run
-from ...base.errors import InputRefused, counted
-from ...base.units import MODEL_UNIT
-from ...settings.map_file import MapFile
-from ..tables.table_layout import names_shown
+from ..base.algebra import begins_run
+from ..base.errors import InputRefused, counted
+from ..base.units import MODEL_UNIT
+from ..settings.map_file import MapFile
 from .map_input import read_shapes
-from .shapes import Heights, Shapes, of_name
+from .maps.shapes import Heights, Shapes, of_name
+from .tables.table_layout import names_shown
 
 
 @dataclass(frozen=True, eq=False)

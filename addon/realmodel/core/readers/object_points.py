@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ...base.errors import InputRefused, counted
-from ...base.mapped_arrays import JoinPieces
-from ...settings.point_file import PointFile, list_of
-from ..tables.table_layout import names_shown
-from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject
-from .object_file import read_object
+from ..base.errors import InputRefused, counted
+from ..base.mapped_arrays import JoinPieces
+from ..settings.point_file import PointFile, list_of
+from .object_input import read_object
+from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject
+from .tables.table_layout import names_shown
 
 OF_POINTS = (POINTS, LINES, SURFACE, HOLE)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outlines, lines and points from files; their format is detected from the content."""
+"""Outlines, lines and points from files."""
 
 from __future__ import annotations
 
@@ -8,39 +8,21 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import InputRefused
-from ...base.text import Step, no_step, read_bytes, read_text
-from ...base.units import MODEL_UNIT, factor
-from ...settings.crs import is_in_degrees
-from ...settings.map_layer import MapLayer, begins_as_wkt
-from .geojson import read_geojson
-from .geopackage import is_geopackage, open_changes, read_geopackage, system_of
-from .shapefile_reader import beside, is_shapefile, read_shapefile
-from .shapes import Heights, Shapes
-from .wkt import parse_wkt
+from ..base.errors import InputRefused
+from ..base.text import Step, no_step, read_bytes
+from ..base.units import MODEL_UNIT, factor
+from ..settings.crs import is_in_degrees
+from ..settings.map_layer import MapLayer
+from .formats import SHAPES, format_of
+from .maps.geopackage import open_changes, system_of
+from .maps.shapefile_reader import beside
+from .maps.shapes import Heights, Shapes
+from .maps.wkt import read_wkt
 
-MAP_ENDINGS = (".geojson", ".json", ".gpkg", ".shp", ".wkt")
-_HEAD = 512
-_JSON = (".json", ".geojson", ".geojsonl", ".geojsons")
 _CRS = re.compile(rb'"crs"\s*:\s*\{[^}]*?"name"\s*:\s*"([^"]*)"')
 _FIRST = 1 << 16  # bytes in which it says so
 _MOST_DEGREES = 360.0
-_BOM = b"\xef\xbb\xbf"
-_RECORD_SEPARATOR = b"\x1e"  # begins each text of a GeoJSON text sequence (RFC 8142)
-_UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _BESIDE_SHAPEFILE = (".shx", ".dbf", ".prj", ".cpg", ".sbn", ".sbx", ".qix")
-
-
-def is_map_layer(file: Path, head: bytes) -> bool:
-    """Whether a file that begins so is one of shapes rather than a table or a raster."""
-    if is_geopackage(head) or is_shapefile(head) or _is_json(file, head):
-        return True
-    return begins_as_wkt(head.removeprefix(_BOM).decode("latin-1"))
-
-
-def _is_json(file: Path, head: bytes) -> bool:
-    first = head.removeprefix(_BOM).lstrip()[:1]
-    return file.suffix.lower() in _JSON or first in (b"{", b"[", _RECORD_SEPARATOR)
 
 
 def read_shapes(
@@ -67,7 +49,7 @@ def _refuse_degrees(given: MapLayer, shapes: Shapes) -> None:
     elif file.suffix.lower() == ".gpkg":
         system = system_of(file, given.layer)
     else:
-        found = _CRS.search(read_bytes(file)[:_FIRST]) if file.suffix.lower() in _JSON else None
+        found = _CRS.search(read_bytes(file)[:_FIRST])
         system = "" if found is None else found[1].decode("latin-1")
     if is_in_degrees(system):
         raise InputRefused(
@@ -79,32 +61,13 @@ def _refuse_degrees(given: MapLayer, shapes: Shapes) -> None:
 
 def _read(given: MapLayer, step: Step, heights: Heights | None) -> Shapes:
     file = Path(given.file)
-    try:
-        with file.open("rb") as opened:
-            head = opened.read(_HEAD)
-    except OSError as error:
-        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
-    if is_geopackage(head):
-        return read_geopackage(file, given.layer, given.where, step, heights)
-    if given.layer is not None:
+    known = format_of(file, SHAPES)
+    if given.layer is not None and (known is None or not known.has_layers):
         what = f"it is not a GeoPackage, so it has no layer '{given.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     if file.suffix.lower() in _BESIDE_SHAPEFILE:
         raise InputRefused("this is only a part of a shapefile", file=file, advice="name the .shp beside it")
-    if is_shapefile(head):
-        return read_shapefile(file, given.where, step, heights)
-    if _is_json(file, head):
-        return read_geojson(file, given.where, heights)
-    text = "" if b"\0" in head and not head.startswith(_UTF16) else read_text(file)
-    if not begins_as_wkt(text):
-        what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
-        raise InputRefused(what, file=file, advice="export it in one of these formats")
-    if given.where:
-        raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
-    if heights and heights.attribute is not None:
-        what = "well-known text has no attributes, so 'height' has no effect"
-        raise InputRefused(what, file=file, advice="write the heights as z")
-    return parse_wkt(text, file, heights is not None)
+    return (known.read if known is not None else read_wkt)(given, step, heights)
 
 
 def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:

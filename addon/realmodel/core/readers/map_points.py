@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import HeightsMissing, InputRefused, counted
-from ...base.mapped_arrays import JoinPieces, in_memory
-from ...base.text import Step, no_step
-from ...settings.map_layer import MapLayer
-from ...settings.point_file import PointFile
+from ..base.errors import HeightsMissing, InputRefused, counted
+from ..base.mapped_arrays import JoinPieces, in_memory
+from ..base.text import Step, no_step
+from ..settings.map_layer import MapLayer
+from ..settings.point_file import PointFile
 from .map_input import read_shapes
-from .shapes import Heights
+from .maps.shapes import Heights
 
 
 def read_map_points(

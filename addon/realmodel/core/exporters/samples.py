@@ -1,58 +1,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files with the probability of each block at samples: tables (.csv), arrays (.npz), cells for ParaView
-(.vtu, .vti), and drawings of sections (.svg, .dxf, .png): each place has the mean color of its blocks."""
+(.vtu, .vti), and drawings of sections: each place has the mean color of its blocks."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable
-from functools import partial
-from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from .. import drawing
 from ..base.algebra import begins_run
-from ..exporters.encodings.text_rows import write_rows
-from ..exporters.encodings.vtk_xml import write_grid, write_image
-from ..exporters.endings import by_ending
-from ..exporters.npz import texts, write_arrays
-from ..exporters.shapes.parts import distinct_names
+from ..base.text import Step
+from ..drawing import Drawing
+from ..results.samples import GridSamples, HoleSamples, Probabilities, Samples, SectionSamples
 from ..results.sections.section_drawing import draw_section
-from .places import Probabilities
-from .samples import GridSamples, HoleSamples, Samples, SectionSamples
+from .encodings.text_rows import write_rows
+from .encodings.vtk_xml import write_grid, write_image
+from .npz import texts, write_arrays
+from .shapes.parts import distinct_names
 
 _QUADRILATERAL = 9
 _SHADES = 64.0  # of each color: cells beside one another that have the same are drawn as one
+Asked = tuple[Samples, Probabilities]
 
 
-def sample_writer(path: str | Path, kind: str, exaggeration: float = 1.0) -> Callable[..., None]:
-    """The function (samples, probabilities, file) for files of this ending. kind: "section", "borehole" or
-    "grid". exaggeration: of heights in drawings. Raises UsageError."""
-    writer = by_ending(path, _WRITERS[kind], f"the probabilities of a {kind} are not written as {{}}")
-    if writer is _write_drawing:
-        draw = drawing.WRITERS[Path(path).suffix.lower()]
-        return partial(writer, write=draw, exaggeration=exaggeration)
-    return writer
-
-
-def _named(found: Probabilities) -> list[tuple[str, np.ndarray]]:
+def _named(probabilities: Probabilities) -> list[tuple[str, np.ndarray]]:
     """Arrays of cells, by name."""
-    shares = zip(distinct_names(found.block_names), found.probability.T, strict=True)
+    shares = zip(distinct_names(probabilities.block_names), probabilities.probability.T, strict=True)
     return [
-        ("entropy", found.entropy().astype("<f8")),
-        ("block", found.likeliest().astype("<i4")),
+        ("entropy", probabilities.entropy().astype("<f8")),
+        ("block", probabilities.likeliest().astype("<i4")),
         *((f"probability {name}", np.ascontiguousarray(share, "<f8")) for name, share in shares),
     ]
 
 
-def _write_csv(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
+def write_samples_csv(asked: Asked, file: BinaryIO, _step: Step) -> None:
     """A row for each place where there may be rock: x, y, z, the distance along a section, the name of the
     likeliest block, entropy, and the probability of each block; the depth along a planned hole."""
-    kept = np.flatnonzero(found.probability.sum(axis=1) > 0)
-    names, columns = distinct_names(found.block_names), [samples.places[kept]]
+    samples, probabilities = asked
+    kept = np.flatnonzero(probabilities.probability.sum(axis=1) > 0)
+    names, columns = distinct_names(probabilities.block_names), [samples.places[kept]]
     headings = ["x", "y", "z"]
     if isinstance(samples, SectionSamples):
         headings.append("distance")
@@ -60,8 +48,12 @@ def _write_csv(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
     if isinstance(samples, HoleSamples):
         headings.append("depth")
         columns.append(samples.depths[kept])
-    quoted = np.array([_cell(name) for name in [*found.block_names, ""]], object)
-    columns += [quoted[found.likeliest()[kept]], found.entropy()[kept], found.probability[kept]]
+    quoted = np.array([_cell(name) for name in [*probabilities.block_names, ""]], object)
+    columns += [
+        quoted[probabilities.likeliest()[kept]],
+        probabilities.entropy()[kept],
+        probabilities.probability[kept],
+    ]
     headings += ["block", "entropy", *(f"probability {name}" for name in names)]
     file.write((",".join(map(_cell, headings)) + "\n").encode())
     form = ",".join(["%r"] * (len(headings) - 2 - len(names)) + ["%s"] + ["%.9g"] * (1 + len(names)))
@@ -75,12 +67,13 @@ def _cell(text: str) -> str:
     return line.getvalue() if text else ""
 
 
-def _write_npz(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
+def write_samples_npz(asked: Asked, file: BinaryIO, _step: Step) -> None:
+    samples, probabilities = asked
     arrays = {
-        "block_names": texts(found.block_names),
+        "block_names": texts(probabilities.block_names),
         "places": samples.places,
-        "probability": found.probability,
-        "entropy": found.entropy(),
+        "probability": probabilities.probability,
+        "entropy": probabilities.entropy(),
     }
     if isinstance(samples, SectionSamples):
         arrays |= {"corners": samples.corners, "distance": samples.distance}
@@ -91,7 +84,8 @@ def _write_npz(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
     write_arrays(arrays, file)
 
 
-def _write_vtu(samples: SectionSamples, found: Probabilities, file: BinaryIO) -> None:
+def write_samples_vtu(asked: tuple[SectionSamples, Probabilities], file: BinaryIO, _step: Step) -> None:
+    samples, probabilities = asked
     count = len(samples.places)
     arrays = [
         ("Points", "Points", samples.corners.reshape(-1, 3).astype("<f8")),
@@ -99,26 +93,15 @@ def _write_vtu(samples: SectionSamples, found: Probabilities, file: BinaryIO) ->
         ("Cells", "offsets", np.arange(4, 4 * count + 1, 4, dtype="<i8")),
         ("Cells", "types", np.full(count, _QUADRILATERAL, np.uint8)),
     ]
-    write_grid(file, [*arrays, *(("CellData", name, values) for name, values in _named(found))])
+    write_grid(file, [*arrays, *(("CellData", name, values) for name, values in _named(probabilities))])
 
 
-def _write_vti(samples: GridSamples, found: Probabilities, file: BinaryIO) -> None:
-    write_image(file, samples.origin, samples.size, samples.counts, _named(found))
+def write_samples_vti(asked: tuple[GridSamples, Probabilities], file: BinaryIO, _step: Step) -> None:
+    samples, probabilities = asked
+    write_image(file, samples.origin, samples.size, samples.counts, _named(probabilities))
 
 
-def _write_drawing(
-    samples: SectionSamples,
-    found: Probabilities,
-    file: BinaryIO,
-    write: Callable[[drawing.Drawing, BinaryIO], None],
-    exaggeration: float,
-) -> None:
-    write(draw_probabilities(samples, found, exaggeration), file)
-
-
-def draw_probabilities(
-    samples: SectionSamples, found: Probabilities, exaggeration: float = 1.0
-) -> drawing.Drawing:
+def draw_probabilities(samples: SectionSamples, found: Probabilities, exaggeration: float = 1.0) -> Drawing:
     """A section whose cells have the mean of the colors of the blocks, as probable as these are, below the
     outlines of the interpolated blocks."""
     cells = _joined(samples, found.colors(samples.section.block_colors))
@@ -136,15 +119,3 @@ def _joined(samples: SectionSamples, colors: np.ndarray) -> tuple[np.ndarray, np
     corners = np.stack([a[:, 0], b[:, 1], b[:, 2], a[:, 3]], axis=1)
     seen = (shades[first] < 1.0).any(axis=1)
     return corners[seen], shades[first][seen]
-
-
-_WRITERS: dict[str, dict[str, Callable]] = {
-    "section": {
-        ".csv": _write_csv,
-        ".npz": _write_npz,
-        ".vtu": _write_vtu,
-        **dict.fromkeys(drawing.WRITERS, _write_drawing),
-    },
-    "borehole": {".csv": _write_csv, ".npz": _write_npz},
-    "grid": {".csv": _write_csv, ".npz": _write_npz, ".vti": _write_vti},
-}

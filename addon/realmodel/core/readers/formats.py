@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one table of formats that files are read in. A format is told by the beginning of a file, whatever its
+name; menus, file filters and messages about endings follow from the table."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..base.text import reading
+from .maps.geojson import begins_as_geojson, read_geojson
+from .maps.geopackage import is_geopackage, read_geopackage
+from .maps.shapefile_reader import is_shapefile, read_shapefile
+from .maps.wkt import begins_as_wkt_file, read_wkt
+from .meshes.dxf_mesh import begins_as_dxf, read_dxf
+from .meshes.gmsh_mesh import begins_as_msh, read_msh
+from .meshes.landxml import begins_as_landxml, read_landxml
+from .meshes.off import begins_as_off, read_off
+from .meshes.ply_mesh import begins_as_ply, read_ply
+from .meshes.stl_mesh import begins_as_stl, read_stl
+from .meshes.surface_meshes import begins_as_obj, begins_as_tsurf, read_obj, read_tsurf
+from .meshes.vtk_mesh import begins_as_vtk_xml, read_vtk_xml
+from .objects.geoh5_file import begins_as_geoh5, open_geoh5
+from .objects.omf_file import begins_as_omf, open_omf
+from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
+from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
+from .rasters.geotiff import is_tiff, read_geotiff
+from .rasters.irap_grid import is_irap_grid, read_irap_grid
+from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
+from .tables.point_array import begins_as_array, read_point_array
+from .tables.points import read_point_rows
+from .tables.sticks import begins_as_sticks, read_sticks
+
+_HEAD = 4096  # bytes; comments may come before the first line
+RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
+MESH, STICKS, TABLE = "mesh", "sticks", "table"
+
+
+@dataclass(frozen=True)
+class FileFormat:
+    """A format that files are read in.
+
+    holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
+    read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
+    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. in_pieces: read takes
+    where its arrays are kept, for files that are larger than the memory. has_layers: `layer` names one of
+    several things in a file.
+    """
+
+    label: str
+    endings: tuple[str, ...]
+    holds: str
+    begins: Callable[[bytes, int], bool]
+    read: Callable[..., Any]
+    by_ending: bool = False
+    in_pieces: bool = False
+    has_layers: bool = False
+
+
+FORMATS = (
+    FileFormat("GeoTIFF", (".tif", ".tiff"), RASTER, is_tiff, read_geotiff),
+    FileFormat("ESRI ASCII grid", (".asc",), RASTER, is_ascii_grid, read_ascii_grid),
+    FileFormat("Surfer grid", (".grd",), RASTER, is_surfer_grid, read_surfer_grid),
+    FileFormat("ZMAP+", (".zmap", ".dat"), RASTER, is_zmap_grid, read_zmap_grid),
+    FileFormat("CPS-3", (".cps3", ".cps"), RASTER, is_cps3_grid, read_cps3_grid),
+    FileFormat("IRAP classic", (".gri", ".irap"), RASTER, is_irap_grid, read_irap_grid),
+    FileFormat("NumPy array", (".npy",), ARRAY, begins_as_array, read_point_array),
+    FileFormat("OMF", (".omf",), OBJECTS, begins_as_omf, open_omf, has_layers=True),
+    FileFormat("geoh5", (".geoh5",), OBJECTS, begins_as_geoh5, open_geoh5, has_layers=True),
+    FileFormat("GeoPackage", (".gpkg",), SHAPES, is_geopackage, read_geopackage, has_layers=True),
+    FileFormat("shapefile", (".shp",), SHAPES, is_shapefile, read_shapefile),
+    FileFormat(
+        "GeoJSON",
+        (".geojson", ".json", ".geojsonl", ".geojsons"),
+        SHAPES,
+        begins_as_geojson,
+        read_geojson,
+        by_ending=True,
+    ),
+    FileFormat("well-known text", (".wkt",), SHAPES, begins_as_wkt_file, read_wkt),
+    FileFormat("OFF", (".off",), MESH, begins_as_off, read_off, by_ending=True, in_pieces=True),
+    FileFormat("PLY", (".ply",), MESH, begins_as_ply, read_ply, by_ending=True, in_pieces=True),
+    FileFormat("GOCAD TSurf", (".ts",), MESH, begins_as_tsurf, read_tsurf, by_ending=True),
+    FileFormat("VTK XML", (".vtp", ".vtu"), MESH, begins_as_vtk_xml, read_vtk_xml, by_ending=True),
+    FileFormat("Gmsh", (".msh",), MESH, begins_as_msh, read_msh, by_ending=True),
+    FileFormat("LandXML", (".xml", ".landxml"), MESH, begins_as_landxml, read_landxml, by_ending=True),
+    FileFormat("DXF", (".dxf",), MESH, begins_as_dxf, read_dxf, by_ending=True),
+    FileFormat("STL", (".stl",), MESH, begins_as_stl, read_stl, by_ending=True),
+    FileFormat("OBJ", (".obj",), MESH, begins_as_obj, read_obj, by_ending=True),
+    FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
+    FileFormat(
+        "table of text",
+        (".csv", ".xyz", ".txt", ".dat", ".tsv"),
+        TABLE,
+        lambda _head, _size: True,
+        read_point_rows,
+    ),
+)
+
+
+def format_of(file: str | Path, *holds: str) -> FileFormat | None:
+    """The format of a file among those that hold these things: by its beginning, or else by its ending.
+    Raises InputRefused where it cannot be read."""
+    file = Path(file)
+    with reading(file), file.open("rb") as opened:
+        head = opened.read(_HEAD)
+        size = opened.seek(0, os.SEEK_END)
+    able = [known for known in FORMATS if known.holds in holds]
+    by_ending = (known for known in able if known.by_ending and file.suffix.lower() in known.endings)
+    return next((known for known in able if known.begins(head, size)), next(by_ending, None))
+
+
+def endings(*holds: str) -> tuple[str, ...]:
+    """Of the names of files that hold these things."""
+    able = [known for what in holds for known in FORMATS if known.holds == what]
+    return tuple(dict.fromkeys(ending for known in able for ending in known.endings))
+
+
+def labels(*holds: str) -> str:
+    """The names of formats of files that hold these things, for messages."""
+    return ", ".join(known.label for what in holds for known in FORMATS if known.holds == what)
