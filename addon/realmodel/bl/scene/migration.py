@@ -15,7 +15,7 @@ import numpy as np
 from ...core import RealModelError
 from ..display.ensembles import BLOCKS
 from ..objects.stored_arrays import ArraysProperty, store
-from . import borehole_picks, method_settings, settings
+from ..project import borehole_picks, method_settings, settings
 
 _BROKEN = (AttributeError, KeyError, TypeError, ValueError, OSError, EOFError, MemoryError)
 _BROKEN += (zipfile.BadZipFile, zlib.error, RealModelError)
