@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +23,7 @@ from ..base.triangles import checked_triangulation
 from ..readers import UnitNames
 from ..settings.dips import Dips, SpaceDips, as_given
 from .entry import changed_values
-from .library import Library, Property
+from .library import Library
 from .plan_input import map_layer
 from .project import Project, Rock, Surface
 from .project_checks import check_project
@@ -90,7 +90,7 @@ def library_text(library: Library) -> str:
     """A library as TOML."""
     tables = []
     for entry in library:
-        values = {field.name: getattr(entry, field.name) for field in fields(Property)}
+        values = {part.key: value for part, value in changed_values(entry)}
         tables.append("\n".join(["[[property]]", *_lines(values)]))
     return "\n\n".join(tables) + "\n"
 
