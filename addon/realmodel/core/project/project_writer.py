@@ -96,12 +96,11 @@ def library_text(library: Library) -> str:
 
 
 class _Value(NamedTuple):
-    """A value to be written: its entry, the names of this and of those around it, the rock mass around it,
+    """A value to be written: its key, the names of its entry and of those around it, the rock mass around it,
     the tables that the entry is in, and the files."""
 
     value: Any
     key: str
-    entry: Any
     names: tuple[str, ...]
     rock: Rock | None
     tables: str
@@ -117,7 +116,7 @@ def _entry_lines(
     """The lines of a project, rock mass, surface, series, fault or body."""
     lines: list[str] = []
     for part, value in changed_values(entry):
-        item = _Value(value, part.key, entry, names, rock, tables, files)
+        item = _Value(value, part.key, names, rock, tables, files)
         if part.setting.kind == "tables":
             lines += _tables(item)
         elif part.setting.kind == "options":
