@@ -19,7 +19,7 @@ _SEARCH = {
 }
 
 
-_TEXTS = ("name", "text", "separator", "values")
+_TEXTS = ("name", "text", "note", "separator", "values")
 _ROWS = ("names", "where")  # several rows, of a class of their own
 
 
@@ -59,7 +59,7 @@ def _property(setting, update):
     if setting.kind == "truth":
         return BoolProperty(**given, default=setting.default)
     given |= {key: bound for key, bound in (("min", setting.low), ("max", setting.high)) if bound is not None}
-    if setting.kind == "whole":
+    if setting.kind in ("whole", "integer"):
         return IntProperty(**given, default=int(setting.start))
     return FloatProperty(
         **given, default=setting.start, subtype="DISTANCE" if setting.kind == "length" else "NONE"

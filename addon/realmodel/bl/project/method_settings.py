@@ -11,6 +11,7 @@ from ...core.settings.setting import declarations, property_name, settings_of, s
 from . import reading_text as texts
 from .settings import number, rock_of, set_number
 
+NUMBERS = ("number", "length", "finite")  # kinds that keep all their digits
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
 
 
@@ -37,12 +38,15 @@ def value(row, key, settings):
         parts = {part: value(row, part, setting.parts) for part in setting.parts}
         parts = {part: content for part, content in parts.items() if content is not None}
         return texts.columns(parts) if setting.kind == "columns" else parts or None
-    if setting.kind in ("number", "length"):
+    if setting.kind in NUMBERS:
         given = number(row, name)
-        return None if setting.zero_is_none and given == 0.0 else given
-    read = texts.READ.get(setting.kind)
-    given = getattr(row, name) if read is None else read(getattr(row, name))
-    return None if given == "" or (given == "NONE" and "" in setting.words) else given
+    else:
+        read = texts.READ.get(setting.kind)
+        given = getattr(row, name) if read is None else read(getattr(row, name))
+    is_none = (
+        given == "" or (given == "NONE" and "" in setting.words) or (setting.zero_is_none and given == 0)
+    )
+    return None if is_none and setting.kind != "name" else given
 
 
 def values(row, entry, shape=None):
@@ -71,7 +75,7 @@ def set_value(row, key, settings, given):
         row.property_unset(name)
         if setting.kind == "word":
             setattr(row, name, setting.default or "NONE")
-    elif setting.kind in ("number", "length"):
+    elif setting.kind in NUMBERS:
         set_number(row, name, given)
     else:
         setattr(row, name, given)

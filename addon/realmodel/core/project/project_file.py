@@ -19,7 +19,7 @@ from ..settings.method_options import checked
 from ..settings.point_file import MESH_READING, READING, MeshFile, PointFile
 from ..settings.setting import Setting, declarations, settings_of
 from .entry import check_file, is_file, refused_by
-from .library import Library, load_library
+from .library import PROPERTY, Library, Property, check_property
 from .plan_input import is_place_elsewhere
 from .project import PROJECT, Project
 from .project_checks import check_project
@@ -42,6 +42,22 @@ def load_project(path: str | Path) -> Project:
     project = Project(path=path, **_values(top, Project, path.parent, _checked))
     check_project(project)
     return project
+
+
+def load_library(path: str | Path) -> Library:
+    """Reads a library file. Raises InputRefused with the line of the error."""
+    path = Path(path)
+    document = TomlDocument(path)
+    top = Table(document, document.content, (), "")
+    top.allow_only(("property",))
+    properties: dict[int, Property] = {}
+    for table in top.tables("property", "property") if "property" in top else []:
+        table.allow_only(PROPERTY)
+        entry = Property(**_values(table, Property, path.parent, _unchecked))
+        with refused_by(table.refuse):
+            check_property(entry, properties)
+        properties[entry.id] = entry
+    return Library(list(properties.values()), path)
 
 
 class _Key:
@@ -145,6 +161,11 @@ def _options(key: _Key) -> dict:
 def _line(key: _Key) -> str:
     key.value = key.text()
     return _checked(key)
+
+
+def _note(key: _Key) -> str | None:
+    """Text that may be empty (not given) or have several lines, as descriptions."""
+    return (key.value or None) if isinstance(key.value, str) else key.text()
 
 
 def _library(key: _Key) -> Library:
@@ -285,6 +306,8 @@ READ: Mapping[str, Read] = {
     "line": _line,
     "method": _Key.text,
     "finite": lambda key: key.table.number(key.name),
+    "integer": lambda key: key.table.integer(key.name, required=True),
+    "note": _note,
     "file": _Key.path,
     "points": _Key.path,
     "mesh": _Key.path,

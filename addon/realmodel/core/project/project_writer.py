@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +23,7 @@ from ..base.triangles import checked_triangulation
 from ..readers import UnitNames
 from ..settings.dips import Dips, SpaceDips, as_given
 from .entry import changed_values
-from .library import Library, Property
+from .library import Library
 from .plan_input import map_layer
 from .project import Project, Rock, Surface
 from .project_checks import check_project
@@ -90,18 +90,17 @@ def library_text(library: Library) -> str:
     """A library as TOML."""
     tables = []
     for entry in library:
-        values = {field.name: getattr(entry, field.name) for field in fields(Property)}
+        values = {part.key: value for part, value in changed_values(entry)}
         tables.append("\n".join(["[[property]]", *_lines(values)]))
     return "\n\n".join(tables) + "\n"
 
 
 class _Value(NamedTuple):
-    """A value to be written: its entry, the names of this and of those around it, the rock mass around it,
+    """A value to be written: its key, the names of its entry and of those around it, the rock mass around it,
     the tables that the entry is in, and the files."""
 
     value: Any
     key: str
-    entry: Any
     names: tuple[str, ...]
     rock: Rock | None
     tables: str
@@ -117,7 +116,7 @@ def _entry_lines(
     """The lines of a project, rock mass, surface, series, fault or body."""
     lines: list[str] = []
     for part, value in changed_values(entry):
-        item = _Value(value, part.key, entry, names, rock, tables, files)
+        item = _Value(value, part.key, names, rock, tables, files)
         if part.setting.kind == "tables":
             lines += _tables(item)
         elif part.setting.kind == "options":
