@@ -104,6 +104,8 @@ WKT = b"POLYGON ((0 0, 4 0, 4 3, 0 3.5, 0 0), (1 1, 2 1, 2 2, 1 1))\n"
 
 
 STICKS = b"1 2 3\n1 2 5.5\n999.000 999.000 999.000\n\n4 5 6\n4 5 7\n999 999 999\n"
+LEAPFROG = b"%ARANZ-1.0\n\n[index]\nTri Integer 3 2;\nLocation Double 3 4;\n\n[binary]" + bytes(12)
+LEAPFROG += struct.pack("<6i12d", 0, 1, 2, 0, 2, 3, *range(12))
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
@@ -123,6 +125,7 @@ READERS = {
     "m.dxf": (DXF, read_mesh),
     "m.msh": (MSH, read_mesh),
     "b.msh": (BINARY_MSH, read_mesh),
+    "l.msh": (LEAPFROG, read_mesh),
     "m.xml": (LANDXML, read_mesh),
     "m.vtp": (VTP, read_mesh),
     "m.vtu": (VTU, read_mesh),

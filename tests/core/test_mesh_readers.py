@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces in DXF, VTK's XML, Gmsh's MSH and LandXML, as others write them."""
+"""Surfaces in DXF, VTK's XML, Gmsh's MSH, Leapfrog's and LandXML, as others write them."""
 
 from pathlib import Path
 
@@ -247,6 +247,41 @@ def test_the_format_of_a_mesh_is_detected_from_its_content(write, name, content)
     assert is_mesh_file(write(f"{name}.txt", content))
     assert not is_mesh_file(write("p.txt", "x y z\n0 0 1\n1 0 1\n"))
     assert len(read_mesh(write(f"{name}.txt", content)).triangles) == 1
+
+
+MARK = bytes(
+    [255, 15, 240, 0, 27, 222, 131, 66, 202, 192, 243, 63]
+)  # of every file of Leapfrog that is known
+
+
+def leapfrog(index, *arrays, end=b""):
+    return b"%ARANZ-1.0\n\n[index]\n" + index + b"\n[binary]" + end + MARK + b"".join(arrays)
+
+
+@pytest.mark.parametrize("end", [b"", b"\n", b"\r\n"])
+def test_msh_of_leapfrog(write, end):
+    """Arrays stand in the order of the index, which may have more of them."""
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [1, 4, 2]], "<i4").tobytes()
+    places, colors = VERTICES.astype("<f8").tobytes(), np.arange(5, dtype="<i4").tobytes()
+    first = leapfrog(b"Tri Integer 3 3;\nLocation Double 3 5;\n", triangles, places, end=end)
+    index = b"Location Double 3 5;\nColour Integer 1 5;\nTri Integer 3 3;\n"
+    for content in (first, leapfrog(index, places, colors, triangles, end=end)):
+        assert facets(read_mesh(write("m.msh", content))) == expected()
+
+
+@pytest.mark.parametrize(
+    ("content", "match"),
+    [
+        (leapfrog(b"Tri Integer 3 1;\nLocation Double 3 3;\n", bytes(80)), "other sizes than its index says"),
+        (leapfrog(b"Tri Integer 3 1;\n", bytes(12)), "missing: 'Location'"),
+        (leapfrog(b"Tri Integer 2 1;\nLocation Double 3 3;\n", bytes(80)), "not three numbers"),
+        (leapfrog(b"Tri Text 3 1;\nLocation Double 3 3;\n", bytes(84)), "unknown or missing: 'Text'"),
+        (leapfrog(b"Tri Integer 3 1;\nLocation Double 3 3;\n", b"\xff" * 12, bytes(72)), "no vertex"),
+    ],
+)
+def test_a_damaged_msh_of_leapfrog_is_refused(write, content, match):
+    with pytest.raises(InputRefused, match=match):
+        read_mesh(write("m.msh", content))
 
 
 @pytest.mark.parametrize(

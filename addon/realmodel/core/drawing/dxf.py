@@ -22,68 +22,6 @@ from .drawing import ANCHORS, BLACK, Color, Drawing, DrawingItem, FilledRings, L
 _LONGEST_NAME = 31
 ZERO_LAYER = "0"
 _CODE_PAGE = "cp1252"
-_HEAD = """0
-SECTION
-2
-HEADER
-9
-$ACADVER
-1
-AC1009
-9
-$DWGCODEPAGE
-3
-ANSI_1252
-9
-$EXTMIN
-{low}
-9
-$EXTMAX
-{high}
-0
-ENDSEC
-0
-SECTION
-2
-TABLES
-0
-TABLE
-2
-LTYPE
-70
-1
-0
-LTYPE
-2
-CONTINUOUS
-70
-0
-3
-Solid line
-72
-65
-73
-0
-40
-0.0
-0
-ENDTAB
-0
-TABLE
-2
-LAYER
-70
-{count}
-{layers}0
-ENDTAB
-0
-ENDSEC
-0
-SECTION
-2
-ENTITIES
-"""
-_LAYER = "0\nLAYER\n2\n{name}\n70\n0\n62\n{color}\n6\nCONTINUOUS\n"
 # AutoCAD's colors with the numbers 10 to 249: hues in steps of 15 degrees, ten of each, from bright to dark.
 _HUES, _VALUES = 15.0 * np.arange(24), (1.0, 0.65, 0.5, 0.3, 0.15)
 
@@ -92,14 +30,23 @@ _HUES, _VALUES = 15.0 * np.arange(24), (1.0, 0.65, 0.5, 0.3, 0.15)
 def entities(file: BinaryIO, bounds: np.ndarray, layers: Mapping[str, Color]) -> Iterator[None]:
     """The entities are written within this context, what comes before and after them by it. bounds: (2, 3),
     the lowest and the highest coordinates. layers: their colors by name."""
-    low, high = (
-        "\n".join(f"{code}\n{value!r}" for code, value in zip((10, 20, 30), corner, strict=True))
-        for corner in bounds.tolist()
-    )
-    rows = "".join(_LAYER.format(name=name, color=_color_number(color)) for name, color in layers.items())
-    file.write(_HEAD.format(low=low, high=high, count=len(layers), layers=rows).encode(_CODE_PAGE))
+    low, high = (list(zip((10, 20, 30), corner, strict=True)) for corner in bounds.tolist())
+    head = _text((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"))
+    head += _text((9, "$DWGCODEPAGE"), (3, "ANSI_1252"), (9, "$EXTMIN"), *low, (9, "$EXTMAX"), *high)
+    head += _text((0, "ENDSEC"), (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LTYPE"), (70, 1))
+    head += _text((0, "LTYPE"), (2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0))
+    head += _text((0, "ENDTAB"), (0, "TABLE"), (2, "LAYER"), (70, len(layers)))
+    for name, color in layers.items():
+        head += _text((0, "LAYER"), (2, name), (70, 0), (62, _color_number(color)), (6, "CONTINUOUS"))
+    head += _text((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
+    file.write(head.encode(_CODE_PAGE))
     yield
-    file.write(b"0\nENDSEC\n0\nEOF\n")
+    file.write(_text((0, "ENDSEC"), (0, "EOF")).encode())
+
+
+def _text(*pairs: tuple[int, object]) -> str:
+    """Group codes and their values, each on a line."""
+    return "".join(f"{code}\n{value}\n" for code, value in pairs)
 
 
 def write_dxf(drawing: Drawing, file: BinaryIO, _step: Step) -> None:
@@ -125,7 +72,7 @@ class _Pairs:
         self.lines: list[str] = []
 
     def add(self, *pairs: tuple[int, object]) -> None:
-        self.lines += [f"{code}\n{value}\n" for code, value in pairs]
+        self.lines.append(_text(*pairs))
 
     def places(self, points: ArrayLike) -> np.ndarray:
         return (np.asarray(points) - self.drawing.origin) / self.drawing.scale

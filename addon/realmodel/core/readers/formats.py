@@ -18,6 +18,7 @@ from .maps.wkt import begins_as_wkt_file, read_wkt
 from .meshes.dxf_mesh import begins_as_dxf, read_dxf
 from .meshes.gmsh_mesh import begins_as_msh, read_msh
 from .meshes.landxml import begins_as_landxml, read_landxml
+from .meshes.leapfrog import begins_as_leapfrog, read_leapfrog
 from .meshes.off import begins_as_off, read_off
 from .meshes.ply_mesh import begins_as_ply, read_ply
 from .meshes.stl_mesh import begins_as_stl, read_stl
@@ -86,6 +87,7 @@ FORMATS = (
     FileFormat("GOCAD TSurf", (".ts",), MESH, begins_as_tsurf, read_tsurf, by_ending=True),
     FileFormat("VTK XML", (".vtp", ".vtu"), MESH, begins_as_vtk_xml, read_vtk_xml, by_ending=True),
     FileFormat("Gmsh", (".msh",), MESH, begins_as_msh, read_msh, by_ending=True),
+    FileFormat("Leapfrog", (".msh",), MESH, begins_as_leapfrog, read_leapfrog),
     FileFormat("LandXML", (".xml", ".landxml"), MESH, begins_as_landxml, read_landxml, by_ending=True),
     FileFormat("DXF", (".dxf",), MESH, begins_as_dxf, read_dxf, by_ending=True),
     FileFormat("STL", (".stl",), MESH, begins_as_stl, read_stl, by_ending=True),
