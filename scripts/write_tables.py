@@ -179,7 +179,10 @@ def _keys(settings, text):
 
 def written(text):
     """The text of a document with its tables as the add-on has them. Raises KeyError for a key not there."""
-    from realmodel.core.settings.schema import BODY, FAULT, PROJECT, READING, ROCK, SERIES, SURFACE
+    from realmodel.core.project.project import PROJECT, ROCK, SURFACE
+    from realmodel.core.project.series import SERIES
+    from realmodel.core.project.structure_entries import BODY, FAULT
+    from realmodel.core.settings.point_file import READING
 
     tables = {
         "rules": _rules,

@@ -36,11 +36,23 @@ from .bl.project import library_rows, results, units
 from .bl.scene import data_objects, quality
 from .bl.shading import looks
 from .core.base.units import MODEL_UNIT
-from .core.settings.schema import PROJECT
+from .core.project.library import PROPERTY
+from .core.project.project import PROJECT
+from .props_schema import properties_of
 from .registration import classes
 
 
-class RealModelProperty(bpy.types.PropertyGroup):
+class RealModelProperty(
+    properties_of(
+        PROPERTY,
+        name=changes.property_name,
+        rock=changes.property_rock,
+        look_scale=changes.property_look,
+        look_seed=changes.property_look,
+        hardness=changes.property_hardness,
+    ),
+    bpy.types.PropertyGroup,
+):
     """One entry of the library: the rock that a block consists of."""
 
     id: IntProperty(
@@ -51,11 +63,6 @@ class RealModelProperty(bpy.types.PropertyGroup):
         options=set(),
     )
     known_id: IntProperty(options={"HIDDEN"})
-    name: StringProperty(
-        name="Name",
-        description="Name of the rock, and of the material of its blocks",
-        update=changes.property_name,
-    )
     color: FloatVectorProperty(
         name="Color",
         description="Color of the blocks with this property, and of their material",
@@ -68,22 +75,6 @@ class RealModelProperty(bpy.types.PropertyGroup):
         options=set(),
     )
     has_color: BoolProperty(options={"HIDDEN"})
-    rock: StringProperty(
-        name="Lithology", description="Rock type, such as sandstone", update=changes.property_rock
-    )
-    age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.setting)
-    structure: StringProperty(
-        name="Structure", description="Bedding, texture, grain size", update=changes.setting
-    )
-    density: FloatProperty(
-        name="Density",
-        description="Density in any unit, such as kg/m³; 0: unknown",
-        min=0.0,
-        precision=1,
-        update=changes.setting,
-        options=set(),
-    )
-    description: StringProperty(name="Description", description="Further notes", update=changes.setting)
     look: EnumProperty(
         name="Look",
         description="How the rock looks in rendered pictures",
@@ -92,30 +83,6 @@ class RealModelProperty(bpy.types.PropertyGroup):
             *looks.ITEMS,
         ],
         update=changes.property_look,
-        options=set(),
-    )
-    look_scale: FloatProperty(
-        name="Texture Scale",
-        description="Size of the texture; 1 suits the model",
-        default=1.0,
-        min=0.001,
-        soft_max=10.0,
-        update=changes.property_look,
-        options=set(),
-    )
-    look_seed: IntProperty(
-        name="Texture Seed",
-        description="Another texture of the same kind",
-        min=0,
-        update=changes.property_look,
-        options=set(),
-    )
-    hardness: FloatProperty(
-        name="Hardness",
-        description="Resistance of the rock to weathering in pictures, at most 1; 0: that of its look",
-        min=0.0,
-        max=1.0,
-        update=changes.property_hardness,
         options=set(),
     )
     exact = ArraysProperty()

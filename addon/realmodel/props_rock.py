@@ -16,8 +16,9 @@ from . import props_series, props_surface
 from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import plan_mesh, settings
-from .core.settings.schema import ROCK, SIZE
-from .props_schema import settings_of
+from .core.project.project import ROCK
+from .core.settings.mesh_sizes import SIZE
+from .props_schema import properties_of
 
 _AT = (
     ("OUTLINE", "Outline", "Along the outline of the region and its holes"),
@@ -37,7 +38,7 @@ def _object(description, update=changes.setting):
     )
 
 
-class RealModelSize(settings_of(SIZE), bpy.types.PropertyGroup):
+class RealModelSize(properties_of(SIZE), bpy.types.PropertyGroup):
     """A refinement: where the edges of the planar mesh are shorter than elsewhere."""
 
     at: EnumProperty(
@@ -61,7 +62,7 @@ class RealModelConstraint(bpy.types.PropertyGroup):
     )
 
 
-_SETTINGS = settings_of(
+_SETTINGS = properties_of(
     ROCK,
     name=changes.name,
     edge_length=changes.edge_length,

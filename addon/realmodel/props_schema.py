@@ -13,12 +13,17 @@ _SEARCH = {
     "rock_mass": choices.rocks,
     "series": choices.series,
     "column": choices.columns,
+    "attribute": choices.columns,
     "layer": choices.layers,
     "direction": choices.directions,
 }
 
 
-def settings_of(settings, update=changes.setting, **updates):
+_TEXTS = ("name", "text", "note", "separator", "values")
+_ROWS = ("names", "where")  # several rows, of a class of their own
+
+
+def properties_of(settings, update=changes.setting, **updates):
     """A base of a property group with the properties of settings. update: what follows on a change; updates:
     what else, by key or switch."""
     properties = dict(_all(settings, update, updates))
@@ -35,26 +40,26 @@ def _all(settings, update, updates):
         follows = updates.get(key) or (changes.switched_on(switch) if switch else update)
         if setting.parts:
             yield from _all(setting.parts, follows, {})
-        elif setting.kind != "other":
+        elif setting.label and setting.kind not in _ROWS:
             yield property_name(key, setting), _property(setting, follows)
 
 
 def _property(setting, update):
     given = {"name": setting.label, "description": setting.tip, "options": set(), "update": update}
-    if setting.kind == "word":
+    if setting.words:
         return EnumProperty(
             **given,
             items=items(setting.words),
             default=setting.default or next(iter(setting.words)) or "NONE",
         )
-    if setting.kind in ("text", *_SEARCH):
+    if setting.kind in _TEXTS or setting.kind in _SEARCH:
         if setting.kind in _SEARCH:
             given["search"] = _SEARCH[setting.kind]
         return StringProperty(**given)
     if setting.kind == "truth":
         return BoolProperty(**given, default=setting.default)
     given |= {key: bound for key, bound in (("min", setting.low), ("max", setting.high)) if bound is not None}
-    if setting.kind == "whole":
+    if setting.kind in ("whole", "integer"):
         return IntProperty(**given, default=int(setting.start))
     return FloatProperty(
         **given, default=setting.start, subtype="DISTANCE" if setting.kind == "length" else "NONE"

@@ -7,8 +7,8 @@ from bpy.props import StringProperty
 from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, series_settings, settings
-from .core.settings.schema import SERIES
-from .props_schema import settings_of
+from .core.project.series import SERIES
+from .props_schema import properties_of
 
 
 def _end(name, description, at):
@@ -40,7 +40,7 @@ def _end(name, description, at):
     )
 
 
-class RealModelSeries(settings_of(SERIES, name=changes.name), bpy.types.PropertyGroup):
+class RealModelSeries(properties_of(SERIES, name=changes.name), bpy.types.PropertyGroup):
     """A series: level sets of one field in space, or sheets that are interpolated together."""
 
     known_name: StringProperty(options={"HIDDEN"})

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of one fault and of one body; most come from their declarations in core/settings/schema.py."""
+"""The settings of one fault and of one body; most come from their declarations in
+core/project/structure_entries.py."""
 
 import bpy
 from bpy.props import CollectionProperty, EnumProperty, PointerProperty, StringProperty
@@ -7,9 +8,10 @@ from bpy.props import CollectionProperty, EnumProperty, PointerProperty, StringP
 from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
+from .core.project.structure_entries import BODY, FAULT
 from .core.readers.formats import MESH, labels
-from .core.settings.schema import BODY, FAULT, READING
-from .props_schema import settings_of
+from .core.settings.point_file import READING
+from .props_schema import properties_of
 from .props_surface import Interface, RealModelFilter
 
 _MESH_SOURCES = (
@@ -85,7 +87,7 @@ _MESH_READING = {key: setting for key, setting in BODY.items() if key in READING
 
 
 class RealModelFault(
-    settings_of(
+    properties_of(
         _FAULT,
         name=changes.name,
         extend=changes.extended,
@@ -93,7 +95,7 @@ class RealModelFault(
         dies_out=changes.fitted,
         **{key: changes.unset_of_file(key) for key in ("dip", "dip_direction")},
     ),
-    settings_of(READING, changes.reading),
+    properties_of(READING, changes.reading),
     _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE, *_LINE_SOURCES), settings.is_fault_object),
     bpy.types.PropertyGroup,
 ):
@@ -106,8 +108,8 @@ class RealModelFault(
 
 
 class RealModelBody(
-    settings_of(_BODY, name=changes.name),
-    settings_of(_MESH_READING, changes.reading),
+    properties_of(_BODY, name=changes.name),
+    properties_of(_MESH_READING, changes.reading),
     _shape_properties(_MESH_SOURCES),
     bpy.types.PropertyGroup,
 ):

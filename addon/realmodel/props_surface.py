@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of one surface; most come from their declarations in core/settings (schema.py, methods.py)."""
+"""The settings of one surface; most come from their declarations in core/project/project.py and
+core/settings."""
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerProperty, StringProperty
@@ -7,10 +8,11 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerPro
 from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
+from .core.project.project import SURFACE
 from .core.readers.formats import MESH, labels
 from .core.settings.methods import STRUCTURE
-from .core.settings.schema import READING, SURFACE
-from .props_schema import settings_of
+from .core.settings.point_file import READING
+from .props_schema import properties_of
 
 SOURCES = (
     ("POINTS_FILE", "Points File", "File with the points that the surface is interpolated from"),
@@ -43,7 +45,7 @@ class Interface:
     figures: StringProperty(options={"HIDDEN"})
 
 
-class RealModelStructure(settings_of(STRUCTURE), bpy.types.PropertyGroup):
+class RealModelStructure(properties_of(STRUCTURE), bpy.types.PropertyGroup):
     """A structure of a nested variogram, added to the nugget and the other structures."""
 
     exact = ArraysProperty()
@@ -70,8 +72,8 @@ _OWN = {key: setting for key, setting in SURFACE.items() if key not in READING}
 
 
 class RealModelSurface(
-    settings_of(_OWN, name=changes.name),
-    settings_of(READING, changes.reading),
+    properties_of(_OWN, name=changes.name),
+    properties_of(READING, changes.reading),
     Interface,
     bpy.types.PropertyGroup,
 ):

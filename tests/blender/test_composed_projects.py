@@ -4,8 +4,8 @@
 import bpy
 from every_key import write_files
 from panel_case import PanelCase, ops, outline, select, sheet
-from realmodel.bl.project import choices, project_settings, reading_text
-from realmodel.core import InputRefused
+from realmodel.bl.project import choices, method_settings, project_settings
+from realmodel.core import InputRefused, PointFile
 
 
 class Written(PanelCase):
@@ -41,15 +41,16 @@ class Written(PanelCase):
         ops.rock_add()
         ops.surface_add(empty=True)
         row = self.model.rocks[0].surfaces[0]
-        for given in (
+        for options in (
             {"columns": [2, 3, "z; up"], "decimal": ","},
             {"columns": ["5", "y", "z"], "units": {"xy": "ft", "z": "ft"}},
             {"where": {"a": "60", "b": [1.5, "x, y"]}, "height": "5", "layer": "l"},
             {"separator": "\t", "nodata": -9999},
             {"separator": " ", "nodata": [-9999, "n/a", ""]},
         ):
-            reading_text.fill(row, given)
-            self.assertEqual(reading_text.options(row), given)
+            file = PointFile("points.csv", **options)
+            method_settings.fill_reading(row, file)
+            self.assertEqual(method_settings.point_file(row, "points.csv"), file)
 
     def test_names_are_offered(self):
         write_files(self.folder)

@@ -14,9 +14,9 @@ from realmodel.bl.display import shown_models
 from realmodel.bl.project import method_settings, region_size, results, surface_statistics
 from realmodel.core import load_library, load_project
 from realmodel.core.exporters import MODEL
+from realmodel.core.project.project import ROCK, SURFACE
 from realmodel.core.project.project_writer import off_text, points_text
 from realmodel.core.settings.methods import METHODS, NEIGHBOURS_OF_FITTED
-from realmodel.core.settings.schema import ROCK, SURFACE
 
 POINTS = np.array([(x, y, 5.0 + 0.05 * x) for x in range(0, 101, 25) for y in range(0, 101, 25)], float)
 SQUARE = [(0, 0), (100, 0), (100, 100), (0, 100)]
@@ -279,13 +279,14 @@ class Surfaces(PanelCase):
         """Of a file of points and of methods, each is a property or several, and keeps what it is set to."""
         ops.surface_add(name="S0")
         row = self.rock().surfaces[0]
-        examples = {"word": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        examples = {"method": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        examples["word"] = examples["method"]
         examples["truth"] = lambda s: not s.default
         examples["number"] = examples["length"] = lambda s: 7.25 if s.high is None else s.high - 0.25
         for settings in (ROCK, SURFACE):
             target = self.rock() if settings is ROCK else row
             for key, setting in settings.items():
-                if setting.kind in ("other", "columns") or setting.parts:
+                if not setting.label or setting.parts or setting.kind == "where":
                     continue
                 given = examples.get(setting.kind, lambda s: "7")
                 method_settings.set_value(target, key, settings, given(setting))

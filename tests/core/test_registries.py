@@ -6,14 +6,39 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Project, Rock, Surface, build, exporters, mesh_region
+from realmodel.core import (
+    Body,
+    Boreholes,
+    DipFile,
+    Fault,
+    InputRefused,
+    MapFile,
+    MapLayer,
+    MeshFile,
+    ObservationFile,
+    PointFile,
+    Project,
+    Property,
+    Rock,
+    Series,
+    Surface,
+    build,
+    exporters,
+    mesh_region,
+)
 from realmodel.core.exporters.formats import FORMATS
 from realmodel.core.heights.methods import FUNCTIONS
 from realmodel.core.readers.mesh_input import read_mesh
 from realmodel.core.settings.meshers import MESHERS
+from realmodel.core.settings.method_options import checked
 from realmodel.core.settings.methods import METHODS, OPTIONS
 from realmodel.core.settings.rules import RULES
+from realmodel.core.settings.setting import declarations
 
+ENTRIES = (
+    *(Project, Rock, Surface, Series, Fault, Body, Property),
+    *(PointFile, MeshFile, MapLayer, MapFile, Boreholes, DipFile, ObservationFile),
+)
 PLAN = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
 
@@ -47,6 +72,13 @@ def test_the_native_part_knows_a_rule(rule):
     surfaces = [surface("bottom", 1.0), surface("ruled", 2.0, rule), surface("top", 1.5)]
     model = build(Project("p", [Rock("r", surfaces)]))
     assert model.volume == pytest.approx(16.0 if RULES[rule].protects else 8.0)
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.__name__)
+def test_the_check_of_a_setting_returns_the_value_as_it_is_used(entry):
+    for part in declarations(entry):
+        if not part.is_needed and part.setting.kind != "options":
+            assert checked(part.key, part.setting, part.default) == part.default, part.key
 
 
 @pytest.mark.parametrize("mesher", MESHERS)

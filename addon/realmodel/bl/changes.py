@@ -16,7 +16,6 @@ from .project import (
     names,
     plan_mesh,
     project_settings,
-    reading_text,
     region_size,
     series_settings,
     settings,
@@ -141,7 +140,7 @@ def source(surface, context):
         structure_settings.forget_extension(surface)
     surface.interface_digest = ""
     with settings.filling():
-        reading_text.fill(surface, {})
+        method_settings.fill_reading(surface)
         if surface.source == "POINTS_FILE" and surface.filepath:
             surface.id_data.realmodel.show_data = True
     if surface.source != "MESH_OBJECT":

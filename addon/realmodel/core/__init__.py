@@ -27,9 +27,9 @@ from .model.model import Model
 from .model.planned_hole import PlannedHole
 from .model.section import Fence, Section
 from .model.surface_set import SurfaceSet, build_surfaces
-from .project.library import Library, Property, load_library
+from .project.library import Library, Property
 from .project.project import Project, Rock, Surface
-from .project.project_file import load_project
+from .project.project_file import load_library, load_project
 from .project.series import Series
 from .project.structure_entries import Body, Fault
 from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole

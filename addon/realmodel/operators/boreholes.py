@@ -31,7 +31,7 @@ from ..core.readers import (
 )
 from ..core.readers.formats import OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.object_input import is_object_file
-from ..core.settings.schema import READING
+from ..core.settings.point_file import READING
 from ..core.settings.series import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items

@@ -13,7 +13,7 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..bl.display import bodies
 from ..bl.objects import shapes, viewports
-from ..bl.project import library_rows, plan_mesh, project_settings, reading_text, settings
+from ..bl.project import library_rows, method_settings, plan_mesh, project_settings, reading_text, settings
 from ..bl.scene import data_objects, live
 from ..core import InputRefused, MeshFile, PointFile
 from ..core.base.errors import HeightsMissing, counted
@@ -149,7 +149,8 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
                     row.source, row.object = "MESH_OBJECT", surface.item
                 elif surface.path is not None:
                     row.source, row.filepath = surface.source, str(surface.path)
-                    reading_text.fill(row, surface.reading)
+                    kind = MeshFile if surface.source == "MESH_FILE" else PointFile
+                    method_settings.fill_reading(row, kind(surface.path, **surface.reading))
                     if surface.source == "POINTS_FILE" and surface.places is not None:
                         read[data_objects.file_key(row)] = surface.places
             rock.active_surface = len(rock.surfaces) - 1

@@ -8,8 +8,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 from ..bl.project import project_settings, series_settings, settings, surface_dips
 from ..bl.scene import data_objects, live
 from ..core import Dips, InputRefused, SpaceDips
+from ..core.project.series import SERIES
 from ..core.readers import gradient_of, normal_of
-from ..core.settings.schema import SERIES
 from ..core.settings.series import FIELD
 from ..props_schema import items
 from .reporting import Reporting, a_rock, a_surface, place_property

@@ -5,7 +5,8 @@ import bpy
 
 from ..bl.project import method_settings, plan_mesh, region_size, settings
 from ..core.base.errors import counted
-from ..core.settings.schema import ROCK, SIZE
+from ..core.project.project import ROCK
+from ..core.settings.mesh_sizes import SIZE
 from . import setting_rows
 from .panel import FoldedPanel, OfAModel, file_field, hint
 

@@ -8,7 +8,8 @@ from ..bl.project import series_settings, settings
 from ..bl.scene import problems
 from ..core import RealModelError
 from ..core.base.errors import counted
-from ..core.settings.schema import ROCK, SERIES
+from ..core.project.project import ROCK
+from ..core.project.series import SERIES
 from ..core.settings.series import FIELD, KINDS
 from . import setting_rows
 from .lists import OfRows

@@ -7,7 +7,7 @@ from ..core.settings.setting import property_name, switch_name
 def draw(layout, row, key, settings):
     """A setting: with its tick, where it has one, and what shares it."""
     setting = settings[key]
-    if setting.beside is not None or setting.kind == "other":
+    if setting.beside is not None or not setting.label:
         return
     given = setting.parts or {key: setting} | {
         other: beside for other, beside in settings.items() if beside.beside == key

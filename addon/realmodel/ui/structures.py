@@ -4,7 +4,8 @@
 import bpy
 
 from ..bl.project import library_rows, project_settings, settings
-from ..core.settings.schema import BODY, FAULT, MESH_READING, READING
+from ..core.project.structure_entries import BODY, FAULT, OF_TRACES
+from ..core.settings.point_file import MESH_READING, READING
 from . import setting_rows
 from .lists import OfRows, draw_swatch
 from .panel import FoldedPanel, OfAModel, file_field, hint, right_label
@@ -69,18 +70,19 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
 def _draw_fault(layout, context, fault):
     draw_drawing(layout, context, "realmodel.draw_stick")
     if fault.source in settings.TRACES:
-        for key in ("dip", "dip_direction", "elevation"):
-            setting_rows.draw(layout, fault, key, FAULT)
+        for key, setting in FAULT.items():
+            if setting.shapes == OF_TRACES:
+                setting_rows.draw(layout, fault, key, FAULT)
     setting_rows.draw(layout, fault, "youngest", FAULT)
     setting_rows.draw(layout, fault, "dies_out", FAULT)
     setting_rows.draw(layout, fault, "extend", FAULT)
-    _draw_names(layout, fault, "ends_at", "Ends At")
-    _draw_names(layout, fault, "rocks", "Rock Masses")
+    _draw_names(layout, fault, "ends_at")
+    _draw_names(layout, fault, "rocks")
 
 
-def _draw_names(layout, fault, key, label):
+def _draw_names(layout, fault, key):
     """A list of names, each chosen by search."""
-    rows = getattr(fault, key)
+    rows, label = getattr(fault, key), FAULT[key].label
     column = layout.column(align=True)
     for number, entry in enumerate(rows):
         row = column.row(align=True)

@@ -13,8 +13,9 @@ from ..bl.project import (
     surface_statistics,
     units,
 )
+from ..core.project.project import SURFACE
 from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
-from ..core.settings.schema import MESH_READING, READING, SURFACE
+from ..core.settings.point_file import MESH_READING, READING
 from ..core.settings.variogram import VARIOGRAMS
 from . import setting_rows
 from .panel import FoldedPanel, OfAModel, TabPanel, file_field, hint, right_label, wrapped

@@ -4,11 +4,12 @@
 import bpy
 import numpy as np
 
-from ...core import InputRefused, PointFile
+from ...core import InputRefused
+from ...core.project.structure_entries import FAULT
 from ...core.readers.fault_sticks import read_fault_points
 from ..display import cuts
 from ..objects import exaggeration, shapes
-from ..project import project_settings, reading_text, settings
+from ..project import method_settings, project_settings, settings
 from ..scene import borehole_points, data_objects, live
 from . import placed_images
 
@@ -74,7 +75,7 @@ def add_sticks(scene, row, lines):
             _add_to_mesh(scene, item, stick, _along(len(stick)))
         with settings.filling():
             row.source, row.object, row.filepath = "STICKS_OBJECT", item, ""
-            reading_text.fill(row, {})
+            method_settings.fill_reading(row)
             row.stick, row.interface_digest = "", ""
             project_settings.forget_shape(row)
     for points in lines:
@@ -92,8 +93,7 @@ def _sticks(scene, row):
         return None
     path = project_settings.absolute(row.filepath)
     if row.source == "POINTS_FILE" and path is not None:
-        column = reading_text.column(row.stick) if row.stick.strip() else None
-        given = PointFile(path, **reading_text.options(row))
+        given, column = method_settings.point_file(row, path), method_settings.value(row, "stick", FAULT)
         found, _ = read_fault_points(given, column, scene.realmodel.units)
         if isinstance(found, np.ndarray):
             what = f"'{row.name}' is made of scattered points, which no stick can join"

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import InputRefused
-from ..project import borehole_picks, observed_blocks, reading_text, settings, surface_dips
+from ..project import borehole_picks, method_settings, observed_blocks, settings, surface_dips
 from ..scene import borehole_points
 from . import data
 
@@ -106,7 +106,7 @@ def _keep_points(row, points, stays_of_file=False):
         row.stored = arrays
         if row.filepath and not stays_of_file:
             row.source, row.filepath, row.stored_stamp = "POINTS_FILE", "", ""
-            reading_text.fill(row, {})
+            method_settings.fill_reading(row)
 
 
 def _switched(observations, first, used):

@@ -6,14 +6,15 @@ import re
 from pathlib import Path
 
 from ...core.base.errors import number_list
-from ...core.settings.schema import BODY, FAULT, ROCK, SERIES, SURFACE
+from ...core.project.project import ROCK, SURFACE
+from ...core.project.series import SERIES
+from ...core.project.structure_entries import BODY, FAULT
 from ...core.settings.variogram import RANGE_BEYOND
 
-# By the keys of project files: the labels of settings, and of those of several parts; and of their words.
+# By the keys of project files: the labels of settings, and of their words.
 _SETTINGS = [pair for table in (SERIES, BODY, FAULT, ROCK, SURFACE) for pair in table.items()]
 _LABELS = {key: setting.label for key, setting in _SETTINGS if setting.label}
 _WORDS = {(key, word): texts[0] for key, setting in _SETTINGS for word, texts in setting.words.items()}
-_LABELS |= {"columns": "Columns", "where": "Filters", "ends_at": "Ends At", "rocks": "Rock Masses"}
 _KEY = "|".join(sorted(_LABELS, key=len, reverse=True))
 _GIVEN = re.compile(
     rf"(?:\b(?:say|write|give|set) )?\b({_KEY})"

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ...core.settings.schema import ROCK
+from ...core.project.project import ROCK
 from ..host import versions
 from ..objects.viewports import view_rotation
 from ..project import method_settings, settings

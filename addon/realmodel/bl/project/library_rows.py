@@ -5,11 +5,11 @@ import bpy
 
 from ...core import Library, Property
 from ...core.project.colors import hex_color
+from ...core.project.library import PROPERTY
 from ...core.results.automatic_library import palette
 from ..objects import materials, model_tree
-from . import settings
+from . import method_settings, settings
 
-_TEXTS = ("rock", "age", "structure", "description")
 NO_LOOK = "NONE"  # the material stays as it is
 
 
@@ -22,17 +22,11 @@ def library_of(scene):
 
 
 def _property(row):
-    texts = {key: getattr(row, key) or None for key in _TEXTS}
-    numbers = {key: settings.number(row, key) or None for key in ("density", "hardness")}
+    values = method_settings.values(row, Property)
+    if values["look_scale"] == PROPERTY["look_scale"].start:
+        del values["look_scale"]
     look = None if row.look == NO_LOOK else row.look.lower()
-    scale = settings.number(row, "look_scale")
-    numbers |= {
-        "look": look,
-        "look_scale": None if scale == 1.0 else scale,
-        "look_seed": row.look_seed or None,
-    }
-    color = hex_color(row.color) if row.has_color else None
-    return Property(row.id, row.name, color=color, **numbers, **texts)
+    return Property(row.id, color=hex_color(row.color) if row.has_color else None, look=look, **values)
 
 
 def fill(scene, library):
@@ -50,14 +44,8 @@ def add(scene, entry):
     row = scene.realmodel.library.add()
     with settings.filling():
         row.id = row.known_id = entry.id
-        row.name = entry.name
-        for key in _TEXTS:
-            setattr(row, key, getattr(entry, key) or "")
-        for key in ("density", "look_scale", "hardness"):
-            if getattr(entry, key) is not None:
-                settings.set_number(row, key, getattr(entry, key))
+        method_settings.set_values(row, Property, entry)
         row.look = NO_LOOK if entry.look is None else entry.look.upper()
-        row.look_seed = entry.look_seed or 0
         if entry.color is not None:
             row.color = entry.rgb
             row.has_color = True
@@ -83,7 +71,12 @@ def remove_made(scene, surface):
     users = sum(other.property_id == surface.property_id for other in settings.property_rows(scene))
     if row is None or users > 1 or row.name != surface.name:
         return
-    if row.density or row.hardness or row.look != NO_LOOK or any(map(row.get, _TEXTS)):
+    if (
+        row.density
+        or row.hardness
+        or row.look != NO_LOOK
+        or any(row.get(key) for key, setting in PROPERTY.items() if setting.kind == "note")
+    ):
         return
     group = scene.realmodel
     group.library.remove(list(group.library).index(row))

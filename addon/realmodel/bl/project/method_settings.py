@@ -4,12 +4,14 @@ realmodel.core; also those of methods with their variograms."""
 
 import numpy as np
 
+from ...core import MeshFile, PointFile
 from ...core.settings.method_options import surface
 from ...core.settings.methods import DEFAULT_OPTIONS, METHODS, OPTIONS, STRUCTURE
-from ...core.settings.setting import property_name, switch_name
+from ...core.settings.setting import declarations, property_name, settings_of, switch_name
+from . import reading_text as texts
 from .settings import number, rock_of, set_number
 
-_NAME_OR_NUMBER = ("surface", "direction")  # kinds of settings that are a text in the panel
+NUMBERS = ("number", "length", "finite")  # kinds that keep all their digits
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
 
 
@@ -27,42 +29,79 @@ def has_method(row):
 
 
 def value(row, key, settings):
-    """A setting of a row as realmodel.core takes it; None where it is not given."""
+    """A setting of a row as realmodel.core takes it; None where it is not given. Raises InputRefused."""
     setting, name = settings[key], property_name(key, settings[key])
     switch = switch_name(key, settings)
     if switch is not None and not getattr(row, switch):
         return None
     if setting.parts:
-        found = {part: value(row, part, setting.parts) for part in setting.parts}
-        return {part: given for part, given in found.items() if given is not None} or None
-    if setting.kind in ("number", "length"):
+        parts = {part: value(row, part, setting.parts) for part in setting.parts}
+        parts = {part: content for part, content in parts.items() if content is not None}
+        return texts.columns(parts) if setting.kind == "columns" else parts or None
+    if setting.kind in NUMBERS:
         given = number(row, name)
-        return None if setting.zero_is_none and given == 0.0 else given
-    given = getattr(row, name)
-    if setting.kind in _NAME_OR_NUMBER:
-        return _name_or_number(given)
-    return None if given == "" or (given == "NONE" and "" in setting.words) else given
+    else:
+        read = texts.READ.get(setting.kind)
+        given = getattr(row, name) if read is None else read(getattr(row, name))
+    is_none = (
+        given == "" or (given == "NONE" and "" in setting.words) or (setting.zero_is_none and given == 0)
+    )
+    return None if is_none and setting.kind != "name" else given
+
+
+def values(row, entry, shape=None):
+    """The settings of a row that the panel shows of a dataclass, by its fields. shape: those with an effect
+    on it alone."""
+    return {
+        part.name: content
+        for part in declarations(entry)
+        if is_shown(part.setting) and (shape is None or part.setting.fits(shape))
+        if (content := value(row, part.key, settings_of(entry))) is not None
+    }
 
 
 def set_value(row, key, settings, given):
-    """Sets a setting of a row, and its switch; None unsets it."""
+    """Sets a setting of a row, and its switch; None, and "auto" in the place of a number, unset it."""
     setting, name = settings[key], property_name(key, settings[key])
     switch = switch_name(key, settings)
     if switch is not None and setting.beside is None:
         setattr(row, switch, given is not None)
     if setting.parts:
-        for part, inner in (given or {}).items():
+        for part, inner in texts.parts_of(setting, given).items():
             set_value(row, part, setting.parts, inner)
-    elif given is None:
+    elif setting.kind in texts.FILL:
+        texts.FILL[setting.kind](row, name, given)
+    elif given is None or (setting.kind == "length" and isinstance(given, str)):
         row.property_unset(name)
         if setting.kind == "word":
             setattr(row, name, setting.default or "NONE")
-    elif setting.kind in ("number", "length"):
+    elif setting.kind in NUMBERS:
         set_number(row, name, given)
-    elif setting.kind in _NAME_OR_NUMBER:
-        setattr(row, name, given if isinstance(given, str) else repr(given))
     else:
         setattr(row, name, given)
+
+
+def set_values(row, entry, source):
+    """Sets the settings of a row that the panel shows of a dataclass, from one; those that it lacks are
+    unset."""
+    for part in declarations(entry):
+        if is_shown(part.setting):
+            set_value(row, part.key, settings_of(entry), getattr(source, part.name, part.default))
+
+
+def point_file(row, path):
+    """The PointFile of a row whose file is at a path. Raises InputRefused."""
+    return PointFile(path, **values(row, PointFile))
+
+
+def fill_reading(row, file=None):
+    """Sets how the file of a row is read, from a PointFile or MeshFile; None: as most files are."""
+    set_values(row, PointFile if hasattr(row, "filters") else MeshFile, file)
+
+
+def is_shown(setting):
+    """Whether a row has properties of a setting; those of methods are set with their options."""
+    return bool(setting.label) and setting.kind != "method"
 
 
 def dips_unused(row):
@@ -115,14 +154,6 @@ def _other_options(stored):
         key, _, part = name.partition(" ")
         if part != "triangles":
             yield key, (array, stored[f"{key} triangles"]) if part else array
-
-
-def _name_or_number(text):
-    text = text.strip()
-    try:
-        return float(text)
-    except ValueError:
-        return text or None
 
 
 def _variogram(row):

@@ -9,8 +9,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.base.errors import naming
-from ...core.settings.mesh_sizes import AUTO
-from ...core.settings.schema import ROCK, SIZE
+from ...core.settings.mesh_sizes import AUTO, SIZE
 from ..objects import shapes
 from . import method_settings, settings
 
@@ -58,15 +57,10 @@ def base_below(points, is_of_map=False):
 
 def compose(rock, row, depsgraph, origin):
     """Transfers the mesh settings of a rock mass's row to a realmodel.core.Rock. Raises InputRefused."""
-    rock.mesher = row.mesher
-    if row.edges_by == "LENGTH":
-        rock.edge_length = method_settings.value(row, "edge_length", ROCK)
-    elif row.edges_by == "AUTO":
-        rock.edge_length = AUTO
-    if row.edges_by == "TRIANGLES":
-        rock.triangles = row.triangles
-    elif row.edges_by == "AUTO":
-        rock.triangles = method_settings.value(row, "triangles", ROCK)
+    if row.edges_by != "LENGTH":
+        rock.edge_length = AUTO if row.edges_by == "AUTO" else None
+    if row.edges_by != "AUTO":
+        rock.triangles = row.triangles if row.edges_by == "TRIANGLES" else None
     with naming(rock.item):
         rock.size = []
         for entry in row.sizes:
@@ -101,9 +95,6 @@ def fill(row, rock):
     """Sets a row from a realmodel.core.Rock whose constraints are arrays."""
     by_points = isinstance(rock.edge_length, str)
     row.edges_by = "AUTO" if by_points else "LENGTH" if rock.triangles is None else "TRIANGLES"
-    method_settings.set_value(row, "edge_length", ROCK, None if by_points else rock.edge_length)
-    method_settings.set_value(row, "triangles", ROCK, rock.triangles)
-    row.mesher = rock.mesher
     for entry in rock.size:
         _fill_size(row.sizes.add(), entry)
     add_constraints(row, rock.constraints)

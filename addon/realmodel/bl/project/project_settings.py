@@ -20,7 +20,7 @@ from ...core.project.project import surface_item
 from ...core.readers import is_mesh_file
 from ...core.results.automatic_library import with_library
 from ...core.settings.methods import CONTINUATION
-from ...core.settings.schema import MESH_READING, READING, ROCK, SURFACE
+from ...core.settings.setting import declarations
 from ...core.structures.shapes.reading import read_structures
 from ...core.surfaces.prepare import read_rocks
 from ..objects import built_models, exaggeration, shapes, stored_arrays
@@ -32,16 +32,12 @@ from . import (
     names,
     observed_blocks,
     plan_mesh,
-    reading_text,
     series_settings,
     settings,
     structure_settings,
     surface_dips,
     units,
 )
-
-# of surfaces; a ready mesh has none
-_OF_INTERPOLATED = ("minimum_thickness", "true_thickness", "tie", "observed", "correlation")
 
 
 @dataclass
@@ -118,10 +114,10 @@ def compose(scene, depsgraph, whole=True):
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     source = _Source(scene, depsgraph, whole)
     for number, row in enumerate(group.rocks):
-        base = method_settings.value(row, "base_elevation", ROCK)
         picks = borehole_picks.of_rock(row)
         ends = borehole_picks.ends_of(row)
-        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks, hole_ends=ends)
+        values = method_settings.values(row, Rock)
+        rock = Rock(**values, surfaces=[], hole_picks=picks, hole_ends=ends)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
             if row.ground and len(row.surfaces) and rock.observations is not None:
@@ -177,21 +173,18 @@ def _on_youngest(observations, name):
 
 def _plain_surface(row, fields):
     """A surface with everything but its shape. fields: the names of series whose surfaces are level sets."""
-    surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
-    surface.series = row.series or None
-    if row.source not in method_settings.READY_MESHES:
+    is_ready = row.source in method_settings.READY_MESHES
+    is_level_set = not is_ready and row.series in fields
+    shape = "mesh" if is_ready else "level set" if is_level_set else "sheet"
+    surface = Surface(**method_settings.values(row, Surface, shape))
+    if not is_ready:
         surface.dips = surface_dips.of_row(row)
         if row.left_out:
             surface.left_out = row.left_out["points"]
-    if surface.series in fields:
-        return surface
-    if method_settings.has_method(row):
+    if not is_level_set and method_settings.has_method(row):
         surface.method = row.method
         surface.options = method_settings.options_of(row)
-    if row.source not in method_settings.READY_MESHES:
-        for key in _OF_INTERPOLATED:
-            setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.true_thickness &= surface.has_thickness  # it stays set where it has no effect
+    surface.true_thickness &= surface.has_thickness  # it stays set where it has no effect
     return surface
 
 
@@ -265,9 +258,9 @@ def _name_ground(surface, path):
 
 def _as_ready(surface):
     """Unsets what a surface that is made of a mesh does not have."""
-    surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
-    for key in _OF_INTERPOLATED:
-        setattr(surface, key, SURFACE[key].default)
+    for part in declarations(Surface):
+        if not part.setting.fits("mesh"):
+            setattr(surface, part.name, copy.copy(part.default))
 
 
 def _shape(source, composed, place, surface, row):
@@ -319,11 +312,11 @@ def _shape(source, composed, place, surface, row):
 def name_file(entry, row, path):
     """Sets the file of a surface, fault or body from its row, with its import options."""
     if row.source == "POINTS_FILE":
-        entry.points = PointFile(path, **reading_text.options(row))
+        entry.points = method_settings.point_file(row, path)
     elif row.source == "TRACE_FILE":
-        structure_settings.set_trace(entry, row, PointFile(path, **reading_text.options(row)))
+        structure_settings.set_trace(entry, row, method_settings.point_file(row, path))
     else:
-        entry.mesh = MeshFile(path, *(method_settings.value(row, key, READING) for key in MESH_READING))
+        entry.mesh = MeshFile(path, **method_settings.values(row, MeshFile))
 
 
 def _stored_key(row):
@@ -502,9 +495,8 @@ def add_rock(group, rock):
     """A row for a realmodel.core.Rock."""
     row = group.rocks.add()
     with settings.filling():
-        row.name = rock.name
+        method_settings.set_values(row, Rock, rock)
         plan_mesh.fill(row, rock)
-        method_settings.set_value(row, "base_elevation", ROCK, rock.base_elevation)
         if rock.region_file is not None:
             row.region_file = str(rock.region_file)
         elif rock.region is not None:
@@ -523,8 +515,7 @@ def add_rock(group, rock):
 def fill_surface(row, surface):
     """Sets a surface's row from a realmodel.core.Surface."""
     with settings.filling():
-        for key in ("name", "rule", "property", "block", "series", *_OF_INTERPOLATED):
-            method_settings.set_value(row, key, SURFACE, getattr(surface, key))
+        method_settings.set_values(row, Surface, surface)
         given = surface.method is not None or surface.options
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
@@ -536,7 +527,7 @@ def fill_surface(row, surface):
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if has_points else "MESH_FILE"
             row.filepath = str(surface.input_file)
-            reading_text.fill(row, vars(surface.point_file or surface.mesh_file))
+            method_settings.fill_reading(row, surface.point_file or surface.mesh_file)
         elif surface.interpolated and not len(surface.point_array()):
             row.source = "NONE"
         else:

@@ -1,57 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts the import options of points and meshes between the settings of a surface and realmodel.core."""
+"""Texts, and lists of them, in the panel: of names, numbers, columns, filters and values of files."""
 
 import re
 
 from ...core import InputRefused
-from ...core.settings.schema import MESH_READING, READING
-from . import method_settings
+from ...core.settings.point_file import list_of
 
 _SEPARATORS = {"tab": "\t", "blank": " "}
 _ENTRY = re.compile(r'\s*("[^"]*"|[^,"]+?)\s*(?:,|$)')  # of a list with commas
-
-
-def options(row):
-    """The keyword arguments of PointFile, or MeshFile, for a surface's row. Raises InputRefused."""
-    said = ("decimal", "height", "layer", "units", "z_axis")
-    given = {key: method_settings.value(row, key, READING) for key in said}
-    given["z_axis"] = None if given["z_axis"] == READING["z_axis"].default else given["z_axis"]
-    columns = [column(getattr(row, f"column_{axis}")) for axis in "xyz"]
-    if any(columns) and not all(columns):
-        raise InputRefused("only some of its columns x, y and z are set", advice="set all three, or none")
-    given["columns"] = columns if all(columns) else None
-    where = {}
-    for entry in row.filters:
-        if entry.column.strip() and entry.value:
-            where.setdefault(entry.column.strip(), []).append(value(entry.value))
-    given["where"] = {name: _one_or_all(values) for name, values in where.items()}
-    given["separator"] = _SEPARATORS.get(row.separator.lower(), row.separator)
-    given["nodata"] = _one_or_all([value(text) for text in _ENTRY.findall(row.nodata)])
-    return {key: part for key, part in given.items() if part not in (None, "", [], {})}
-
-
-def fill(row, given):
-    """Sets a row from the keyword arguments of a PointFile or MeshFile; missing ones are unset."""
-    units = given.get("units")
-    units = units if isinstance(units, dict) else {"xy": units, "z": units}
-    given = {**given, "units": {"xy": None, "z": None} | units}
-    for key in MESH_READING:
-        method_settings.set_value(row, key, READING, given.get(key))
-    if not hasattr(row, "filters"):
-        return  # a body: it is no points
-    for axis, name in zip("xyz", given.get("columns") or ("", "", ""), strict=True):
-        setattr(row, f"column_{axis}", column_text(name))
-    row.filters.clear()
-    for name, values in (given.get("where") or {}).items():
-        for wanted in values if isinstance(values, (list, tuple)) else [values]:
-            entry = row.filters.add()
-            entry.column, entry.value = name, value_text(wanted)
-    separator = given.get("separator") or ""
-    row.separator = next((word for word, sign in _SEPARATORS.items() if sign == separator), separator)
-    nodata = given.get("nodata", ())
-    row.nodata = ", ".join(map(value_text, nodata if isinstance(nodata, (list, tuple)) else [nodata]))
-    method_settings.set_value(row, "decimal", READING, given.get("decimal"))
-    row.height_attribute, row.layer = given.get("height") or "", given.get("layer") or ""
 
 
 def _one_or_all(values):
@@ -87,6 +43,72 @@ def value_text(given):
     return given if plain and isinstance(value(given), str) else f'"{given}"'
 
 
+def columns(parts):
+    """The three columns of a file; None where none is set. Raises InputRefused where some are."""
+    if parts and len(parts) < 3:
+        raise InputRefused("only some of its columns x, y and z are set", advice="set all three, or none")
+    return list(parts.values()) or None
+
+
+def parts_of(setting, content):
+    """The values of the parts of a setting. Columns are a list, and one unit is that of all coordinates."""
+    if setting.kind == "columns":
+        return dict(zip(setting.parts, content or (None,) * 3, strict=True))
+    if setting.kind == "units":
+        of_all = {} if isinstance(content, dict) else dict.fromkeys(setting.parts, content)
+        return {**dict.fromkeys(setting.parts), **(of_all or content)}
+    return content or {}
+
+
+def _number_or_text(text):
+    text = text.strip()
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _separator(text):
+    return _SEPARATORS.get(text.lower(), text)
+
+
+def _values(text):
+    return _one_or_all([value(part) for part in _ENTRY.findall(text)]) if text else None
+
+
+def _filters(rows):
+    where = {}
+    for entry in rows:
+        if entry.column.strip() and entry.value:
+            where.setdefault(entry.column.strip(), []).append(value(entry.value))
+    return {name: _one_or_all(wanted) for name, wanted in where.items()} or None
+
+
+def _names(rows):
+    return tuple(entry.name for entry in rows if entry.name)
+
+
+def _set_text(text_of):
+    """Sets a text from what stands for it; None is no text."""
+    return lambda row, name, content: setattr(row, name, "" if content is None else text_of(content))
+
+
+def _fill_filters(row, name, where):
+    rows = getattr(row, name)
+    rows.clear()
+    for column_name, wanted in (where or {}).items():
+        for text in map(value_text, list_of(wanted)):
+            entry = rows.add()
+            entry.column, entry.value = column_name, text
+
+
+def _fill_names(row, key, names):
+    rows = getattr(row, key)
+    rows.clear()
+    for name in names or ():
+        rows.add().name = name
+
+
 def named_columns(given):
     """{name: column} of "hole = BHID; depth = 3"."""
     return {name: column(text) for name, text in named_texts(given).items()}
@@ -96,3 +118,24 @@ def named_texts(given):
     """{name: text} of "SST = Sandstone; LC ="."""
     parts = (part.partition("=") for part in given.split(";") if part.strip())
     return {name.strip(): text.strip() for name, _, text in parts}
+
+
+# By the kinds of settings that are texts or rows in the panel.
+READ = {
+    "surface": _number_or_text,
+    "direction": _number_or_text,
+    "column": column,
+    "separator": _separator,
+    "values": _values,
+    "where": _filters,
+    "names": _names,
+}
+FILL = {
+    "surface": _set_text(lambda content: content if isinstance(content, str) else repr(content)),
+    "direction": _set_text(lambda content: content if isinstance(content, str) else repr(content)),
+    "column": _set_text(column_text),
+    "separator": _set_text(lambda sign: next((w for w, s in _SEPARATORS.items() if s == sign), sign)),
+    "values": _set_text(lambda content: ", ".join(map(value_text, list_of(content)))),
+    "where": _fill_filters,
+    "names": _fill_names,
+}

@@ -5,9 +5,9 @@ import numpy as np
 
 from ...core import InputRefused, Rock, Series, Surface
 from ...core.base.errors import naming
+from ...core.project.project import ROCK
 from ...core.project.series_checks import check_level_set, check_series
-from ...core.settings.schema import ROCK, SERIES
-from ...core.settings.series import AUTO, FIELD
+from ...core.settings.series import FIELD
 from . import method_settings, settings, surface_dips
 
 _STANDS_FOR = np.zeros((3, 2))  # any region, where only whether there is one counts
@@ -19,10 +19,7 @@ def fill(rock, series):
     rock.active_series = 0
     for each in series:
         row = rock.series.add()
-        resolution = None if each.resolution == AUTO else each.resolution
-        method_settings.set_value(row, "resolution", SERIES, resolution)
-        for key in ("name", "kind", "thickness"):
-            method_settings.set_value(row, key, SERIES, getattr(each, key))
+        method_settings.set_values(row, Series, each)
         surface_dips.keep(row, each.dips)
 
 
@@ -32,12 +29,9 @@ def of_rock(rock):
 
 
 def _series(row, dips_of):
-    given = {}  # what sheets do not have is kept, but has no effect
-    if row.kind == FIELD:
-        values = {key: method_settings.value(row, key, SERIES) for key in ("resolution", "thickness")}
-        given = {key: value for key, value in values.items() if value is not None}
+    values = method_settings.values(row, Series, row.kind)  # what sheets do not have is kept
     with naming(f"series '{row.name}'"):
-        return Series(row.name, row.kind, dips_of(row), **given)
+        return Series(**values, dips=dips_of(row))
 
 
 def active(rock):

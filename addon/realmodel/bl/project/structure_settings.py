@@ -5,35 +5,25 @@ import numpy as np
 
 from ...core import Body, Fault, Project
 from ...core.base import work
-from ...core.settings.schema import BODY, FAULT
+from ...core.project.structure_entries import FAULT
 from ...core.structures.shapes.reading import read_structures
-from . import method_settings, reading_text, settings
-
-_FAULT_KEYS = ("youngest", "dies_out", "extend")
-_TRACE_KEYS = ("dip", "dip_direction", "elevation")
-_BODY_KEYS = ("after", "property", "void", "rock")
+from . import method_settings, settings
 
 
 def entry_of(place, row):
     """A realmodel.core.Fault or Body with everything but its shape."""
     if place[0] == "body":
-        body = Body(row.name, **{key: method_settings.value(row, key, BODY) for key in _BODY_KEYS})
+        body = Body(**method_settings.values(row, Body))
         if body.void:
             body.property = 0
         return body
-    fault = Fault(row.name, **{key: method_settings.value(row, key, FAULT) for key in _FAULT_KEYS})
-    fault.ends_at = tuple(each.name for each in row.ends_at if each.name)
-    fault.rocks = tuple(each.name for each in row.rocks if each.name)
-    if row.source == "POINTS_FILE" and row.stick.strip():
-        fault.stick = reading_text.column(row.stick)
-    return fault
+    return Fault(**method_settings.values(row, Fault, "points" if row.source == "POINTS_FILE" else "mesh"))
 
 
 def set_trace(fault, row, trace):
     """Sets the trace of a realmodel.core.Fault, and what the row says of it."""
     fault.trace = trace
-    for key in _TRACE_KEYS:
-        setattr(fault, key, method_settings.value(row, key, FAULT))
+    vars(fault).update(method_settings.values(row, Fault, "trace"))
 
 
 def set_stored_trace(fault, row):
@@ -79,19 +69,11 @@ def fill(scene, project):
     group.structure_kind = "BODY" if project.bodies and not project.faults else "FAULT"
     for fault in (each.traced or each for each in project.faults):
         row = group.faults.add()
-        row.name = fault.name
-        for key in (*_FAULT_KEYS, *_TRACE_KEYS):
-            method_settings.set_value(row, key, FAULT, getattr(fault, key))
-        for key in ("ends_at", "rocks"):
-            for name in getattr(fault, key):
-                getattr(row, key).add().name = name
-        row.stick = "" if fault.stick is None else reading_text.column_text(fault.stick)
+        method_settings.set_values(row, Fault, fault)
         _fill_shape(row, fault, project.units)
     for body in project.bodies:
         row = group.bodies.add()
-        row.name = body.name
-        for key in _BODY_KEYS:
-            method_settings.set_value(row, key, BODY, getattr(body, key))
+        method_settings.set_values(row, Body, body)
         _fill_shape(row, body, project.units)
 
 
@@ -101,7 +83,7 @@ def _fill_shape(row, entry, units):
         points, trace = (getattr(entry, key, None) for key in ("point_file", "trace_file"))
         row.source = "POINTS_FILE" if points else "TRACE_FILE" if trace else "MESH_FILE"
         row.filepath = str(entry.input_file)
-        reading_text.fill(row, vars(points or trace or entry.mesh_file))
+        method_settings.fill_reading(row, points or trace or entry.mesh_file)
         return
     if entry.vertices is None:  # points or a trace from a script or a project file
         entry = work.run(lambda task: _read_fault(task, entry, units))

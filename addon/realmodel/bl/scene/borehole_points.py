@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core import Surface
 from ...core.surfaces.age_order import age_order
-from ..project import library_rows, reading_text, settings
+from ..project import library_rows, method_settings, settings
 from . import data_objects
 
 
@@ -73,7 +73,7 @@ def own_points(scene, row):
 def keep_points(row, points):
     """Gives a surface points that are stored in the .blend."""
     row.source, row.filepath = "POINTS_FILE", ""
-    reading_text.fill(row, {})
+    method_settings.fill_reading(row)
     row.stored, row.stored_stamp = {"points": points}, ""
     row.interface_digest = ""
 

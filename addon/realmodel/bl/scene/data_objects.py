@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ...core import InputRefused, MeshFile, PointFile, RealModelError, Surface
+from ...core.project.structure_entries import FAULT
 from ...core.readers import is_mesh_file, read_mesh, read_point_file, read_region
 from ...core.readers.fault_sticks import read_fault_points
 from ...core.readers.fault_trace import read_fault_trace
@@ -18,7 +19,7 @@ from .. import display
 from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import KEY as ORIGIN_KEY
 from ..objects.origin import choose_origin
-from ..project import borehole_picks, observed_blocks, project_settings, reading_text, settings
+from ..project import borehole_picks, method_settings, observed_blocks, project_settings, settings
 
 KEY = settings.DATA  # on an object: the stamp of its source; on the collection: a mark
 _ORIGIN = "realmodel_data_origin"  # on an object: the origin that its mesh was made for
@@ -122,7 +123,7 @@ def read_points(scene, row):
     path = project_settings.absolute(row.filepath)
     if path is None:
         return None
-    return read_point_file(PointFile(path, **reading_text.options(row)), scene.realmodel.units)[0]
+    return read_point_file(method_settings.point_file(row, path), scene.realmodel.units)[0]
 
 
 def file_key(row):
@@ -130,7 +131,7 @@ def file_key(row):
     path = project_settings.absolute(row.filepath)
     if path is None:
         return ""
-    return f"{path} {reading_text.options(row)} {stored_arrays.file_stamp(path)}"
+    return f"{path} {method_settings.values(row, PointFile)} {stored_arrays.file_stamp(path)}"
 
 
 def _wanted(scene, read):
@@ -197,9 +198,8 @@ def _cloud(scene, row, points):
 
 def _sticks(scene, row):
     """The sticks of a fault, or its scattered points."""
-    given = PointFile(project_settings.absolute(row.filepath), **reading_text.options(row))
-    stick = reading_text.column(row.stick) if row.stick.strip() else None
-    found, _ = read_fault_points(given, stick, scene.realmodel.units)
+    given = method_settings.point_file(row, project_settings.absolute(row.filepath))
+    found, _ = read_fault_points(given, method_settings.value(row, "stick", FAULT), scene.realmodel.units)
     return (found, np.empty((0, 2), np.int32)) if isinstance(found, np.ndarray) else _chains(found)
 
 
@@ -228,7 +228,7 @@ def _trace(scene, fault):
     if fault.stored_trace:
         lines = [fault.stored_trace["line"]]
     else:
-        given = PointFile(project_settings.absolute(fault.filepath), **reading_text.options(fault))
+        given = method_settings.point_file(fault, project_settings.absolute(fault.filepath))
         lines = read_fault_trace(given, scene.realmodel.units).lines
     places, edges = _chains(lines)
     places[np.isnan(places[:, 2]), 2] = project_settings.model_origin(scene)[2]

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.toml_table import Source
-from ..settings.method_options import OptionRefused, checked, is_name
-from ..settings.setting import Settings
+from ..settings.method_options import OptionRefused, check_fields, is_name
+from ..settings.setting import Declaration, declarations
 from .library import Library
 
 Refuse = Callable[..., InputRefused]
@@ -34,6 +34,22 @@ def same(one: Any, other: Any) -> bool:
         known = [each.name for each in fields(one) if each.compare]
         return all(same(getattr(one, name), getattr(other, name)) for name in known)
     return bool(one == other)
+
+
+def changed_values(entry: Any) -> list[tuple[Declaration, Any]]:
+    """The fields of a dataclass that settings describe, with their values, without those at their default."""
+    kind: type = type(entry)
+    values = [(part, getattr(entry, part.name)) for part in declarations(kind)]
+    return [(part, value) for part, value in values if part.is_needed or not same(value, part.default)]
+
+
+def keys_without_effect(entry: Any) -> list[str]:
+    """The keys that are given for a surface or a fault and have no effect on its kind of shape."""
+    keys: list[str] = []
+    for part, value in changed_values(entry):
+        if not part.setting.fits(entry.shape_kind):
+            keys += value if part.setting.kind == "options" else [part.key]
+    return keys
 
 
 class Compared:
@@ -95,11 +111,10 @@ def named_once(entries: Sequence, kind: str) -> Iterator:
         yield entry
 
 
-def check_values(entry: Any, settings: Settings, keys: Sequence[str], refuse: Refuse) -> None:
-    """Refuses what the declarations of settings do not allow."""
-    for key in keys:
-        with refused_by(refuse, key):
-            checked(key, settings[key], getattr(entry, key))
+def check_values(entry: Any, refuse: Refuse) -> None:
+    """Refuses what the declarations of an entry do not allow."""
+    with refused_by(refuse):
+        check_fields(entry)
 
 
 def is_file(path: Path) -> bool:
@@ -115,6 +130,15 @@ def check_file(file: str | Path | None, key: str, refuse: Refuse) -> None:
         if os.path.isdir(file):
             raise refuse(f"a folder, not a file: {file}", key, "name a file in it")
         raise refuse(f"file not found: {file}", key, "check the path")
+
+
+def check_table_file(table: Any, key: str, refuse: Refuse) -> None:
+    """Refuses the table of a key whose options make no sense, or that does not exist; None is no table."""
+    if table is not None:
+        with refused_by(refuse, key, f"{key}: "):
+            table.check()
+        for file in table.files:
+            check_file(file, key, refuse)
 
 
 def shapes_given(entry: Any, keys: Sequence[str], refuse: Refuse) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from ..settings.map_file import MapFile
 from ..settings.method_options import is_name
-from .entry import check_file, refused_by
+from .entry import check_file, check_table_file, refused_by
 from .plan_input import check_layer
 from .project import Project, Rock
 
@@ -17,20 +17,9 @@ def check_field_data(project: Project, rock: Rock) -> None:
     """Refuses boreholes, observations, a map and names of a rock mass that make no sense. Raises
     InputRefused."""
     refuse = rock.refused
-    if rock.boreholes is not None:
-        with refused_by(refuse, "boreholes", "boreholes: "):
-            rock.boreholes.check()
-        for file in rock.boreholes.files:
-            check_file(file, "boreholes", refuse)
-    given = rock.observation_file
-    if given is not None:
-        with refused_by(refuse, "observations", "observations: "):
-            given.check()
-        check_file(given.file, "observations", refuse)
-    if (dips := rock.dip_file) is not None:
-        with refused_by(refuse, "dips", "dips: "):
-            dips.check()
-        check_file(dips.file, "dips", refuse)
+    tables = {"boreholes": rock.boreholes, "observations": rock.observation_file, "dips": rock.dip_file}
+    for key, table in tables.items():
+        check_table_file(table, key, refuse)
     if rock.map is not None:
         _check_map(rock, rock.map)
     for key in ("boreholes", "observations", "map", "dips"):

@@ -3,19 +3,46 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ..base.errors import InputRefused, UsageError
-from ..base.toml_table import Table, TomlDocument
+from ..settings.method_options import OptionRefused, check_fields, without
+from ..settings.setting import declared, settings_of
 from .colors import RGB, rgb
 from .looks import LOOKS
 
 _COLOR = re.compile(r"#[0-9a-fA-F]{6}")
 AUTO_LOOK = "auto"  # the look that suits the rock by its name
 LOOK_NAMES = (AUTO_LOOK, *(key.lower() for key in LOOKS))
+
+
+def _checked_id(key: str, number: Any) -> Any:
+    if isinstance(number, bool) or not isinstance(number, int) or not -(2**31) <= number < 2**31:
+        raise OptionRefused("an id must be a 32-bit whole number", key)
+    return number
+
+
+def _checked_name(key: str, name: Any) -> Any:
+    if not isinstance(name, str) or not name.strip():
+        raise OptionRefused("it has no name", key)
+    return name
+
+
+def _checked_color(key: str, color: Any) -> Any:
+    if color is not None and not _COLOR.fullmatch(color):
+        raise OptionRefused(f"{key} '{color}' is not a color", key, 'write it as "#rrggbb"')
+    return color
+
+
+def _checked_look(key: str, look: Any) -> Any:
+    if look is not None and look not in LOOK_NAMES:
+        raise OptionRefused(f"{key} '{look}' is unknown", key, f"choose from {', '.join(LOOK_NAMES)}")
+    return look
 
 
 @dataclass(frozen=True)
@@ -27,18 +54,61 @@ class Property:
     `look_seed`; `hardness`, above 0 and at most 1, says how well the rock withstands weathering.
     """
 
-    id: int
-    name: str
-    rock: str | None = None
-    age: str | None = None
-    structure: str | None = None
-    color: str | None = None
-    density: float | None = None
-    description: str | None = None
-    look: str | None = None
-    look_scale: float | None = None
-    look_seed: int | None = None
-    hardness: float | None = None
+    id: int = declared(kind="integer", check=_checked_id, is_needed=True)
+    name: str = declared(
+        kind="name",
+        label="Name",
+        tip="Name of the rock, and of the material of its blocks",
+        check=_checked_name,
+        is_needed=True,
+    )
+    rock: str | None = declared(kind="note", label="Lithology", tip="Rock type, such as sandstone")
+    age: str | None = declared(kind="note", label="Age", tip="Geological age, such as Triassic")
+    structure: str | None = declared(kind="note", label="Structure", tip="Bedding, texture, grain size")
+    color: str | None = declared(kind="line", check=_checked_color)
+    density: float | None = declared(
+        kind="finite",
+        label="Density",
+        tip="Density in any unit, such as kg/m³; 0: unknown",
+        low=0.0,
+        zero_is_none=True,
+        check=without(lambda value: None if value > 0 else f"density must be above 0, not {value:g}"),
+    )
+    description: str | None = declared(kind="note", label="Description", tip="Further notes")
+    look: str | None = declared(kind="line", check=_checked_look)
+    look_scale: float | None = declared(
+        kind="finite",
+        label="Texture Scale",
+        tip="Size of the texture; 1 suits the model",
+        start=1.0,
+        low=0.001,
+        check=without(
+            lambda value: None if 0 < value < math.inf else f"look_scale must be above 0, not {value:g}"
+        ),
+    )
+    look_seed: int | None = declared(
+        kind="integer",
+        label="Texture Seed",
+        tip="Another texture of the same kind",
+        low=0,
+        zero_is_none=True,
+        check=without(
+            lambda value: (
+                None if 0 <= value < 2**31 else f"look_seed must be from 0 to {2**31 - 1}, not {value}"
+            )
+        ),
+    )
+    hardness: float | None = declared(
+        kind="finite",
+        label="Hardness",
+        tip="Resistance of the rock to weathering in pictures, at most 1; 0: that of its look",
+        low=0.0,
+        high=1.0,
+        zero_is_none=True,
+        check=without(
+            lambda value: None if 0 < value <= 1 else f"hardness must be above 0 and at most 1, not {value:g}"
+        ),
+    )
 
     @property
     def rgb(self) -> RGB | None:
@@ -57,7 +127,11 @@ class Library:
         self.properties = list(self.properties)
         seen: set[int] = set()
         for entry in self.properties:
-            _check_property(entry, seen)
+            try:
+                check_property(entry, seen)
+            except OptionRefused as error:
+                item = f"property {entry.id!r}"
+                raise InputRefused(error.what, item=item, advice=error.advice) from error
             seen.add(entry.id)
 
     def __contains__(self, key: int | str) -> bool:
@@ -86,73 +160,11 @@ class Library:
         return next((entry for entry in self.properties if entry.id == number), None)
 
 
-def _check_property(entry: Property, seen: set[int]) -> None:
-    item = f"property {entry.id!r}"
-    if isinstance(entry.id, bool) or not isinstance(entry.id, int) or not -(2**31) <= entry.id < 2**31:
-        raise InputRefused("an id must be a 32-bit whole number", item=item)
+def check_property(entry: Property, seen: Collection[int]) -> None:
+    """Refuses a property that makes no sense, or whose id is among those seen. Raises OptionRefused."""
+    check_fields(entry)
     if entry.id in seen:
-        raise InputRefused("another property has this id", item=item, advice="give each a unique id")
-    if not isinstance(entry.name, str) or not entry.name.strip():
-        raise InputRefused("it has no name", item=item)
-    if entry.color is not None and not _COLOR.fullmatch(entry.color):
-        raise InputRefused(f"color '{entry.color}' is not a color", item=item, advice='write it as "#rrggbb"')
-    if entry.density is not None and not entry.density > 0:
-        raise InputRefused(f"density must be above 0, not {entry.density:g}", item=item)
-    _check_look(entry, item)
+        raise OptionRefused("another property has this id", "id", "give each a unique id")
 
 
-def _check_look(entry: Property, item: str) -> None:
-    if entry.look is not None and entry.look not in LOOK_NAMES:
-        known = ", ".join(LOOK_NAMES)
-        raise InputRefused(f"look '{entry.look}' is unknown", item=item, advice=f"choose from {known}")
-    if entry.look_scale is not None and not 0 < entry.look_scale < float("inf"):
-        raise InputRefused(f"look_scale must be above 0, not {entry.look_scale:g}", item=item)
-    if entry.look_seed is not None and not 0 <= entry.look_seed < 2**31:
-        raise InputRefused(f"look_seed must be from 0 to {2**31 - 1}, not {entry.look_seed}", item=item)
-    if entry.hardness is not None and not 0 < entry.hardness <= 1:
-        raise InputRefused(f"hardness must be above 0 and at most 1, not {entry.hardness:g}", item=item)
-
-
-def load_library(path: str | Path) -> Library:
-    """Reads a library file. Raises InputRefused with the line of the error."""
-    document = TomlDocument(Path(path))
-    top = Table(document, document.content, (), "")
-    top.allow_only(("property",))
-    properties: list[Property] = []
-    seen: set[int] = set()
-    for table in top.tables("property", "property") if "property" in top else []:
-        entry = _read_property(table)
-        try:
-            _check_property(entry, seen)
-        except InputRefused as error:
-            word = error.what.split()[0]
-            raise table.refuse(error.what, word if word in table else "id", error.advice) from error
-        seen.add(entry.id)
-        properties.append(entry)
-    return Library(properties, Path(path))
-
-
-def _read_property(table: Table) -> Property:
-    table.allow_only([entry.name for entry in fields(Property)])
-    return Property(
-        id=table.integer("id", required=True),
-        name=table.text("name", required=True),
-        rock=_loose_text(table, "rock"),
-        age=_loose_text(table, "age"),
-        structure=_loose_text(table, "structure"),
-        color=_loose_text(table, "color"),
-        description=_loose_text(table, "description"),
-        density=table.number("density"),
-        look_scale=table.number("look_scale"),
-        hardness=table.number("hardness"),
-        look=table.text("look"),
-        look_seed=table.integer("look_seed"),
-    )
-
-
-def _loose_text(table: Table, key: str) -> str | None:
-    """Text that may be empty (not given) or have several lines, as descriptions."""
-    value = table.content.get(key)
-    if isinstance(value, str) and key != "color":
-        return value or None
-    return table.text(key)
+PROPERTY = settings_of(Property)

@@ -7,44 +7,59 @@ import builtins
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..base.algebra import are_among
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
-from ..base.units import MODEL_UNIT
+from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
 from ..readers.tables.observations import Bounds, Observations, along_bounds
 from ..settings.boreholes import Boreholes
-from ..settings.dips import DipFile, Dips, dip_file_of
+from ..settings.crs import checked_crs
+from ..settings.dips import DIPS, DipFile, Dips, dip_file_of
 from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer
-from ..settings.meshers import DEFAULT_MESHER
+from ..settings.mesh_sizes import edge_length_fault, triangles_fault
+from ..settings.meshers import DEFAULT_MESHER, MESHERS
+from ..settings.method_options import OptionRefused, without
 from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
     DEFAULT_METHOD,
     DEFAULT_OPTIONS,
     METHODS,
+    OPTIONS,
     checked_options,
 )
 from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
-from ..settings.rules import DEFAULT_RULE
+from ..settings.rules import DEFAULT_RULE, RULES
 from ..settings.series import FIELD
-from .entry import (
-    Compared,
-    Entry,
-)
+from ..settings.setting import declared, described, settings_of
+from .entry import Compared, Entry
 from .library import Library
 from .plan_input import files_of_sizes, layer_files, map_layer
 from .region_rings import is_several
 from .series import Series
-from .structure_entries import Body, Fault, Shaped
+from .structure_entries import MESH, POINTS, Body, Fault, Shaped, library_id
 
 MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh need not resolve
 BASE_BLOCK = "base block"  # the name of the block on the base, where its surface gives it none
+# The shapes of a surface on which a setting has an effect: not on a ready mesh, nor on a level set.
+OF_SHEETS, OF_POINTS = ("sheet",), ("sheet", "level set")
+
+
+def _labels(registry: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
+    return {name: (entry.label, entry.tip) for name, entry in registry.items()}
+
+
+def _checked_unit(key: str, unit: Any) -> Any:
+    if unit not in METERS:
+        raise OptionRefused(f"unknown unit {unit!r}", key, f"there are {', '.join(METERS)}")
+    return unit
 
 
 @dataclass(eq=False)
@@ -75,24 +90,94 @@ class Surface(Shaped):
     """
 
     kind = "surface"
-    name: str
+    name: str = declared(kind="name", label="Name", tip="Name of the surface", is_needed=True)
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
-    points: np.ndarray | str | Path | PointFile | None = None
-    method: str | None = None
-    options: dict = field(default_factory=dict)
-    rule: str = DEFAULT_RULE
-    property: int = 0
-    block: str | None = None
-    mesh: str | Path | MeshFile | None = None
-    dips: Dips | DipFile | str | Path | None = None
-    left_out: np.ndarray | Sequence | None = None
-    series: str | None = None
-    minimum_thickness: float | None = None
-    true_thickness: bool = False
-    tie: bool = True
-    observed: bool = False
-    correlation: float | None = None
+    points: np.ndarray | str | Path | PointFile | None = described(POINTS)
+    method: str | None = declared(
+        DEFAULT_METHOD,
+        kind="method",
+        label="Method",
+        tip="How elevations are interpolated from the points",
+        words=_labels(METHODS),
+        shapes=OF_SHEETS,
+        absent=None,
+    )
+    options: dict = declared(
+        kind="options",
+        shapes=OF_SHEETS,
+        parts=OPTIONS | {key: replace(OPTIONS[key], default=word) for key, word in DEFAULT_OPTIONS.items()},
+        factory=dict,
+    )
+    rule: str = declared(
+        DEFAULT_RULE,
+        kind="word",
+        label="Rule",
+        tip="What the surface does to the rock that was there before",
+        words=_labels(RULES),
+        more="See [Rules](#rules)",
+    )
+    property: int = described(library_id("deposited beneath this surface"))
+    block: str | None = declared(
+        kind="text",
+        label="Block",
+        tip='Name of the block beneath this surface; empty: the name of the surface and "block"',
+        more='The block on the base is "base block"',
+    )
+    mesh: str | Path | MeshFile | None = described(MESH)
+    dips: Dips | DipFile | str | Path | None = described(replace(DIPS, shapes=OF_SHEETS))
+    left_out: np.ndarray | Sequence | None = declared(kind="places", shapes=OF_POINTS)
+    series: str | None = declared(
+        kind="series",
+        label="Series",
+        tip="Name of the series that the surface belongs to; empty: none",
+        more="See [Series](#series)",
+    )
+    minimum_thickness: float | None = declared(
+        kind="length",
+        label="Minimum Thickness",
+        tip="Minimum distance above the next older surface",
+        low=0.0,
+        more="For interpolated surfaces; points that contradict it are listed",
+        switch=("Thickness ≥", "Keep the surface at least this far above the next older one"),
+        shapes=OF_SHEETS,
+    )
+    true_thickness: bool = declared(
+        False,
+        kind="truth",
+        label="True Thickness",
+        tip="Measure the minimum thickness, and the thickness of a parallel surface, perpendicular to "
+        "the other surface, not vertically",
+        more="Default `false`; see [true thickness](methods.md#true-thickness)",
+        shapes=OF_SHEETS,
+    )
+    tie: bool = declared(
+        True,
+        kind="truth",
+        label="Tie",
+        tip="The surface passes through all its points, also within the triangles of the planar mesh",
+        more="Default `true`, for interpolated surfaces; see [ties](methods.md#ties). `false` leaves the "
+        "elevations as the method interpolates them",
+        shapes=OF_POINTS,
+    )
+    observed: bool = declared(
+        False,
+        kind="truth",
+        label="Observed",
+        tip="The points were seen in the rock: no younger surface cuts below them",
+        more="Default `false`; picks of boreholes and points of a [series](#series) always are. See "
+        "[observed contacts](#observed-contacts)",
+        shapes=OF_POINTS,
+    )
+    correlation: float | None = declared(
+        label="Correlation",
+        tip="Correlation of the errors of its elevations with those of the next older surface, in ensembles",
+        low=-1.0,
+        high=1.0,
+        more="-1 to 1, for interpolated surfaces; see [ensembles](../ensembles.md)",
+        switch=("Correlation", "In ensembles, draw its elevations with those of the next older surface"),
+        shapes=OF_SHEETS,
+    )
     rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
@@ -109,6 +194,11 @@ class Surface(Shaped):
             self.points is not None
             or (self.mesh is None and self.vertices is None and self.triangles is None)
         )
+
+    @builtins.property  # a field of this class is called property
+    def shape_kind(self) -> str:
+        """The kind of its shape, "level set", "sheet" or "mesh", by which settings have an effect."""
+        return "level set" if self.is_level_set else "sheet" if self.interpolated else "mesh"
 
     @builtins.property  # a field of this class is called property
     def has_points(self) -> bool:
@@ -238,22 +328,66 @@ class Rock(Entry):
     """
 
     kind = "rock"
-    name: str
-    surfaces: list[Surface]
-    region: np.ndarray | Sequence | str | Path | MapLayer | None = None
-    holes: Sequence = ()
-    edge_length: float | str | None = None
-    triangles: int | None = None
-    mesher: str = DEFAULT_MESHER
-    size: Sequence[Mapping] = ()
-    base_elevation: float | None = None
-    constraints: Sequence = ()
-    boreholes: Boreholes | None = None
-    observations: str | Path | ObservationFile | Observations | None = None
-    dips: Dips | DipFile | str | Path | None = None
-    names: Mapping[str, str] = field(default_factory=dict)
-    map: MapFile | None = None
-    series: list[Series] = field(default_factory=list)
+    name: str = declared(kind="name", label="Name", tip="Name of the rock mass", is_needed=True)
+    surfaces: list[Surface] = declared(kind="tables", key="surface", of=Surface, is_needed=True)
+    region: np.ndarray | Sequence | str | Path | MapLayer | None = declared(kind="region", of=MapLayer)
+    holes: Sequence = declared((), kind="rings")
+    edge_length: float | str | None = declared(
+        kind="length",
+        label="Edge Length",
+        tip="Edge length of the triangles on which surfaces are interpolated. Half the length gives four "
+        "times as many triangles",
+        low=0.0,
+        check=without(edge_length_fault),
+        zero_is_none=True,
+        needed="if a surface has `points`, unless `triangles` is given",
+        more="Where points lie much closer together than it is long, they become [nodes "
+        'themselves](methods.md#ties). `"auto"`: half the spacing of the points of the surfaces, '
+        "where they lie",
+    )
+    triangles: int | None = declared(
+        kind="whole",
+        label="Triangles",
+        tip="Number of triangles of the planar mesh, within 5 %",
+        start=10_000,
+        low=1,
+        check=without(triangles_fault),
+        more='Instead of `edge_length`; with `edge_length = "auto"` it scales the point spacing',
+        switch=(
+            "Scale to Triangles",
+            "Scale the point spacing so that the mesh has a number of triangles",
+        ),
+    )
+    mesher: str = declared(
+        DEFAULT_MESHER,
+        kind="word",
+        label="Mesher",
+        tip="Algorithm that divides the region into triangles",
+        words=_labels(MESHERS),
+        more="See [meshing](../dev/meshing.md)",
+    )
+    size: Sequence[Mapping] = declared((), kind="sizes", of=MapLayer)
+    base_elevation: float | None = declared(
+        kind="length",
+        label="Base Elevation",
+        tip="Elevation of the flat base of the oldest block; surfaces that reach below are cut off there",
+        more="It adds a block beneath the oldest surface; see [Base](#base)",
+        switch=("Base", "Add a block between the oldest surface and the base elevation"),
+        switch_name="use_base",
+    )
+    constraints: Sequence = declared((), kind="constraints", of=MapLayer)
+    boreholes: Boreholes | None = declared(
+        kind="table_file", of=Boreholes, example='{ collars = "collars.csv", picks = "picks.csv" }'
+    )
+    observations: str | Path | ObservationFile | Observations | None = declared(
+        kind="table_file", of=ObservationFile, example='"outcrops.csv"'
+    )
+    dips: Dips | DipFile | str | Path | None = described(DIPS)
+    names: Mapping[str, str] = declared(kind="meanings", factory=dict)
+    map: MapFile | None = declared(
+        kind="table_file", of=MapFile, example='{ file = "geology.gpkg", block = "UNIT" }'
+    )
+    series: list[Series] = declared(kind="tables", of=Series, factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     hole_ends: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
@@ -382,14 +516,21 @@ class Project(Compared):
     for it name.
     """
 
-    name: str
-    rocks: list[Rock]
-    library: Library | None = None
+    name: str = declared(kind="name", is_needed=True)
+    rocks: list[Rock] = declared(kind="tables", key="rock", of=Rock, is_needed=True)
+    library: Library | None = declared(kind="library")
     path: Path | None = None
-    units: str = MODEL_UNIT
-    faults: list[Fault] = field(default_factory=list)
-    bodies: list[Body] = field(default_factory=list)
-    crs: str | None = None
+    units: str = declared(MODEL_UNIT, kind="line", check=_checked_unit)
+    faults: list[Fault] = declared(kind="tables", key="fault", of=Fault, factory=list)
+    bodies: list[Body] = declared(kind="tables", key="body", of=Body, factory=list)
+    crs: str | None = declared(
+        kind="text",
+        label="CRS",
+        tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
+        check=checked_crs,
+        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 "
+        "and OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
+    )
 
     def input_files(self) -> list[Path]:
         """Every file that this project reads, itself included."""
@@ -430,3 +571,8 @@ class Project(Compared):
 def surface_item(rock: Rock, surface: Surface) -> str:
     """The name of a surface in messages; of rows of the panel, too."""
     return f"rock '{rock.name}', surface '{surface.name}'"
+
+
+SURFACE = settings_of(Surface)
+ROCK = settings_of(Rock)
+PROJECT = settings_of(Project)

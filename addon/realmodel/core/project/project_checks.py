@@ -11,11 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import InputRefused
-from ..base.units import METERS
-from ..settings.crs import checked_crs
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
-from ..settings.method_options import OptionRefused, is_name
+from ..settings.method_options import OptionRefused, check_fields, is_name
 from ..settings.methods import (
     DEFAULT_METHOD,
     METHODS,
@@ -23,12 +21,13 @@ from ..settings.methods import (
     check_method,
     check_uses_dips,
 )
-from ..settings.schema import ROCK, SURFACE
 from .entry import (
     Refuse,
     check_file,
     check_property,
+    check_table_file,
     check_values,
+    keys_without_effect,
     named_once,
     refused_by,
     shapes_given,
@@ -44,13 +43,10 @@ def check_project(project: Project) -> None:
     """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
     if not is_name(project.name):
         raise InputRefused("a project needs a name", file=project.path)
-    if project.units not in METERS:
-        what = f"unknown unit {project.units!r}"
-        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
     try:
-        checked_crs("crs", project.crs)
+        check_fields(project)
     except OptionRefused as error:
-        raise InputRefused(error.what, file=project.path, item="crs", advice=error.advice) from error
+        raise InputRefused(error.what, file=project.path, item=error.option, advice=error.advice) from error
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     for rock in named_once(project.rocks, "rock mass"):
@@ -63,7 +59,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
     rock.mark_level_sets()  # surfaces may have come later
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
-    check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
+    check_values(rock, refuse)
     _check_mesh(rock, refuse)
     if rock.region is None and len(rock.holes):
         raise refuse("it has holes but no region", "holes", "add the outline as region")
@@ -120,21 +116,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     else:
         _check_shape(rock, surface, refuse, bool(project.faults))
         _check_dips(surface, refuse)
-    check_values(
-        surface,
-        SURFACE,
-        (
-            "minimum_thickness",
-            "true_thickness",
-            "tie",
-            "observed",
-            "correlation",
-            "rule",
-            "property",
-            "block",
-        ),
-        refuse,
-    )
+    check_values(surface, refuse)
     check_property(project.library, surface.property, refuse)
 
 
@@ -152,14 +134,11 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
             if file is not None:
                 file.check()
     if not surface.interpolated:
-        given = [*(["method"] if surface.method is not None else []), *surface.options]
-        given = [] if continues else given
-        of_points = ("minimum_thickness", "correlation", "left_out")
-        given += [key for key in of_points if getattr(surface, key) is not None]
-        given += [key for key in ("true_thickness", "observed") if getattr(surface, key)]
-        given += [] if surface.tie else ["tie"]
-        if given:
-            raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
+        idle = keys_without_effect(surface)
+        if continues:
+            idle = [key for key in idle if key != "method" and key not in surface.options]
+        if idle:
+            raise refuse(f"'{idle[0]}' has no effect, as a mesh is not interpolated", idle[0])
         if continues:
             _check_method(surface, refuse)
             _check_continuation(surface, refuse)
@@ -179,17 +158,10 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
 
 
 def _check_dips(surface: Surface, refuse: Refuse) -> None:
-    if surface.dips is None:
-        return
-    file = surface.dip_file
-    with refused_by(refuse, "dips", "dips: "):
-        if file is not None:
-            file.check()
-    check_file(None if file is None else file.file, "dips", refuse)
-    if not surface.interpolated:
-        raise refuse("'dips' has no effect, as a mesh is not interpolated", "dips")
-    with refused_by(refuse):
-        check_uses_dips(surface.method or DEFAULT_METHOD)
+    check_table_file(surface.dip_file, "dips", refuse)
+    if surface.dips is not None:
+        with refused_by(refuse):
+            check_uses_dips(surface.method or DEFAULT_METHOD)
 
 
 def _check_continuation(surface: Surface, refuse: Refuse) -> None:

@@ -10,9 +10,9 @@ import csv
 import io
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,19 +20,14 @@ from numpy.typing import ArrayLike
 from ..base.atomic import Outputs
 from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
-from ..base.units import MODEL_UNIT
 from ..readers import UnitNames
 from ..settings.dips import Dips, SpaceDips, as_given
-from ..settings.meshers import DEFAULT_MESHER
-from ..settings.point_file import PointFile
-from ..settings.rules import DEFAULT_RULE
-from ..settings.series import AUTO, FIELD
-from .library import Library, Property
+from .entry import changed_values
+from .library import Library
 from .plan_input import map_layer
 from .project import Project, Rock, Surface
 from .project_checks import check_project
 from .region_rings import is_several
-from .series import Series
 from .structure_entries import Body, Fault
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
@@ -51,65 +46,35 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
     if path.suffix.lower() != ".toml":
         raise UsageError(f"{path}: a project file ends in .toml")
     check_project(project)
-    taken: set[str] = {path.name.lower()}
-
-    def beside(*parts: str, ending: str) -> Path:
-        """A free name beside the project file, the same for the same project."""
-        stem = "_".join(_NOT_IN_FILE_NAMES.sub("_", part).strip("._") or "x" for part in (path.stem, *parts))
-        name, number = stem + ending, 2
-        while name.lower() in taken:
-            name, number = f"{stem}_{number}{ending}", number + 1
-        taken.add(name.lower())
-        return path.parent / name
-
     with Outputs() as outputs:
-        written = [path]
-
-        def write(target: Path, content: bytes) -> str:
-            with outputs.file(target) as file:
-                file.write(content)
-            written.append(target)
-            return target.name
-
-        lines = ["format = 1", f"name = {toml_value(project.name)}"]
-        if project.units != MODEL_UNIT:
-            lines.append(f"units = {toml_value(project.units)}")
-        if project.crs is not None:
-            lines.append(f"crs = {toml_value(project.crs)}")
-        if project.library is not None:
-            library = write(beside("library", ending=".toml"), library_text(project.library).encode())
-            lines.append(f"library = {toml_value(library)}")
-        for rock in project.rocks:
-            unread = {
-                "boreholes": rock.boreholes,
-                "map": rock.map,
-                "observations": rock.observation_file,
-                "dips": rock.dip_file,
-                "file of constraints": next(
-                    (c for c in rock.constraints if isinstance(c, str) or map_layer(c) is not None), None
-                ),
-            }
-            for what, given in unread.items():
-                if given is not None:
-                    raise UsageError(f"rock '{rock.name}': its {what} was not read yet; build it first")
-            lines += ["", "[[rock]]", *_rock_lines(rock)]
-            if rock.observed is not None and len(rock.observed):
-                target = beside(rock.name, "observations", ending=".csv")
-                lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
-            if isinstance(rock.dips, Dips) and len(rock.dips):
-                target = beside(rock.name, "dips", ending=".csv")
-                lines.append(f"dips = {toml_value(write(target, _named_dips_text(rock, rock.dips)))}")
-            for series in rock.series:
-                lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
-            for surface in rock.surfaces:
-                files = _surface_files(rock, surface, beside, write)
-                lines += ["", "[[rock.surface]]", *_surface_lines(surface, files)]
-        for kind, entries in (("fault", project.faults), ("body", project.bodies)):
-            for entry in entries:
-                lines += ["", f"[[{kind}]]", *_structure_lines(kind, entry, beside, write)]
+        files = _Beside(path, outputs)
+        lines = ["format = 1", *_entry_lines(project, files, (), "")]
         with outputs.file(path) as file:
             file.write(("\n".join(lines) + "\n").encode())
-    return written
+    return [path, *files.written]
+
+
+class _Beside:
+    """The files that are written beside a project file."""
+
+    def __init__(self, path: Path, outputs: Outputs):
+        self._path, self._outputs = path, outputs
+        self._taken = {path.name.lower()}
+        self.written: list[Path] = []
+
+    def write(self, parts: tuple[str, ...], ending: str, content: bytes) -> str:
+        """Writes a file to a free name, the same for the same project, which it returns."""
+        named = (self._path.stem, *parts)
+        stem = "_".join(_NOT_IN_FILE_NAMES.sub("_", part).strip("._") or "x" for part in named)
+        name, number = stem + ending, 2
+        while name.lower() in self._taken:
+            name, number = f"{stem}_{number}{ending}", number + 1
+        self._taken.add(name.lower())
+        target = self._path.parent / name
+        with self._outputs.file(target) as file:
+            file.write(content)
+        self.written.append(target)
+        return name
 
 
 def save_library(library: Library, path: str | Path) -> None:
@@ -125,32 +90,131 @@ def library_text(library: Library) -> str:
     """A library as TOML."""
     tables = []
     for entry in library:
-        values = {field.name: getattr(entry, field.name) for field in fields(Property)}
+        values = {part.key: value for part, value in changed_values(entry)}
         tables.append("\n".join(["[[property]]", *_lines(values)]))
     return "\n\n".join(tables) + "\n"
 
 
-def _rock_lines(rock: Rock) -> list[str]:
-    lines = _lines(
-        {
-            "name": rock.name,
-            "edge_length": rock.edge_length,
-            "triangles": rock.triangles,
-            "size": list(rock.size) or None,
-            "mesher": rock.mesher if rock.mesher != DEFAULT_MESHER else None,
-            "base_elevation": rock.base_elevation,
-        }
-    )
-    if rock.region is not None:
-        if rock.region_file is not None or isinstance(rock.region, str):
-            raise UsageError(f"rock '{rock.name}': its region has not been read; build the model first")
-        several = is_several(rock.region)
-        lines.append(f"region = {_rings_text(rock.region) if several else _ring_text(rock.region)}")
-        if len(rock.holes):
-            lines.append(f"holes = {_rings_text(rock.holes)}")
-    if len(rock.constraints):
-        lines.append(f"constraints = {_rings_text(rock.constraints)}")
+class _Value(NamedTuple):
+    """A value to be written: its key, the names of its entry and of those around it, the rock mass around it,
+    the tables that the entry is in, and the files."""
+
+    value: Any
+    key: str
+    names: tuple[str, ...]
+    rock: Rock | None
+    tables: str
+    files: _Beside
+
+    def text(self) -> str:
+        return toml_value(self.value)
+
+
+def _entry_lines(
+    entry: Any, files: _Beside, names: tuple[str, ...], tables: str, rock: Rock | None = None
+) -> list[str]:
+    """The lines of a project, rock mass, surface, series, fault or body."""
+    lines: list[str] = []
+    for part, value in changed_values(entry):
+        item = _Value(value, part.key, names, rock, tables, files)
+        if part.setting.kind == "tables":
+            lines += _tables(item)
+        elif part.setting.kind == "options":
+            lines += _lines(value)
+        elif (text := WRITE.get(part.setting.kind, _Value.text)(item)) is not None:
+            lines.append(f"{part.key} = {text}")
     return lines
+
+
+def _tables(item: _Value) -> list[str]:
+    lines, tables = [], f"{item.tables}.{item.key}".strip(".")
+    for entry in item.value:
+        rock = entry if isinstance(entry, Rock) else item.rock
+        names = (*item.names, entry.name) if rock else (item.key, entry.name)
+        _require_read(entry)
+        lines += ["", f"[[{tables}]]", *_entry_lines(_as_written(entry), item.files, names, tables, rock)]
+    return lines
+
+
+def _require_read(entry: Any) -> None:
+    """Refuses an entry with files that were not read."""
+    if isinstance(entry, Rock):
+        unread = {
+            "boreholes": entry.boreholes,
+            "map": entry.map,
+            "observations": entry.observation_file,
+            "dips": entry.dip_file,
+            "file of constraints": next(
+                (c for c in entry.constraints if isinstance(c, str) or map_layer(c) is not None), None
+            ),
+        }
+        for what, file in unread.items():
+            if file is not None:
+                raise UsageError(f"{entry.item}: its {what} was not read yet; build it first")
+        if entry.region_file is not None or isinstance(entry.region, str):
+            raise UsageError(f"{entry.item}: its region has not been read; build the model first")
+        return
+    files = [getattr(entry, name, None) for name in ("input_file", "dip_file")]
+    if any(files) or isinstance(getattr(entry, "trace", None), str):
+        raise UsageError(f"{entry.item}: its file has not been read; build the model first")
+    if isinstance(entry, (Fault, Body)) and entry.vertices is None and getattr(entry, "trace", None) is None:
+        what = "no surface is fitted to its points yet; build the model first"
+        raise UsageError(f"{entry.item}: {what}")
+
+
+def _as_written(entry: Any) -> Any:
+    """An entry with the arrays that it is made from: those of its mesh, if no others."""
+    if isinstance(entry, Rock):
+        return replace(entry, names={})  # what they mean is in the observations
+    if isinstance(entry, Surface) and entry.has_points:
+        return replace(entry, points=entry.own_points())  # its contacts follow from the observations again
+    if isinstance(entry, Fault) and entry.trace is not None:
+        return entry
+    if isinstance(entry, Fault):
+        entry = replace(entry, points=None, stick=None, extend=0.0)
+    if isinstance(entry, (Surface, Fault, Body)):
+        return replace(entry, mesh=entry.triangulation())  # type: ignore[arg-type]  # in the place of a file
+    return entry
+
+
+def _library(item: _Value) -> str:
+    return toml_value(item.files.write(("library",), ".toml", library_text(item.value).encode()))
+
+
+def _points(item: _Value) -> str | None:
+    if not len(item.value):
+        return None
+    return toml_value(item.files.write(item.names, ".csv", points_text(item.value)))
+
+
+def _mesh(item: _Value) -> str:
+    return toml_value(item.files.write(item.names, ".off", off_text(*item.value)))
+
+
+def _table_file(item: _Value) -> str | None:
+    """Dips, or observations."""
+    table, rock = item.value, item.rock
+    if not len(table):
+        return None
+    assert rock is not None
+    if isinstance(table, SpaceDips):
+        text = space_dips_text(table)
+    else:
+        text = _named_dips_text(rock, table) if isinstance(table, Dips) else observations_text(rock)
+    return toml_value(item.files.write((*item.names, item.key), ".csv", text))
+
+
+def _places(item: _Value) -> str | None:
+    return toml_value(np.asarray(item.value, np.float64).tolist()) if len(item.value) else None
+
+
+def _region(item: _Value) -> str:
+    return _rings_text(item.value) if is_several(item.value) else _ring_text(item.value)
+
+
+def _trace(item: _Value) -> str:
+    line = item.value
+    return _rings_text(line) if len(line) and np.ndim(line[0]) > 1 else _ring_text(line)
 
 
 def _rings_text(rings: Any) -> str:
@@ -168,84 +232,22 @@ def _point_text(point: list[float]) -> str:
     return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
-def _series_lines(rock: Rock, series: Series, beside: Callable, write: Callable) -> list[str]:
-    if series.dip_file is not None:
-        raise UsageError(f"{series.item}: its file has not been read; build the model first")
-    dips, file = series.dips, None
-    if isinstance(dips, (Dips, SpaceDips)) and len(dips):
-        text = space_dips_text(dips) if isinstance(dips, SpaceDips) else _named_dips_text(rock, dips)
-        file = write(beside(rock.name, series.name, "dips", ending=".csv"), text)
-    values = {
-        "name": series.name,
-        "kind": series.kind if series.kind != FIELD else None,
-        "dips": file,
-        "resolution": series.resolution if series.resolution != AUTO else None,
-        "thickness": series.thickness if series.thickness != AUTO else None,
-    }
-    return _lines(values)
-
-
-def _surface_files(rock: Rock, surface: Surface, beside: Callable, write: Callable) -> dict[str, str]:
-    """The names of the files of a surface, by their keys."""
-    if surface.input_file is not None or surface.dip_file is not None:
-        raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
-    if surface.has_points:
-        points = surface.own_points()  # its contacts follow from the observations again
-        dips, files = surface.own_dips(), {}
-        if points is not None and len(points):
-            target = beside(rock.name, surface.name, ending=".csv")
-            files["points"] = write(target, points_text(points))
-        if dips is not None and len(dips):
-            target = beside(rock.name, surface.name, "dips", ending=".csv")
-            files["dips"] = write(target, dips_text(dips))
-        return files
-    target = beside(rock.name, surface.name, ending=".off")
-    return {"mesh": write(target, off_text(*surface.triangulation()))}
-
-
-def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
-    given = surface
-    values: dict[str, object] = {"name": given.name, "series": given.series, **files}
-    # for a ready mesh the method is only for its continuation to faults
-    values |= {"method": given.method, **given.options}
-    if given.left_out is not None and len(given.left_out):
-        values["left_out"] = np.asarray(given.left_out, np.float64).tolist()
-    values |= {
-        "minimum_thickness": given.minimum_thickness,
-        "true_thickness": given.true_thickness or None,
-        "tie": None if given.tie else False,
-        "observed": given.observed or None,
-        "correlation": given.correlation,
-        "rule": given.rule if given.rule != DEFAULT_RULE else None,
-        "property": given.property or None,
-        "block": given.block,
-    }
-    return _lines(values)
-
-
-def _structure_lines(kind: str, entry: Fault | Body, beside: Callable, write: Callable) -> list[str]:
-    trace = entry.trace if isinstance(entry, Fault) else None
-    if entry.input_file is not None or isinstance(trace, str):
-        raise UsageError(f"{kind} '{entry.name}': its file has not been read; build the model first")
-    keys = ("youngest", "ends_at", "dies_out", "rocks")
-    keys = keys if kind == "fault" else ("after", "property", "void", "rock")
-    values = {key: getattr(entry, key) or None for key in keys}
-    if isinstance(entry, Fault) and trace is not None:
-        assert not isinstance(trace, (Path, PointFile))  # it has no input file
-        own = {key: getattr(entry, key) for key in ("dip", "dip_direction", "elevation")}
-        lines = _lines({"name": entry.name} | own | {"extend": entry.extend or None} | values)
-        several = len(trace) and np.ndim(trace[0]) > 1
-        return [*lines, f"trace = {_rings_text(trace) if several else _ring_text(trace)}"]
-    if entry.vertices is None:
-        raise UsageError(
-            f"{kind} '{entry.name}': no surface is fitted to its points yet; build the model first"
-        )
-    mesh = write(beside(kind, entry.name, ending=".off"), off_text(*entry.triangulation()))
-    return _lines({"name": entry.name, "mesh": mesh} | values)
-
-
 def _lines(values: Mapping) -> list[str]:
     return [f"{key} = {toml_value(value)}" for key, value in values.items() if value is not None]
+
+
+# By the kinds of settings; values of other kinds are written as they are.
+WRITE: Mapping[str, Callable[[_Value], str | None]] = {
+    "library": _library,
+    "points": _points,
+    "mesh": _mesh,
+    "table_file": _table_file,
+    "places": _places,
+    "region": _region,
+    "rings": lambda item: _rings_text(item.value) if len(item.value) else None,
+    "constraints": lambda item: _rings_text(item.value) if len(item.value) else None,
+    "trace": _trace,
+}
 
 
 def toml_value(value: Any) -> str:

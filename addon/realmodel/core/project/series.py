@@ -8,8 +8,10 @@ from pathlib import Path
 
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
-from ..settings.dips import DipFile, Dips, SpaceDips, dip_file_of
-from ..settings.series import AUTO, FIELD, PARALLEL
+from ..settings.dips import DIPS, DipFile, Dips, SpaceDips, dip_file_of
+from ..settings.method_options import without
+from ..settings.series import AUTO, FIELD, KINDS, PARALLEL, THICKNESSES, resolution_fault
+from ..settings.setting import declared, described, settings_of
 from .entry import Entry
 
 
@@ -25,11 +27,29 @@ class Series(Entry):
     field away from the data: "parallel", they keep it; "free"; or "auto", what the data say.
     """
 
-    name: str
-    kind: str = FIELD
-    dips: SpaceDips | Dips | DipFile | str | Path | None = None
-    resolution: float | str = AUTO
-    thickness: str = AUTO
+    name: str = declared(kind="name", label="Name", tip="Name of the series", is_needed=True)
+    kind: str = declared(FIELD, kind="word", label="Kind", tip="How its surfaces are made", words=KINDS)
+    dips: SpaceDips | Dips | DipFile | str | Path | None = described(DIPS)
+    resolution: float | str = declared(
+        AUTO,
+        kind="length",
+        label="Resolution",
+        tip="Edge length of the lattice of the field",
+        low=0.0,
+        check=without(resolution_fault),
+        zero_is_none=True,
+        shapes=(FIELD,),
+        unset="auto",
+        more='`"auto"` (default): by the spacing of the contacts and the size of the rock mass',
+    )
+    thickness: str = declared(
+        AUTO,
+        kind="word",
+        label="Thickness",
+        tip="How thick the beds of a field are away from the data",
+        words=THICKNESSES,
+        shapes=(FIELD,),
+    )
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @property
@@ -57,3 +77,6 @@ class Series(Entry):
             return self.dips.checked().of_sheets()
         assert self.dips is None or isinstance(self.dips, Dips)
         return None if self.dips is None else self.dips.checked()
+
+
+SERIES = settings_of(Series)

@@ -7,21 +7,25 @@ from functools import partial
 from itertools import pairwise
 
 from ..settings.dips import Dips, SpaceDips
-from ..settings.schema import SERIES, SERIES_VALUES
 from ..settings.series import AUTO, FIELD, SHEET_METHODS
-from .entry import Refuse, check_file, check_values, named_once, refused_by
+from .entry import (
+    Refuse,
+    check_file,
+    check_table_file,
+    check_values,
+    keys_without_effect,
+    named_once,
+    refused_by,
+)
 from .project import Rock, Surface
 from .series import Series
-
-# What a level set of a field cannot have, as it is not interpolated on the planar mesh.
-_OF_SHEETS = ("mesh", "vertices", "dips", "method", "minimum_thickness", "true_thickness", "correlation")
 
 
 def check_series(rock: Rock) -> None:
     """Refuses series that make no sense. Raises InputRefused."""
     for series in named_once(rock.series, "series"):
         refuse = partial(series.refused, item=f"{rock.item}, {series.item}")
-        check_values(series, SERIES, SERIES_VALUES, refuse)
+        check_values(series, refuse)
         _check_dips(series, refuse)
         own = rock.members(series)
         if not own:
@@ -58,14 +62,10 @@ def _check_sheets(rock: Rock, series: Series, own: list[int], refuse: Refuse) ->
 
 
 def _check_dips(series: Series, refuse: Refuse) -> None:
-    file = series.dip_file
-    if file is not None:
-        with refused_by(refuse, "dips", "dips: "):
-            file.check()
-        check_file(file.file, "dips", refuse)
-    elif series.dips is not None and not isinstance(series.dips, SpaceDips):
-        if series.kind == FIELD or not isinstance(series.dips, Dips):
-            raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
+    check_table_file(series.dip_file, "dips", refuse)
+    allowed = (SpaceDips,) if series.kind == FIELD else (SpaceDips, Dips)
+    if series.dip_file is None and series.dips is not None and not isinstance(series.dips, allowed):
+        raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
 
 
 def _check_field(rock: Rock, refuse: Refuse) -> None:
@@ -77,12 +77,11 @@ def _check_field(rock: Rock, refuse: Refuse) -> None:
 
 def check_level_set(rock: Rock, surface: Surface, refuse: Refuse) -> None:
     """Refuses what makes no sense for a surface of a field. Raises InputRefused."""
-    for key in (*_OF_SHEETS, *surface.options):
-        value = surface.options[key] if key in surface.options else getattr(surface, key)
-        if value is not None and value is not False:
-            what = f"'{key}' has no effect: the surface is a level set of series '{surface.series}'"
-            advice = "give the dips to the series" if key == "dips" else "use points, and leave this out"
-            raise refuse(what, key, advice)
+    shapes = [key for key in ("mesh", "vertices") if getattr(surface, key) is not None]
+    for key in (*shapes, *keys_without_effect(surface)):
+        what = f"'{key}' has no effect: the surface is a level set of series '{surface.series}'"
+        advice = "give the dips to the series" if key == "dips" else "use points, and leave this out"
+        raise refuse(what, key, advice)
     if surface.points is None and not rock.has_field_data:
         raise refuse("it has no points", advice="add points = ...")
     check_file(surface.input_file, "points", refuse)

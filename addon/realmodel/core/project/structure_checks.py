@@ -3,19 +3,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from typing import Any
 
-import numpy as np
-
-from ..settings.schema import FAULT
-from .entry import Refuse, check_file, check_property, check_values, named_once, refused_by, shapes_given
+from .entry import (
+    Refuse,
+    check_file,
+    check_property,
+    check_values,
+    keys_without_effect,
+    named_once,
+    refused_by,
+    shapes_given,
+)
 from .project import Project
-from .structure_entries import Body, Fault
+from .structure_entries import FAULT, OF_TRACES, Body, Fault
 from .structure_history import displaced_surfaces
-
-_OF_TRACES = ("dip", "dip_direction", "elevation")
 
 
 def check_structures(project: Project) -> None:
@@ -30,33 +33,20 @@ def check_structures(project: Project) -> None:
 def _check_fault(project: Project, fault: Fault) -> None:
     refuse = fault.refused
     _check_shape(fault, refuse, ("trace", "points", "mesh"))
-    for key in ("rocks", "ends_at"):
-        names = getattr(fault, key)
-        if isinstance(names, str) or not all(isinstance(name, str) for name in names):
-            raise refuse(f"'{key}' must be a list of names, not {names!r}", key, f'write {key} = ["..."]')
-    if not isinstance(fault.dies_out, bool):
-        raise refuse(f"'dies_out' must be true or false, not {fault.dies_out!r}", "dies_out")
-    _check_trace(project, fault, refuse)
-    if fault.points is None and fault.stick:
+    check_values(fault, refuse)
+    for key in keys_without_effect(fault):
+        if FAULT[key].shapes == OF_TRACES:
+            raise refuse(f"'{key}' has no effect, as its shape is no trace", key, "add trace = ...")
         shape = "its shape is a trace" if fault.trace is not None else "no surface is fitted through points"
-        raise refuse(f"'stick' has no effect, as {shape}", "stick")
-    if not _is_length(fault.extend):
-        raise refuse(f"'extend' must be a length of at least 0, not {fault.extend!r}", "extend")
+        raise refuse(f"'{key}' has no effect, as {shape}", key)
+    _check_trace(project, fault, refuse)
     _check_names(project, refuse, "rocks", fault.rocks, "youngest", fault.youngest)
 
 
 def _check_trace(project: Project, fault: Fault, refuse: Refuse) -> None:
-    """Refuses a trace without a dip, and what there is of one without a trace."""
-    if fault.trace is None:
-        for key in _OF_TRACES:
-            if getattr(fault, key) is not None:
-                raise refuse(f"'{key}' has no effect, as its shape is no trace", key, "add trace = ...")
-        return
-    check_values(fault, FAULT, _OF_TRACES, refuse)
-    if fault.trace_file is None and fault.dip is None:
+    """Refuses a trace without a dip, and one on a surface that is not there."""
+    if fault.trace is not None and fault.trace_file is None and fault.dip is None:
         raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
-    if fault.elevation is not None and np.ndim(fault.elevation):
-        raise refuse("'elevation' must be a number or the name of a surface", "elevation")
     if isinstance(fault.elevation, str):
         rocks = [project.rocks[number] for number in displaced_surfaces(project, fault)]
         names = dict.fromkeys(surface.name for rock in rocks for surface in rock.surfaces)
@@ -68,10 +58,7 @@ def _check_trace(project: Project, fault: Fault, refuse: Refuse) -> None:
 def _check_body(project: Project, body: Body) -> None:
     refuse = body.refused
     _check_shape(body, refuse, ("mesh",))
-    if not isinstance(body.void, bool):
-        raise refuse(f"'void' must be true or false, not {body.void!r}", "void")
-    if isinstance(body.property, bool) or not hasattr(body.property, "__index__"):
-        raise refuse(f"'property' must be a whole number, not {body.property!r}", "property")
+    check_values(body, refuse)
     if body.void and body.property:
         raise refuse("a void has no rock, so 'property' has no effect", "property")
     check_property(project.library, body.property, refuse)
@@ -92,15 +79,6 @@ def _check_shape(entry: Fault | Body, refuse: Refuse, files: tuple[str, ...]) ->
     check_file(entry.input_file, shapes[0], refuse)
 
 
-def _is_length(value: Any) -> bool:
-    if isinstance(value, (bool, str)):
-        return False
-    try:
-        return math.isfinite(value) and value >= 0
-    except TypeError:
-        return False
-
-
 def _check_names(project: Project, refuse: Refuse, key: str, rocks: Any, time_key: str, surface: Any) -> None:
     """Refuses unknown rock masses and surfaces."""
     known = {rock.name: [each.name for each in rock.surfaces] for rock in project.rocks}
@@ -109,8 +87,6 @@ def _check_names(project: Project, refuse: Refuse, key: str, rocks: Any, time_ke
             raise refuse(f"'{key}' names rock mass '{name}', which does not exist", key, _there(known))
     if surface is None:
         return
-    if not isinstance(surface, str):
-        raise refuse(f"'{time_key}' must be the name of a surface, not {surface!r}", time_key)
     for name in rocks:
         if surface not in known[name]:
             what = f"'{time_key}' names surface '{surface}', which rock '{name}' does not have"

@@ -12,9 +12,51 @@ import numpy as np
 
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
+from ..settings.directions import checked_direction
 from ..settings.map_layer import is_wkt
+from ..settings.method_options import OptionRefused, surface
 from ..settings.point_file import MeshFile, PointFile
+from ..settings.setting import Setting, declared, described, settings_of
 from .entry import Entry
+
+POINTS = Setting(kind="points", of=PointFile)
+MESH = Setting(kind="mesh", of=MeshFile)
+OF_TRACES = ("trace",)
+
+
+def library_id(of: str) -> Setting:
+    """The number in the library of the rock of something."""
+    return Setting(
+        0,
+        kind="whole",
+        label="Property",
+        tip=f"Library ID of the rock {of}; 0: none",
+        name="property_id",
+        more="See [Library](#library)",
+    )
+
+
+def _checked_stick(key: str, column: Any) -> Any:
+    if column is not None and (isinstance(column, bool) or not isinstance(column, (str, int))):
+        raise OptionRefused(f"'{key}' must be a column, by name or by number from 1, not {column!r}", key)
+    return column
+
+
+def _checked_elevation(key: str, elevation: Any) -> Any:
+    if np.ndim(elevation):
+        raise OptionRefused(f"'{key}' must be a number or the name of a surface", key)
+    return None if elevation is None else surface(key, elevation)
+
+
+def _checked_names(key: str, names: Any) -> tuple[str, ...]:
+    is_list = isinstance(names, Sequence) and not isinstance(names, str)
+    if not is_list or not all(isinstance(name, str) for name in names):
+        raise OptionRefused(f"'{key}' must be a list of names, not {names!r}", key, f'write {key} = ["..."]')
+    return tuple(names)
+
+
+def _names(label: str) -> Setting:
+    return Setting((), kind="names", label=label, check=_checked_names)
 
 
 class Shaped(Entry):
@@ -69,24 +111,80 @@ class Fault(Shaped):
     """
 
     kind = "fault"
-    name: str
+    name: str = declared(kind="name", label="Name", tip="Name of the fault", is_needed=True)
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
-    youngest: str | None = None
-    ends_at: Sequence[str] = ()
-    dies_out: bool = False
-    rocks: Sequence[str] = ()
-    points: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = None
-    stick: str | int | None = None
-    extend: float = 0.0
-    mesh: str | Path | MeshFile | None = None
-    trace: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = None
-    dip: float | None = None
-    dip_direction: float | str | None = None
-    elevation: float | str | None = None
+    youngest: str | None = declared(
+        kind="any_surface",
+        label="Youngest",
+        tip="Youngest surface that the fault displaces; empty: all surfaces",
+        more="Younger surfaces ignore the fault",
+    )
+    ends_at: Sequence[str] = described(_names("Ends At"))
+    dies_out: bool = declared(
+        False,
+        kind="truth",
+        label="Dies Out",
+        tip="The fault ends inside the rock; its displacement vanishes there",
+        more="Default `false`: its border must lie outside the rock that it displaces",
+    )
+    rocks: Sequence[str] = described(_names("Rock Masses"))
+    points: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = described(POINTS)
+    stick: str | int | None = declared(
+        kind="column",
+        label="Stick Column",
+        tip="Column of a table that numbers or names the fault sticks",
+        more="Without it, and without a column named `stick`, the points are scattered",
+        check=_checked_stick,
+        shapes=("points",),
+    )
+    extend: float = declared(
+        0.0,
+        kind="length",
+        label="Extend",
+        tip="Distance by which the mesh continues beyond its border, the fitted surface beyond its "
+        "points, or the trace beyond its ends",
+        low=0.0,
+        more="In its own plane; of a fault that dies out up and down the dip only, of its trace along "
+        "that. Default 0; a trace goes through the rock then, unless the fault dies out",
+    )
+    mesh: str | Path | MeshFile | None = described(MESH)
+    trace: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = declared(
+        kind="trace", of=PointFile
+    )
+    dip: float | None = declared(
+        label="Dip",
+        tip="Angle below the horizontal, in degrees; 0: the attribute of the file",
+        low=0.0,
+        high=90.0,
+        above=0.0,
+        zero_is_none=True,
+        shapes=OF_TRACES,
+    )
+    dip_direction: float | str | None = declared(
+        kind="direction",
+        label="Dip Direction",
+        tip="Degrees clockwise from north (+Y), or the side of the trace: N, NE, E, ... Not needed for a "
+        "vertical fault",
+        check=checked_direction,
+        shapes=OF_TRACES,
+    )
+    elevation: float | str | None = declared(
+        kind="surface",
+        label="Elevation",
+        tip="Elevation of the trace, or the surface that it is on. Empty: z of the trace, or the "
+        "youngest surface where it has none",
+        check=_checked_elevation,
+        shapes=OF_TRACES,
+    )
     traced: Fault | None = field(default=None, repr=False, compare=False)  # as it was, with the line as read
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+
+    @property
+    def shape_kind(self) -> str:
+        """The kind of its shape, "trace", "points" or "mesh", by which settings have an effect."""
+        return "trace" if self.trace is not None else "points" if self.points is not None else "mesh"
 
     def trace_line(self) -> np.ndarray:
         """(N, 3) the trace, once it is read as one line (traces.read_trace)."""
@@ -116,13 +214,33 @@ class Body(Shaped):
     """
 
     kind = "body"
-    name: str
+    name: str = declared(kind="name", label="Name", tip="Name of the body, and of its block", is_needed=True)
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
-    after: str | None = None
-    property: int = 0
-    void: bool = False
-    rock: str | None = None
-    mesh: str | Path | MeshFile | None = None
+    after: str | None = declared(
+        kind="any_surface",
+        label="After",
+        tip="Surface after which the body came; empty: the youngest",
+        more="Younger surfaces erode and bury the body",
+    )
+    property: int = described(library_id("of the body"))
+    void: bool = declared(
+        False,
+        kind="truth",
+        label="Void",
+        tip="The body takes rock away and leaves nothing, as a tunnel does",
+        more="Default `false`",
+    )
+    rock: str | None = declared(
+        kind="rock_mass",
+        label="Rock Mass",
+        tip="Rock mass that the body is in; empty: all",
+        more="Default: all that have the surface `after`",
+    )
+    mesh: str | Path | MeshFile | None = described(MESH)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+
+
+FAULT = settings_of(Fault)
+BODY = settings_of(Body)

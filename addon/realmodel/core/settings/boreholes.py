@@ -4,18 +4,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .method_options import OptionRefused
-from .point_file import check_name, check_units
+from .method_options import OptionRefused, check_fields
+from .point_file import FILE, checked_name, checked_units
+from .setting import Setting, declared, described
 
 COLUMNS = (
     *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
     *("from", "to", "block", "end", "use"),
 )
 DOWNWARD_DIPS = ("negative", "positive")
+SIGN = Setting(kind="sign")  # a character of a table
+
+
+def check_column_names(columns: Any, known: Sequence[str]) -> None:
+    """Refuses columns that are no table of names or numbers by known meanings. Raises OptionRefused."""
+    if not isinstance(columns, Mapping):
+        what = f"'columns' must be a table of column names, not {columns!r}"
+        raise OptionRefused(what, "columns", f'write columns = {{ {known[0]} = "BHID" }}')
+    for name, column in columns.items():
+        if name not in known:
+            what = f"'columns' has an unknown column '{name}'"
+            raise OptionRefused(what, "columns", f"there are {', '.join(known)}")
+        is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
+        if not is_number and not (isinstance(column, str) and column.strip()):
+            what = f"column '{name}' must be a name or a number from 1, not {column!r}"
+            raise OptionRefused(what, "columns")
+
+
+def _checked_sense(key: str, sense: Any) -> Any:
+    if sense is not None and sense not in DOWNWARD_DIPS:
+        raise OptionRefused(f'\'{key}\' must be "negative" or "positive", not {sense!r}', key)
+    return sense
 
 
 @dataclass(frozen=True)
@@ -41,16 +64,16 @@ class Boreholes:
     tables.
     """
 
-    picks: str | Path | None = None
-    collars: str | Path | None = None
-    columns: Mapping = field(default_factory=dict)
-    separator: str | None = None
-    decimal: str | None = None
-    units: str | Mapping | None = None
-    survey: str | Path | None = None
-    downward_dip: str | None = None
-    intervals: str | Path | None = None
-    layer: str | None = None
+    picks: str | Path | None = described(FILE)
+    collars: str | Path | None = described(FILE)
+    columns: Mapping = declared(kind="named_columns", factory=dict)
+    separator: str | None = described(SIGN)
+    decimal: str | None = described(SIGN)
+    units: str | Mapping | None = declared(kind="units", check=checked_units)
+    survey: str | Path | None = described(FILE)
+    downward_dip: str | None = declared(kind="sense", check=_checked_sense)
+    intervals: str | Path | None = described(FILE)
+    layer: str | None = declared(kind="layer", check=checked_name)
 
     @property
     def only_for_tables(self) -> list[str]:
@@ -70,23 +93,4 @@ class Boreholes:
             what = "there are neither picks nor intervals"
             raise OptionRefused(what, "picks", "give the table of picks = ... or intervals = ...")
         check_column_names(self.columns, COLUMNS)
-        if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
-            what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
-            raise OptionRefused(what, "downward_dip")
-        check_name("layer", self.layer)
-        check_units(self.units)
-
-
-def check_column_names(columns: Any, known: Sequence[str]) -> None:
-    """Refuses columns that are no table of names or numbers by known meanings. Raises OptionRefused."""
-    if not isinstance(columns, Mapping):
-        what = f"'columns' must be a table of column names, not {columns!r}"
-        raise OptionRefused(what, "columns", f'write columns = {{ {known[0]} = "BHID" }}')
-    for name, column in columns.items():
-        if name not in known:
-            what = f"'columns' has an unknown column '{name}'"
-            raise OptionRefused(what, "columns", f"there are {', '.join(known)}")
-        is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
-        if not is_number and not (isinstance(column, str) and column.strip()):
-            what = f"column '{name}' must be a name or a number from 1, not {column!r}"
-            raise OptionRefused(what, "columns")
+        check_fields(self)

@@ -15,6 +15,7 @@ from ..base.algebra import ascending
 from ..base.errors import InputRefused, place_text
 from .directions import gradient_of, normal_of
 from .field_table import FieldTable
+from .setting import Setting
 
 NORMAL = ("normal_x", "normal_y", "normal_z")
 COLUMNS = (
@@ -40,6 +41,9 @@ class DipFile(FieldTable):
     """
 
     known = COLUMNS
+
+
+DIPS = Setting(kind="table_file", of=DipFile, example='"dips.csv"')
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from .boreholes import check_column_names
-from .point_file import check_units
+from .boreholes import SIGN, check_column_names
+from .method_options import check_fields
+from .point_file import FILE, checked_units
+from .setting import declared, described
 
 
 @dataclass(frozen=True)
@@ -22,13 +24,18 @@ class FieldTable:
 
     known: ClassVar[tuple[str, ...]] = ()
 
-    file: str | Path
-    columns: Mapping = field(default_factory=dict)
-    separator: str | None = None
-    decimal: str | None = None
-    units: str | Mapping | None = None
+    file: str | Path = described(FILE, is_needed=True)
+    columns: Mapping = declared(kind="named_columns", factory=dict)
+    separator: str | None = described(SIGN)
+    decimal: str | None = described(SIGN)
+    units: str | Mapping | None = declared(kind="units", check=checked_units)
+
+    @property
+    def files(self) -> list[Path]:
+        """The table."""
+        return [Path(self.file)]
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
         check_column_names(self.columns, self.known)
-        check_units(self.units)
+        check_fields(self)

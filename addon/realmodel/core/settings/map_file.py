@@ -5,12 +5,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from .map_layer import MapLayer
-from .method_options import OptionRefused
-from .point_file import MeshFile, PointFile
+from .map_layer import LAYER, UNIT, WHERE, MapLayer
+from .method_options import OptionRefused, check_fields
+from .point_file import FILE, MeshFile, PointFile
+from .setting import declared, described
+
+
+def _checked_attribute(key: str, name: Any) -> Any:
+    if not (isinstance(name, str) and name.strip()):
+        what = f"'{key}' must name an attribute, not {name!r}"
+        raise OptionRefused(what, key, f'write {key} = "FORMATION"')
+    return name
+
+
+def _checked_accuracy(key: str, accuracy: Any) -> Any:
+    if accuracy is not None and not 0 <= accuracy < math.inf:
+        advice = "give how far its lines may be off, or 0 where they are exact"
+        raise OptionRefused(f"'{key}' must be 0 or more, not {accuracy!r}", key, advice)
+    return accuracy
 
 
 @dataclass(frozen=True)
@@ -25,14 +41,14 @@ class MapFile:
     two-hundredth of the diagonal of the region, but contacts are off by a tenth of the relief at most.
     """
 
-    file: str | Path
-    block: str
-    layer: str | None = None
-    where: Mapping = field(default_factory=dict)
-    units: str | None = None
-    ground: str | Path | PointFile | MeshFile | None = None
-    faults: str | Path | MapLayer | None = None
-    accuracy: float | None = None
+    file: str | Path = described(FILE, is_needed=True)
+    block: str = declared(kind="line", check=_checked_attribute, is_needed=True)
+    layer: str | None = described(LAYER)
+    where: Mapping = described(WHERE, factory=dict)
+    units: str | None = described(UNIT)
+    ground: str | Path | PointFile | MeshFile | None = declared(kind="ground")
+    faults: str | Path | MapLayer | None = declared(kind="layer_file", of=MapLayer)
+    accuracy: float | None = declared(kind="finite", check=_checked_accuracy)
 
     @property
     def polygons(self) -> MapLayer:
@@ -41,12 +57,6 @@ class MapFile:
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if not (isinstance(self.block, str) and self.block.strip()):
-            advice = 'write block = "FORMATION"'
-            raise OptionRefused(f"'block' must name an attribute, not {self.block!r}", "block", advice)
-        if self.accuracy is not None and not 0 <= self.accuracy < math.inf:
-            advice = "give how far its lines may be off, or 0 where they are exact"
-            raise OptionRefused(f"'accuracy' must be 0 or more, not {self.accuracy!r}", "accuracy", advice)
-        self.polygons.check()
+        check_fields(self)
         if isinstance(self.ground, (PointFile, MeshFile)):
             self.ground.check()

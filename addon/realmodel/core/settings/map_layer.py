@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
-from ..base.units import METERS
-from .method_options import OptionRefused
-from .point_file import check_name, check_where
+from .method_options import check_fields
+from .point_file import FILE, checked_name, checked_unit, checked_where
+from .setting import Setting, described
 
 _WKT = re.compile(
     r"\s*(?:SRID\s*=\s*\d+\s*;\s*)?(?:MULTI)?(?:POLYGON|LINESTRING|POINT|GEOMETRYCOLLECTION)(?:ZM?|M)?\b",
@@ -28,6 +28,11 @@ def is_wkt(text: str) -> bool:
     return begins_as_wkt(text) and ("(" in text or text.rstrip().upper().endswith("EMPTY"))
 
 
+LAYER = Setting(kind="line", check=checked_name)
+WHERE = Setting(kind="where", check=checked_where)
+UNIT = Setting(kind="unit", check=checked_unit)
+
+
 @dataclass(frozen=True)
 class MapLayer:
     """GeoJSON, well-known text, a shapefile, or a layer of a GeoPackage.
@@ -36,14 +41,11 @@ class MapLayer:
     features that hold it count. units: of the file's coordinates; None: those of the model.
     """
 
-    file: str | Path
-    layer: str | None = None
-    where: Mapping = field(default_factory=dict)
-    units: str | None = None
+    file: str | Path = described(FILE, is_needed=True)
+    layer: str | None = described(LAYER)
+    where: Mapping = described(WHERE, factory=dict)
+    units: str | None = described(UNIT)
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        check_name("layer", self.layer)
-        check_where(self.where)
-        if self.units is not None and self.units not in METERS:
-            raise OptionRefused(f"unknown unit {self.units!r}", "units", f"there are {', '.join(METERS)}")
+        check_fields(self)

@@ -12,10 +12,20 @@ from numpy.typing import ArrayLike
 from ..base.errors import InputRefused, UsageError
 from ..base.finite import is_number
 from .meshers import MESHERS
+from .setting import Setting
 
 AUTO = "auto"  # an edge length by the density of points
 AT_WORDS = ("outline", "constraints")
-_SIZE_KEYS = ("at", "length", "distance")
+SIZE = {  # of an entry of `size`, beside where it is
+    "length": Setting(kind="length", label="Length", tip="Edge length there", start=1.0, low=1e-6),
+    "distance": Setting(
+        kind="length",
+        label="Influence Distance",
+        tip="Distance within which edges are this short; beyond, they grow by a quarter of it",
+        low=0.0,
+    ),
+}
+_SIZE_KEYS = ("at", *SIZE)
 _AT = "'outline', 'constraints', a place [x, y] or a line [[x, y], ...]"
 
 

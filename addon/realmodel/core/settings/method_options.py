@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import InputRefused, UsageError
-from .setting import Setting, Settings
+from .setting import Setting, Settings, declarations
 
 
 class OptionRefused(InputRefused):
@@ -56,7 +56,28 @@ def checked(option: str, setting: Setting, value: Any) -> Any:
         if not is_name(value):
             raise OptionRefused(f"'{option}' must be a name, not {value!r}", option=option)
         return value
-    return number(option, setting, value)
+    return number(option, setting, value) if setting.kind in ("number", "length") else value
+
+
+def without(fault: Callable[[Any], str | None]) -> Callable[[str, Any], Any]:
+    """The check of a value that `fault` finds nothing wrong with."""
+
+    def check(key: str, value: Any) -> Any:
+        if value is not None and (what := fault(value)):
+            raise OptionRefused(what, option=key)
+        return value
+
+    return check
+
+
+def check_fields(entry: Any) -> None:
+    """Refuses values of a dataclass that the declarations of its fields do not allow. Raises
+    OptionRefused."""
+    kind: type = type(entry)
+    for part in declarations(kind):
+        value = getattr(entry, part.name)
+        if part.setting.kind != "options":  # those are checked with their method
+            checked(part.key, part.setting, value)
 
 
 def number(option: str, setting: Setting, value: Any) -> float:

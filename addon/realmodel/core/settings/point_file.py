@@ -5,12 +5,151 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..base.units import METERS, factors
-from .method_options import OptionRefused
+from ..base.units import METERS, UNIT_NAMES, factors
+from .method_options import OptionRefused, check_fields
+from .setting import Setting, declared, described, settings_of
+
+
+def list_of(value: Any) -> list:
+    """A value, or a list of values, as a list."""
+    return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def _checked_columns(key: str, columns: Any) -> Any:
+    if columns is None:
+        return None
+    said = f"'{key}' must be the names or numbers of three columns"
+    advice = f'write {key} = ["X", "Y", "Z"]'
+    if not isinstance(columns, (list, tuple)) or len(columns) != 3:
+        raise OptionRefused(f"{said}, not {columns!r}", key, advice)
+    for column in columns:
+        if isinstance(column, str) and column.strip():
+            continue
+        if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
+            raise OptionRefused(f"{said}, not {column!r}", key, "column numbers start at 1")
+    return columns
+
+
+def checked_where(key: str, where: Any) -> Any:
+    """Refuses what is no table of columns and values. Raises OptionRefused."""
+    advice = f"write {key} = {{ val = 60 }}"
+    if not isinstance(where, Mapping):
+        raise OptionRefused(f"'{key}' must be a table of columns and values, not {where!r}", key, advice)
+    for column, values in where.items():
+        if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
+            what = f"'{key}' must give a number or text for '{column}', not {values!r}"
+            raise OptionRefused(what, key, advice)
+    return where
+
+
+def _checked_separator(key: str, sign: Any) -> Any:
+    if sign is not None and not (
+        isinstance(sign, str)
+        and len(sign) == 1
+        and sign.isascii()
+        and not sign.isalnum()
+        and sign not in '.+-"#\n\r'
+    ):
+        raise OptionRefused(f"'{key}' must be one character, not {sign!r}", key)
+    return sign
+
+
+def _checked_decimal(key: str, sign: Any) -> Any:
+    if sign not in (None, ".", ","):
+        raise OptionRefused(f'\'{key}\' must be "." or ",", not {sign!r}', key)
+    return sign
+
+
+def _checked_nodata(key: str, values: Any) -> Any:
+    if not all(_is_value(value) for value in list_of(values)):
+        raise OptionRefused(f"'{key}' must be a number or text, not {values!r}", key)
+    return values
+
+
+def checked_name(key: str, name: Any) -> Any:
+    """Raises OptionRefused for a name that is none; None is no name."""
+    if name is not None and not (isinstance(name, str) and name.strip()):
+        raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
+    return name
+
+
+def checked_units(key: str, units: Any) -> Any:
+    """Refuses unknown units. Raises OptionRefused."""
+    parts = dict(units) if isinstance(units, Mapping) else {"xy": units}
+    for part, unit in parts.items():
+        if part not in ("xy", "z"):
+            what = f"'{key}' has a part {part!r}"
+            raise OptionRefused(what, key, f'its parts are xy and z: {key} = {{ z = "ft" }}')
+        checked_unit(key, unit)
+    return units
+
+
+def checked_unit(key: str, unit: Any) -> Any:
+    """Refuses an unknown unit; None is that of the model. Raises OptionRefused."""
+    if unit is not None and unit not in METERS:
+        raise OptionRefused(f"unknown unit {unit!r}", key, f"there are {', '.join(METERS)}")
+    return unit
+
+
+def _checked_z_axis(key: str, axis: Any) -> Any:
+    if axis not in ("up", "down"):
+        raise OptionRefused(f'\'{key}\' must be "up" or "down", not {axis!r}', key)
+    return axis
+
+
+def _is_value(value: object) -> bool:
+    if isinstance(value, str):
+        return True
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return isinstance(value, int) or not math.isinf(value)
+
+
+_UNITS = {"": ("Model Unit", "The unit of the model")} | {unit: (unit, UNIT_NAMES[unit]) for unit in METERS}
+
+FILE = Setting(kind="file")  # the path of a file
+_FILE_UNITS = Setting(
+    kind="units",
+    label="Units",
+    check=checked_units,
+    parts={
+        "xy": Setting(
+            kind="word",
+            label="Unit of X, Y",
+            tip="Unit of the plan coordinates in the file",
+            words=_UNITS,
+            name="plan_unit",
+        ),
+        "z": Setting(
+            kind="word",
+            label="Unit of Z",
+            tip="Unit of the elevations in the file",
+            words=_UNITS,
+            name="height_unit",
+        ),
+    },
+)
+_Z_AXIS = Setting(
+    "up",
+    kind="word",
+    label="Z Axis",
+    tip="Direction in which z of the file increases",
+    words={
+        "up": ("Up", "Z is an elevation"),
+        "down": ("Down", "Z is a depth: it changes its sign"),
+    },
+    check=_checked_z_axis,
+)
+_LAYER = Setting(
+    kind="layer",
+    label="Layer",
+    tip="Layer of a GeoPackage, or object of an OMF or geoh5 file; needed where there are several",
+    check=checked_name,
+)
 
 
 @dataclass(frozen=True)
@@ -30,16 +169,59 @@ class PointFile:
     columns, separator and decimal are for tables only, height and layer for shapes and objects.
     """
 
-    file: str | Path
-    columns: Sequence[str | int] | None = None
-    where: Mapping = field(default_factory=dict)
-    separator: str | None = None
-    decimal: str | None = None
-    nodata: Sequence | float | str = ()
-    units: str | Mapping | None = None
-    height: str | None = None
-    layer: str | None = None
-    z_axis: str = "up"
+    file: str | Path = described(FILE, is_needed=True)
+    columns: Sequence[str | int] | None = declared(
+        kind="columns",
+        label="Columns",
+        parts={
+            axis: Setting(
+                kind="column",
+                label=f"{axis.upper()} Column",
+                tip=f"Column of {axis}, by name or by number from 1; all three empty: detected from "
+                "their names, else the first three",
+                name=f"column_{axis}",
+            )
+            for axis in "xyz"
+        },
+        check=_checked_columns,
+    )
+    where: Mapping = declared(
+        kind="where", label="Filters", name="filters", check=checked_where, factory=dict
+    )
+    separator: str | None = declared(
+        kind="separator",
+        label="Separator",
+        tip="Character between the columns, or tab, or blank; empty: detected from the file",
+        check=_checked_separator,
+    )
+    decimal: str | None = declared(
+        kind="word",
+        label="Decimal Separator",
+        tip="Decimal separator of the numbers in the file",
+        words={
+            "": ("Automatic", "Detected from the file, except for commas that could separate thousands"),
+            ".": ("Point", "1234.5"),
+            ",": ("Comma", "1234,5"),
+        },
+        check=_checked_decimal,
+    )
+    nodata: Sequence | float | str = declared(
+        (),
+        kind="values",
+        label="NoData Value",
+        tip="Value that marks missing data, such as -9999, or several with commas; such points are skipped",
+        check=_checked_nodata,
+    )
+    units: str | Mapping | None = described(_FILE_UNITS)
+    height: str | None = declared(
+        kind="attribute",
+        label="Elevation Field",
+        tip="Attribute with the elevation of each feature, as of a contour line; empty: z of its coordinates",
+        name="height_attribute",
+        check=checked_name,
+    )
+    layer: str | None = described(_LAYER)
+    z_axis: str = described(_Z_AXIS)
 
     @property
     def nodata_values(self) -> list:
@@ -68,27 +250,9 @@ class PointFile:
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if self.columns is not None:
-            check_columns(self.columns)
-        check_where(self.where)
-        if self.separator is not None and not (
-            isinstance(self.separator, str)
-            and len(self.separator) == 1
-            and self.separator.isascii()
-            and not self.separator.isalnum()
-            and self.separator not in '.+-"#\n\r'
-        ):
-            raise OptionRefused(f"'separator' must be one character, not {self.separator!r}", "separator")
-        if self.decimal not in (None, ".", ","):
-            raise OptionRefused(f'\'decimal\' must be "." or ",", not {self.decimal!r}', "decimal")
+        check_fields(self)
         if self.decimal == "," == self.separator:
             raise OptionRefused("a comma cannot be both 'separator' and 'decimal'", "decimal")
-        if not all(_is_value(value) for value in self.nodata_values):
-            raise OptionRefused(f"'nodata' must be a number or text, not {self.nodata!r}", "nodata")
-        for key in ("height", "layer"):
-            check_name(key, getattr(self, key))
-        check_units(self.units)
-        check_z_axis(self.z_axis)
 
 
 @dataclass(frozen=True)
@@ -96,16 +260,14 @@ class MeshFile:
     """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the model.
     layer: the name of the surface in a file of several objects (OMF, geoh5)."""
 
-    file: str | Path
-    units: str | Mapping | None = None
-    z_axis: str = "up"
-    layer: str | None = None
+    file: str | Path = described(FILE, is_needed=True)
+    units: str | Mapping | None = described(_FILE_UNITS)
+    z_axis: str = described(_Z_AXIS)
+    layer: str | None = described(_LAYER)
 
     def check(self) -> None:
         """Raises OptionRefused for a unit, an axis or a name that makes no sense."""
-        check_name("layer", self.layer)
-        check_units(self.units)
-        check_z_axis(self.z_axis)
+        check_fields(self)
 
     def scale(self, model_unit: str) -> tuple[float, float]:
         """The factors of plan coordinates and heights."""
@@ -113,57 +275,5 @@ class MeshFile:
         return plan, -height if self.z_axis == "down" else height
 
 
-def list_of(value: Any) -> list:
-    """A value, or a list of values, as a list."""
-    return list(value) if isinstance(value, (list, tuple)) else [value]
-
-
-def check_columns(columns: Any) -> None:
-    said = "'columns' must be the names or numbers of three columns"
-    advice = 'write columns = ["X", "Y", "Z"]'
-    if not isinstance(columns, (list, tuple)) or len(columns) != 3:
-        raise OptionRefused(f"{said}, not {columns!r}", "columns", advice)
-    for column in columns:
-        if isinstance(column, str) and column.strip():
-            continue
-        if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
-            raise OptionRefused(f"{said}, not {column!r}", "columns", "column numbers start at 1")
-
-
-def check_where(where: Any) -> None:
-    advice = "write where = { val = 60 }"
-    if not isinstance(where, Mapping):
-        raise OptionRefused(f"'where' must be a table of columns and values, not {where!r}", "where", advice)
-    for column, values in where.items():
-        if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
-            what = f"'where' must give a number or text for '{column}', not {values!r}"
-            raise OptionRefused(what, "where", advice)
-
-
-def check_name(key: str, name: object) -> None:
-    """Raises OptionRefused for a name that is none; None is no name."""
-    if name is not None and not (isinstance(name, str) and name.strip()):
-        raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
-
-
-def check_units(units: object) -> None:
-    parts = dict(units) if isinstance(units, Mapping) else {"xy": units}
-    for part, unit in parts.items():
-        if part not in ("xy", "z"):
-            what = f"'units' has a part {part!r}"
-            raise OptionRefused(what, "units", 'its parts are xy and z: units = { z = "ft" }')
-        if unit is not None and unit not in METERS:
-            raise OptionRefused(f"unknown unit {unit!r}", "units", f"there are {', '.join(METERS)}")
-
-
-def check_z_axis(axis: object) -> None:
-    if axis not in ("up", "down"):
-        raise OptionRefused(f'\'z_axis\' must be "up" or "down", not {axis!r}', "z_axis")
-
-
-def _is_value(value: object) -> bool:
-    if isinstance(value, str):
-        return True
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
-    return isinstance(value, int) or not math.isinf(value)
+READING = {key: setting for key, setting in settings_of(PointFile).items() if key != "file"}
+MESH_READING = {key: READING[key] for key in settings_of(MeshFile) if key != "file"}

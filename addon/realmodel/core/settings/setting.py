@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Declarations of settings. From one declaration follow the key of the project file and its check, the
-property and the row of the panel, and the row of the table in docs/reference/project_file.md."""
+"""Declarations of settings, each in the field of a dataclass that it describes. From one declaration follow
+the key of the project file, how it is read, checked and written, the property and the row of the panel, and
+the row of the table in docs/reference/project_file.md."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field, fields
+from functools import cache
+from typing import Any, NamedTuple
 
 Words = Mapping[str, tuple[str, str]]  # label and tooltip in the panel, by word
 
@@ -15,10 +18,15 @@ class Setting:
     """default: its value where it is not given. kind: "number", "length", "whole", "truth" (true or false),
     "word" (one of `words`), "text", "surface" (the name of another one, or an elevation), "any_surface" (of
     any rock mass), "rock_mass", "series" (of the same rock mass), "column" (of a file), "layer", "direction"
-    (degrees, or a point of the compass), "table" (of `parts`), "columns" (of the x, y and z of a file), and
-    "other", with code of its own wherever it is used. above, below: bounds that it does not reach; else it is
-    at least low and at most high. check(name, value) instead of these returns the value as it is used, or
-    raises OptionRefused.
+    (degrees, or a point of the compass), "table" (of `parts`), "columns" (of the x, y and z of a file); and
+    those of READ in project/project_file.py, for what only a file says. above, below: bounds that it does not
+    reach; else it is at least low and at most high. check(name, value) instead of these returns the value as
+    it is used, or raises OptionRefused.
+
+    key: of the project file, where it is not the name of the field. of: the dataclass of the tables of this
+    key, or of the file that it names. example: what a message shows of such a key. shapes: of a surface
+    ("sheet", "level set", "mesh") or a fault ("trace", "points", "mesh"), or kinds of a series, on which it
+    has an effect; none: on all.
 
     For the panel: label and tip; start, low and high: the value before it is given, and its bounds. switch:
     label and tip of a tick, off where the setting is not given; beside: the setting whose tick this one
@@ -46,12 +54,86 @@ class Setting:
     name: str = ""
     switch_name: str = ""
     fold: str = ""
+    key: str = ""
+    of: Any = None
+    example: str = ""
+    shapes: tuple[str, ...] = ()
     needed: str = ""
     unset: str = "none"
     more: str = ""
 
+    def fits(self, shape: str) -> bool:
+        """Whether it has an effect on such a shape."""
+        return not self.shapes or shape in self.shapes
+
 
 Settings = Mapping[str, Setting]
+
+FILE_KINDS = ("points", "mesh", "trace")  # the keys that say how such a file is read are beside its own
+_DECLARED = "setting"  # in the metadata of a field
+UNSAID = object()
+
+
+def described(setting: Setting, is_needed: bool = False, absent: Any = UNSAID, factory: Any = MISSING) -> Any:
+    """A field of a dataclass that a setting describes. is_needed: it has no default; else it has that of the
+    setting, or `absent`, or what `factory` makes."""
+    default = setting.default if absent is UNSAID else absent
+    if is_needed or factory is not MISSING:
+        default = MISSING
+    return field(default=default, default_factory=factory, metadata={_DECLARED: setting})
+
+
+def declared(
+    default: Any = None,
+    kind: str = "number",
+    *,
+    is_needed: bool = False,
+    absent: Any = UNSAID,
+    factory: Any = MISSING,
+    **words: Any,
+) -> Any:
+    """A field of a dataclass with the Setting that describes it alone; see `described`."""
+    return described(Setting(default, kind, **words), is_needed, absent, factory)
+
+
+class Declaration(NamedTuple):
+    """A field of a dataclass that a setting describes: its name, the key in a project file, and the value
+    where it is not given, unless it `is_needed`."""
+
+    name: str
+    key: str
+    setting: Setting
+    is_needed: bool
+    default: Any
+
+
+@cache
+def declarations(entry: type) -> tuple[Declaration, ...]:
+    """The fields of a dataclass that settings describe; tables of others come last, as in a file."""
+    known = []
+    for part in fields(entry):
+        setting = part.metadata.get(_DECLARED)
+        if setting is not None:
+            default = part.default if part.default_factory is MISSING else part.default_factory()
+            key, is_needed = setting.key or part.name, default is MISSING
+            known.append(Declaration(part.name, key, setting, is_needed, default))
+    return tuple(sorted(known, key=lambda part: part.setting.kind == "tables"))
+
+
+@cache
+def settings_of(entry: type) -> Settings:
+    """The settings of a dataclass by their keys in a project file."""
+    known: dict[str, Setting] = {}
+    for _, key, setting, *_ in declarations(entry):
+        if setting.kind == "options":
+            known |= setting.parts
+            continue
+        known[key] = setting
+        if setting.kind in FILE_KINDS:
+            for beside, part in settings_of(setting.of).items():
+                if beside != "file":
+                    known.setdefault(beside, part)
+    return known
 
 
 def property_name(key: str, setting: Setting) -> str:

@@ -14,8 +14,8 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused
 from ..base.toml_table import TomlDocument
 from ..cells.blocks import Block
-from ..project.library import load_library
 from ..project.project import Project, Rock, Surface
+from ..project.project_file import load_library
 from ..project.project_writer import library_text, toml_value
 from ..project.series import Series
 from ..project.structure_entries import Body, Fault
