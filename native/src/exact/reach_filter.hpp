@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -35,17 +36,18 @@ inline ReachFilter reach_filter(const LocalArrangement& scope, const DirectedEdg
 }
 
 /// The position of a point for `side_of`, which is no number beyond the reach of the vertices.
-inline Point position_in_reach(const LocalArrangement& scope, PointId id) {
+inline std::array<double, 2> position_in_reach(const LocalArrangement& scope, PointId id) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const Point& p = scope.point(id);
-    return scope.shared().reach().has(p.x, p.y) ? p : Point{kNone, kNone};
+    return scope.shared().reach().has(p.x, p.y) ? std::array{p.x, p.y} : std::array{kNone, kNone};
 }
 
 /// The same as LocalArrangement::side, with the line's filter and the point's position_in_reach.
 /// This is the question asked most of all, so it is inlined.
 [[gnu::always_inline]] inline int side_of(LocalArrangement& scope, const ReachFilter& f,
-                                          DirectedLine line, PointId id, const Point& p) {
-    const double value = f.a * (p.x - f.x0) + f.b * (p.y - f.y0) + f.c;
+                                          DirectedLine line, PointId id,
+                                          const std::array<double, 2>& p) {
+    const double value = f.a * (p[0] - f.x0) + f.b * (p[1] - f.y0) + f.c;
     if (!(std::abs(value) > f.bound)) return scope.side(line, id);
     scope.count_decisions(1);
     return value > 0 ? 1 : -1;

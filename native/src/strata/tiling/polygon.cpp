@@ -26,7 +26,8 @@ void Clipper::begin(PolygonView subject) {
     find_positions(subject, subject_positions_);
 }
 
-void Clipper::find_positions(PolygonView polygon, std::vector<exact::Point>& positions) const {
+void Clipper::find_positions(PolygonView polygon,
+                             std::vector<std::array<double, 2>>& positions) const {
     positions.clear();
     for (const Corner& corner : polygon)
         positions.push_back(exact::position_in_reach(scope_, corner.point));
@@ -35,7 +36,8 @@ void Clipper::find_positions(PolygonView polygon, std::vector<exact::Point>& pos
 /// Whether some corner of a polygon lies to the left of each edge of another one; two polygons
 /// share an area where that is so both ways.
 template <class FilterOf>
-bool Clipper::reaches_inside(PolygonView polygon, const std::vector<exact::Point>& positions,
+bool Clipper::reaches_inside(PolygonView polygon,
+                             const std::vector<std::array<double, 2>>& positions,
                              PolygonView window, const FilterOf& filter_of_edge,
                              SidesOfCorners& sides) {
     sides.clear();

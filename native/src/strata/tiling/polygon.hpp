@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -92,9 +93,9 @@ private:
     exact::ReachFilter filter_of(PolygonView polygon, std::size_t edge) const {
         return exact::reach_filter(scope_, edge_of(polygon, edge));
     }
-    void find_positions(PolygonView polygon, std::vector<exact::Point>& positions) const;
+    void find_positions(PolygonView polygon, std::vector<std::array<double, 2>>& positions) const;
     template <class FilterOf>
-    bool reaches_inside(PolygonView polygon, const std::vector<exact::Point>& positions,
+    bool reaches_inside(PolygonView polygon, const std::vector<std::array<double, 2>>& positions,
                         PolygonView window, const FilterOf& filter_of_edge, SidesOfCorners& sides);
     void follow(PolygonView window);
     void cut_by_lines(PolygonView window);
@@ -103,7 +104,7 @@ private:
     LocalArrangement& scope_;
     PolygonView subject_;
     std::vector<exact::ReachFilter> filters_;  ///< of its edges
-    std::vector<exact::Point> subject_positions_, window_positions_;
+    std::vector<std::array<double, 2>> subject_positions_, window_positions_;
     SidesOfCorners subject_sides_,
         window_sides_;      ///< of the corners, for each line of the other polygon
     SidesOfCorners sides_;  ///< of what is left
