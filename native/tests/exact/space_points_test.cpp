@@ -36,8 +36,8 @@ std::vector<SpacePointId> some_points(SpacePoints& points, std::mt19937_64& rand
 int sign_of_determinant(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePointId c,
                         SpacePointId d) {
     const RationalPoint o = points.exact(a);
-    return sgn(determinant(minus(points.exact(b), o), minus(points.exact(c), o),
-                           minus(points.exact(d), o)));
+    return sgn(dot(minus(points.exact(b), o),
+                   cross(minus(points.exact(c), o), minus(points.exact(d), o))));
 }
 
 TEST(SpacePoints, SignsAreThoseOfRationalPoint) {

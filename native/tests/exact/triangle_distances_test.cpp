@@ -15,12 +15,8 @@ namespace {
 using Triangle = std::array<SpacePosition, 3>;
 
 RationalPoint seen(const SpacePosition& q, const SpacePosition& p) {
-    return minus({mpq_class(q[0]), mpq_class(q[1]), mpq_class(q[2])},
-                 {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])});
-}
-
-mpq_class product(const RationalPoint& u, const RationalPoint& v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    return minus(RationalPoint{mpq_class(q[0]), mpq_class(q[1]), mpq_class(q[2])},
+                 RationalPoint{mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])});
 }
 
 RationalPoint normal_of(const RationalPoint& u, const RationalPoint& v) {
@@ -30,23 +26,23 @@ RationalPoint normal_of(const RationalPoint& u, const RationalPoint& v) {
 /// The squared distance of a segment from the origin.
 mpq_class square_to(const RationalPoint& a, const RationalPoint& b) {
     const RationalPoint along = minus(b, a);
-    const mpq_class share = -product(a, along) / product(along, along);
+    const mpq_class share = -dot(a, along) / dot(along, along);
     const RationalPoint at = interpolated(a, b,
                                           share < 0   ? mpq_class(0)
                                           : share > 1 ? mpq_class(1)
                                                       : share);
-    return product(at, at);
+    return dot(at, at);
 }
 
 /// The same of a triangle: of its plane where the foot is within, else of an edge.
 mpq_class square_to(const RationalPoint& a, const RationalPoint& b, const RationalPoint& c) {
     const RationalPoint normal = normal_of(minus(b, a), minus(c, a));
     const auto left_of = [&normal](const RationalPoint& from, const RationalPoint& to) {
-        return sgn(product(normal, normal_of(from, to)));
+        return sgn(dot(normal, normal_of(from, to)));
     };
     if (left_of(a, b) >= 0 && left_of(b, c) >= 0 && left_of(c, a) >= 0) {
-        const mpq_class height = product(normal, a);
-        return height * height / product(normal, normal);
+        const mpq_class height = dot(normal, a);
+        return height * height / dot(normal, normal);
     }
     return std::min({square_to(a, b), square_to(b, c), square_to(c, a)});
 }
@@ -81,8 +77,7 @@ void expect_nearest(const SpacePosition& p, const std::vector<MarkedTriangle>& t
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const auto& [a, b, c] = triangles[i].corners;
         const RationalPoint o = seen(a, p), normal = normal_of(seen(b, a), seen(c, a));
-        const mpq_class height = product(normal, o),
-                        square = height * height / product(normal, normal);
+        const mpq_class height = dot(normal, o), square = height * height / dot(normal, normal);
         if (square > most) farthest = i;
         most = std::max(most, square);
     }
@@ -152,8 +147,9 @@ mpq_class crossing(const SpacePosition& from, const SpacePosition& to, const Tri
     };
     const RationalPoint a = rational(triangle[0]), u = minus(rational(triangle[1]), a),
                         v = minus(rational(triangle[2]), a);
-    const mpq_class first = determinant(u, v, minus(rational(from), a)),
-                    second = determinant(u, v, minus(rational(to), a));
+    const RationalPoint normal = cross(u, v);
+    const mpq_class first = dot(normal, minus(rational(from), a)),
+                    second = dot(normal, minus(rational(to), a));
     return first / (first - second);
 }
 

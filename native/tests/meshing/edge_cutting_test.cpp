@@ -11,7 +11,7 @@ namespace {
 const Check kNever = [](double) {};
 
 EdgeCutting triangle_with(std::vector<PlanPoint> corners, const std::vector<PlanPoint>& more) {
-    const std::vector<Segment> edges{{0, 1}, {1, 2}, {2, 0}};
+    const std::vector<VertexSegment> edges{{0, 1}, {1, 2}, {2, 0}};
     const ConstrainedTriangulation mesh = constrained_delaunay(corners, edges);
     corners.insert(corners.end(), more.begin(), more.end());
     return {mesh, {true}, corners};

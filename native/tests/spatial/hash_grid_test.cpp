@@ -14,7 +14,7 @@ TEST(HashGrid, AsksOfAllWithinReachOnce) {
                                              12);  // many at equal places and on sides of cells
     for (const double side : {0.5, 2.0, 100.0}) {
         HashGrid<3> grid(side);
-        std::vector<HashGrid<3>::Position> points;
+        std::vector<HashGrid<3>::GridPosition> points;
         for (int i = 0; i < 300; ++i) {
             points.push_back({0.5 * place(random), 0.5 * place(random), 0.5 * place(random)});
             grid.add(points.back());

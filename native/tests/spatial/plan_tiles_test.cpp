@@ -93,11 +93,11 @@ TEST(HilbertOrder, GoesFromCellToNeighboringCell) {
               (std::vector<std::uint32_t>{0, 1}));
 }
 
-std::vector<std::size_t> within(const PointBins& bins, const PointBins::Position& low,
-                                const PointBins::Position& high) {
+std::vector<std::size_t> within(const PointBins& bins, const PlanPosition& low,
+                                const PlanPosition& high) {
     std::vector<std::size_t> found;
     bins.within({low[0], low[1], high[0], high[1]},
-                [&](std::size_t i, const PointBins::Position&) { found.push_back(i); });
+                [&](std::size_t i, const PlanPosition&) { found.push_back(i); });
     std::sort(found.begin(), found.end());
     return found;
 }
@@ -121,12 +121,12 @@ TEST(PointBins, PointsMayLieOnALineOrAtOnePosition) {
 TEST(PointBins, FindsWhatASearchOfAllFinds) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> at(0, 10);
-    std::vector<PointBins::Position> points(500);
+    std::vector<PlanPosition> points(500);
     for (auto& p : points)
         p = {at(random), 4.5e6 + at(random)};
     const PointBins bins(points);
     for (int box = 0; box < 100; ++box) {
-        PointBins::Position low{at(random), 4.5e6 + at(random)}, high = low;
+        PlanPosition low{at(random), 4.5e6 + at(random)}, high = low;
         high[0] += at(random) / 4;
         high[1] += at(random) / 4;
         std::vector<std::size_t> expected;
