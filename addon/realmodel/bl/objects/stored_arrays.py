@@ -112,6 +112,8 @@ def _array(kind, shape, values):
 def _refusing():
     try:
         yield
+    except InputRefused:
+        raise
     except _BROKEN as error:
         raise InputRefused(
             f"what the .blend keeps of it cannot be read: {error}",
