@@ -16,7 +16,7 @@ class _Model:
 
     def __init__(self, size):
         self.complex = SimpleNamespace(vertices=np.zeros(size, np.uint8))
-        self.surfaces = SimpleNamespace()
+        self.surface_arrays = SimpleNamespace()
 
 
 class KeptModels(unittest.TestCase):
