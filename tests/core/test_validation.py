@@ -52,12 +52,12 @@ def damaged(model, **given):
     of_cells = {name: given.pop(name) for name in ARRAYS if name in given}
     names = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
     of_surfaces = {
-        f"surface_{name}": given.pop(f"surface_{name}", getattr(model.surfaces, name)) for name in names
+        f"surface_{name}": given.pop(f"surface_{name}", getattr(model.surface_arrays, name)) for name in names
     }
     return dataclasses.replace(
         model,
         complex=dataclasses.replace(model.complex, **of_cells),
-        surfaces=SurfaceArrays.of_arrays(of_surfaces),
+        surface_arrays=SurfaceArrays.of_arrays(of_surfaces),
         **given,
     )
 
