@@ -15,10 +15,10 @@ CORE = Path(__file__).resolve().parents[2] / "addon" / "realmodel" / "core"
 # Pictures, cells' volumes in files of other programs, and the proof of a model, which are not part of one.
 OTHER = {
     "drawing",
-    "ensembles/places.py",
     "exporters",
     "plots.py",
     "proof/random_points.py",
+    "results/samples.py",
     "results/sections/section_drawing.py",
     "simulation",
 }

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Products, lengths and axes of vectors for what reaches a model: the same bytes on every system.
+"""Products, lengths and axes of vectors for what reaches a model: the same bytes on every system; and whether
+numbers are finite.
 
 `@`, `np.dot`, `np.linalg.svd` and `np.linalg.norm` without an axis are of a library that takes other
 instructions on other processors, and differ in the last digit.
 """
 
 from __future__ import annotations
+
+import math
+from typing import SupportsFloat
 
 import numpy as np
 
@@ -97,3 +101,20 @@ def _turn(columns: list[np.ndarray], axes: list[np.ndarray], p: int, q: int) -> 
     for rows in (columns, axes):
         rows[p], rows[q] = cosine * (rows[p] - tangent * rows[q]), cosine * (rows[q] + tangent * rows[p])
     return True
+
+
+def is_finite(value: SupportsFloat) -> bool:
+    """Whether a number is neither infinite nor NaN, nor a whole number beyond the range of doubles."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a finite number (a truth value is none)."""
+    return (
+        isinstance(value, (int, float, np.integer, np.floating))
+        and not isinstance(value, bool)
+        and is_finite(value)
+    )

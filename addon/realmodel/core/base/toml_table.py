@@ -12,8 +12,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, overload
 
+from .algebra import is_finite
 from .errors import InputRefused
-from .finite import is_finite
 from .toml_lines import key_lines
 
 

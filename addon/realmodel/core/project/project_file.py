@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ..base.algebra import is_number
 from ..base.errors import InputRefused
-from ..base.finite import is_number
 from ..base.toml_table import Source, Table, TomlDocument
 from ..readers import is_mesh_file
 from ..settings.map_layer import MapLayer, is_wkt

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.algebra import is_number
 from ..base.errors import InputRefused, UsageError
-from ..base.finite import is_number
 from .meshers import MESHERS
 from .setting import Setting
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..base.finite import is_number
+from ..base.algebra import is_number
 
 AUTO = "auto"  # by the data
 FIELD, SHEETS = "field", "sheets"

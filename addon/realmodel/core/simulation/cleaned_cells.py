@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..base.algebra import is_number
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
-from ..base.finite import is_number
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.model_data import ModelData
 from ..settings.method_options import check_threads

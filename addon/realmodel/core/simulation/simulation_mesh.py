@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..base.algebra import is_number
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError, place_text
-from ..base.finite import is_number
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.model_data import ModelData
 from ..settings.mesh_sizes import check_mesher, local_lengths

@@ -11,8 +11,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from ...base.algebra import is_number
 from ...base.errors import InputRefused
-from ...base.finite import is_number
 from ...base.text import BOM, Step, no_step
 from ...settings.map_layer import MapLayer
 from .shapes import Heights, Selection, Shapes
