@@ -21,13 +21,15 @@ def number_of(key: int | str, names: Sequence[str], noun: str) -> int:
 
     Raises UsageError for an unknown one, and for a name of several.
     """
-    named = isinstance(key, str)
-    matches = [number for number, name in enumerate(names) if key == (name if named else number)]
-    if len(matches) == 1 and not isinstance(key, bool):
+    if isinstance(key, str):
+        matches = [number for number, name in enumerate(names) if name == key]
+    else:
+        matches = [int(key)] if key in range(len(names)) and not isinstance(key, bool) else []
+    if len(matches) == 1:
         return matches[0]
-    if matches and named:
+    if matches:
         raise UsageError(f"there are {len(matches)} {noun}s named '{key}': give its number")
-    missing = f"no {noun} named '{key}'" if named else f"no {noun} {key!r}"
+    missing = f"no {noun} named '{key}'" if isinstance(key, str) else f"no {noun} {key!r}"
     raise UsageError(f"there is {missing}; {noun}s are {', '.join(names)}, numbered from 0")
 
 

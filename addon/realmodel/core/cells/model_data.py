@@ -249,7 +249,7 @@ class ModelData:
         to the nearest point that it was interpolated from. NaN where there is no such thing, as for all
         vertices of a ready mesh."""
         number = number_of(key, self.surface_names, "surface")
-        return vertex_attributes(self.rock_inputs, number, self.surfaces[number].vertices)
+        return vertex_attributes(self.rock_inputs, number, self.surface(number).vertices)
 
     @property
     def surfaces(self) -> NamedList[Triangulation]:
@@ -264,7 +264,7 @@ class ModelData:
 
     def surface(self, key: int | str) -> Triangulation:
         """One of `surfaces`. key: its name or global index. Raises UsageError."""
-        return self.surfaces[number_of(key, self.surface_names, "surface")]
+        return self.surface_arrays.shapes[number_of(key, self.surface_names, "surface")].arrays
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
@@ -281,7 +281,7 @@ class ModelData:
         number = number_of(key, self.surface_names, "surface")
         if self.surface_kind.any():
             self.require_project("a sheet of a surface")
-        triangles, sheets = self.surfaces[number].triangles, [0]
+        triangles, sheets = self.surface(number).triangles, [0]
         if not self.surface_kind[number]:
             sheets = sheet_sizes(self.rock_inputs, number)
         return [own for own in np.split(triangles, np.cumsum(sheets[:-1])) if len(own)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one table of formats that files are read in. A format is told by the beginning of a file, whatever its
-name; menus, file filters and messages about endings follow from the table."""
+"""The table of all formats that files are read in. The first bytes of a file decide its format, its ending
+only where they say nothing. Menus, file filters and messages about endings follow from the table."""
 
 from __future__ import annotations
 

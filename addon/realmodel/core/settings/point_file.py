@@ -35,7 +35,7 @@ def _checked_columns(key: str, columns: Any) -> Any:
 
 
 def checked_where(key: str, where: Any) -> Any:
-    """Refuses what is no table of columns and values. Raises OptionRefused."""
+    """Refuses a filter that is not a table of columns and values. Raises OptionRefused."""
     advice = f"write {key} = {{ val = 60 }}"
     if not isinstance(where, Mapping):
         raise OptionRefused(f"'{key}' must be a table of columns and values, not {where!r}", key, advice)

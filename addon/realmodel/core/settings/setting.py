@@ -71,13 +71,14 @@ Settings = Mapping[str, Setting]
 
 FILE_KINDS = ("points", "mesh", "trace")  # the keys that say how such a file is read are beside its own
 _DECLARED = "setting"  # in the metadata of a field
-UNSAID = object()
 
 
-def described(setting: Setting, is_needed: bool = False, absent: Any = UNSAID, factory: Any = MISSING) -> Any:
+def described(
+    setting: Setting, is_needed: bool = False, absent: Any = MISSING, factory: Any = MISSING
+) -> Any:
     """A field of a dataclass that a setting describes. is_needed: it has no default; else it has that of the
     setting, or `absent`, or what `factory` makes."""
-    default = setting.default if absent is UNSAID else absent
+    default = setting.default if absent is MISSING else absent
     if is_needed or factory is not MISSING:
         default = MISSING
     return field(default=default, default_factory=factory, metadata={_DECLARED: setting})
@@ -88,7 +89,7 @@ def declared(
     kind: str = "number",
     *,
     is_needed: bool = False,
-    absent: Any = UNSAID,
+    absent: Any = MISSING,
     factory: Any = MISSING,
     **words: Any,
 ) -> Any:
