@@ -176,6 +176,7 @@ def test_read_or_refused(folder, name):
             assert len(str(error).splitlines()) == 1
             assert len(str(error)) < 1000
             assert error.file is not None
+            assert str(error).count(path.name) == 1  # no refusal stands within another
         else:
             outcomes["read"] += 1
             if read is read_points:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
 from ...base.text import FileBytes, Step, line_of_word, no_step, pieces_of, with_newlines
 from .damaged_mesh import UNREADABLE, DamagedError, unreadable
@@ -70,6 +71,8 @@ def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
             place = {"line": line_of_word(raw, error.at // 8, begins)}
         damage = DamagedError("it is cut off, or a count is wrong", **place)
         raise unreadable(file, "PLY", damage) from error
+    except InputRefused:
+        raise
     except UNREADABLE as error:
         raise unreadable(file, "PLY", error) from error
     return mesh.mesh()

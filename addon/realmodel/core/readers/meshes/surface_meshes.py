@@ -89,6 +89,8 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
             elif words[0] == "TRGL":
                 faces.append(tuple([index[int(word)] for word in words[1:4]]))
                 lines.append(number)
+        except InputRefused:
+            raise
         except UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error
     mesh = mesh_of_faces(file, vertices, faces, lines)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tokenize
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -27,12 +28,14 @@ def begins_as_array(head: bytes, _size: int = 0) -> bool:
 def read_point_array(file: Path, gather: JoinPieces) -> np.ndarray:
     """(P, 3) float64 of an array of NumPy, rows without a height left out. Raises InputRefused."""
     try:
-        array = np.load(file, mmap_mode="r", allow_pickle=False)
-        if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iuf":
-            what = f"an array of shape {array.shape} of {array.dtype} is not one of points (x, y, z in a row)"
-            raise InputRefused(what, file=file)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of headers that Python 2 wrote; they are read right
+            array = np.load(file, mmap_mode="r", allow_pickle=False)
     except _DAMAGED_ARRAY as error:
         raise InputRefused(f"a damaged array: {error}", file=file) from error
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iuf":
+        what = f"an array of shape {array.shape} of {array.dtype} is not one of points (x, y, z in a row)"
+        raise InputRefused(what, file=file)
 
     def known() -> Iterator[np.ndarray]:
         for piece in in_pieces(array):
