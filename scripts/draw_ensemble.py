@@ -18,7 +18,7 @@ import numpy as np
 from realmodel.core import build, load_project
 from realmodel.core.drawing import save_drawing
 from realmodel.core.drawing.drawing import Drawing, Text
-from realmodel.core.ensembles import Probabilities, Realizer, blocks_at, draw_probabilities, section_samples
+from realmodel.core.ensembles import Probabilities, Realizer, draw_probabilities, section_samples
 from realmodel.core.results.sections.section_drawing import block_outlines, flattened
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -70,7 +70,7 @@ def draw(picture, path):
     blocks, sections = [], []
     for number in range(picture.realizations):
         realization = realizer.realization(number)
-        blocks.append(blocks_at(realization, samples.places))
+        blocks.append(realization.blocks_at(samples.places))
         sections.append(realization.section(*picture.plane))
     names = [block.name for block in model.blocks]
     shares = [(np.array(blocks) == number).mean(axis=0) for number in range(len(names))]

@@ -111,9 +111,8 @@ def test_boreholes(tmp_path):
 
 
 def whole_blocks(model, places):
-    from realmodel.core.ensembles import blocks_at
 
-    return blocks_at(model, places).tolist()
+    return model.blocks_at(places).tolist()
 
 
 usual = settings(

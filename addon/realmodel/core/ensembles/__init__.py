@@ -8,7 +8,6 @@ heights, probabilities of blocks at samples, and their files.
 from ..exporters.samples import draw_probabilities
 from ..results.samples import Probabilities
 from .ensemble import PERCENTILES, Ensemble, ensemble
-from .places import blocks_at
 from .realization import Realizer
 from .samples import borehole_samples, grid_samples, hole_samples, sample_writer, section_samples
 
@@ -17,7 +16,6 @@ __all__ = [
     "Ensemble",
     "Probabilities",
     "Realizer",
-    "blocks_at",
     "borehole_samples",
     "draw_probabilities",
     "ensemble",

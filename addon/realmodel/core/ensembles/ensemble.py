@@ -20,7 +20,6 @@ from ..project.project import Project
 from ..results.samples import Probabilities
 from ..results.volume_uncertainty import missing_deviations, without_deviation
 from .along_holes import hole_of_realizations
-from .places import blocks_at
 from .realization import Realizer
 from .surface_heights import differences, heights
 
@@ -63,7 +62,7 @@ def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 
     """The sums of one realization. places: (N, 3)."""
     model = realizer.realization(number, threads=threads)
     found = differences(realizer.model, model, threads)
-    blocks = blocks_at(model, places, threads)
+    blocks = model.blocks_at(places, threads=threads)
     return Sums(
         np.array([[block.volume for block in model.blocks]]),
         found,

@@ -11,11 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..base.errors import UsageError
+from ..base.named import keyword_only
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, run
 from ..cells.model_data import ModelData
 from ..fields.series_field import SeriesField
+from ..settings.method_options import check_threads
 from ..settings.rules import RULES
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
@@ -170,6 +174,29 @@ def _forms(entries: Sequence[RockInput], structures: Structures, number: dict[in
             )
         )
     return found
+
+
+@keyword_only
+def blocks_at(model: ModelData, points: ArrayLike, *, threads: int = 0) -> np.ndarray:
+    """(N,) int64 the number of the block at each point (N, 3), model units; -1 where there is none.
+
+    By the closed form of docs/dev/geometry.md, not by the cells: many points are fast. Heights of a surface
+    are rounded as its triangles give them: a point that lies on it within a rounding may get either side.
+    threads: 0 for all that there are. Raises UsageError where points are no (N, 3) of finite numbers, and
+    for a half: ask the whole model.
+
+    >>> model.blocks_at([(3.5, 1.0, 1.0), (3.5, 1.0, 4.0), (3.5, 1.0, 9.0)])
+    array([ 0,  2, -1])
+    """
+    if model.is_cut:
+        raise UsageError("a cut model has no closed form: ask the whole model")
+    try:
+        points = np.ascontiguousarray(points, np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError("points must be an array (N, 3) of numbers") from error
+    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
+        raise UsageError(f"points must be an array (N, 3) of finite numbers, not {points.shape}")
+    return run(lambda work: blocks_of_all(work, closed_forms(model), points), threads=check_threads(threads))
 
 
 def blocks_of_all(work: Work, forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:
