@@ -172,11 +172,12 @@ def test_a_surface_with_two_heights_is_refused(tmp_path):
     assert not (tmp_path / "t" / "tiles.toml").exists()
 
 
-def test_the_base_must_be_below(tmp_path):
+def test_a_base_that_cuts_surfaces_off(tmp_path):
     project = ready()
     project.rocks[0].base_elevation = 5.0
-    with pytest.raises(InputRefused, match="base_elevation 5 is not below"):
-        build_tiles(project, tmp_path / "t", (30, 30))
+    tiled = build_tiles(project, tmp_path / "t", (30, 30))
+    assert len(tiled.tiles) == 16
+    assert_same_blocks(tiled, build(project))
 
 
 def test_the_index_opens_in_vtk(tmp_path):

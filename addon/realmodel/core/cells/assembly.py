@@ -60,9 +60,15 @@ def build_stage(
     return run(task, progress, cancel, threads=model.threads)
 
 
+def are_joined(inputs: list[RockInput], structures: Structures) -> bool:
+    """Whether the cells of rock masses are those of parts of space, joined: where structures divide them, or
+    fields, or a base that cuts surfaces off."""
+    return structures.is_divided or any(entry.fields or entry.reaches_base for entry in inputs)
+
+
 def intersect(work: Work, inputs: list[RockInput], cells: str, structures: Structures) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
-    if structures.is_divided or any(entry.fields or entry.reaches_base for entry in inputs):
+    if are_joined(inputs, structures):
         return build_joined(work, inputs, structures, cells)
     rocks = [entry.native() for entry in inputs]
     refused = refused_as(lambda error: refused_stack(error, inputs))

@@ -13,7 +13,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, naming, place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..heights import Interpolation, chosen, heights
+from ..heights import Interpolation, heights
 from ..heights.interpolation import Task
 from ..heights.mis_ties import without_mis_ties
 from ..heights.on_mesh import BOUNDS, within_bounds
@@ -182,19 +182,6 @@ def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> li
         return []
     z = heights_at(work, shape, points[:, :2])
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
-
-
-def settle_method(work: Work, entry: RockInput, number: int) -> None:
-    """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
-    rock, surface = entry.rock, entry.rock.surfaces[number]
-    method, settings = surface.method_options()
-    if method != "auto":
-        return
-    with naming(surface_item(rock, surface), surface.shape_source):
-        nowhere = np.empty((0, 2))
-        task = Task(work, surface.point_array(), nowhere, settings, dips=surface.known_dips())
-        method, options = chosen(replace(task, error=surface.error))
-    rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
 def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Sheet:

@@ -22,7 +22,6 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...settings.variogram import lacks_deviation
-from ...surfaces.local_heights import is_local
 from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
@@ -453,14 +452,27 @@ class InterpolatedSurface:
 
     def _counts_by_node(self, surface: Surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
-        settings = surface.method_options()[1]
-        return (
-            is_local(surface)
-            and self.entry.draws is None
-            and settings.get("extrapolate") != "none"
-            and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
-            and not needed_surfaces(self.entry.rock, self.number)
-        )
+        method, settings = surface.method_options()
+        is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+        is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
+        if (
+            self.entry.draws is not None
+            or surface.series is not None  # the other sheets count, too
+            or surface.true_thickness  # the other surface counts around each node
+            or needed_surfaces(self.entry.rock, self.number)
+            or settings.get("extrapolate") == "none"
+            or settings.get("neighbours") == 0  # all points are one system, whatever the nodes
+            # how dips, bounds and errors count depends on all of them
+            or (METHODS[method].is_constrained and is_more_known)
+            or (METHODS[method].needs_points(settings) and not len(surface.point_array()))
+            or (surface.ties and surface.is_along_bounds)  # where these do not hold, its points yield
+        ):
+            return False
+        if method == "parallel":
+            return settings["thickness"] is not None and not is_tied
+        if method == "plane" and settings["extrapolate"] == "nearest":
+            return False  # contradicting points count only there
+        return METHODS[method].is_local or METHODS[method].is_triangulated
 
     def _values_at(
         self, family: Family, points: np.ndarray, surface: Surface, nodes: np.ndarray
