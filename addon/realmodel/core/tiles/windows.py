@@ -428,13 +428,15 @@ def _joined(
             meshes = {mesh: new(mesh) for mesh in (*sheets, entry.region) if mesh is not None}
             if None in meshes.values():
                 return inputs, None
+            entry = replace(entry, region=None if entry.region is None else meshes[entry.region])
             structure = entry.divided()
-            of = [
-                [meshes[each] for each in structure.of_compartment(c)] for c in range(len(structure.sheets))
-            ]
-            region = None if entry.region is None else meshes[entry.region]
-            entry = replace(entry, region=region, surfaces=of[0] if borders else entry.surfaces)
-            found.append(entry if borders else replace(entry, structure=replace(structure, sheets=of)))
+            compartments = range(len(structure.sheets))
+            of = [[meshes[sheet] for sheet in structure.of_compartment(c)] for c in compartments]
+            if borders:
+                entry.surfaces = of[0]
+            else:
+                entry.structure = replace(structure, sheets=of)
+            found.append(entry)
     return found, joins.text
 
 
