@@ -15,7 +15,6 @@ from realmodel.core.base.stored_objects import NamedArrays, StoredClasses, fits
 from realmodel.core.cells.model_record import RECORDED
 from realmodel.core.surfaces.sides import FaultShape
 
-
 STORED = StoredClasses(RECORDED)
 
 
@@ -62,7 +61,7 @@ class Harmful:
 
 def test_a_pickle_is_refused_and_not_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match="utf-8|Expecting"):
+    with pytest.raises(ValueError, match=r"utf-8|Expecting"):
         STORED.read(pickle.dumps(Harmful()), {})
     assert not (tmp_path / "harmed").exists()
 

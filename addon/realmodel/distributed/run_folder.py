@@ -32,6 +32,7 @@ from ..core.tiles.grid import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
 from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
 from ..core.tiles.windows import Window, Windows
+from .packing import unpacked
 
 RUN = "run"  # what only a run needs, in the folder
 _DIGEST = "digest"  # in there: of all that the result depends on
@@ -141,7 +142,7 @@ class Shared:
 
     def window(self, work: Work, name: Name, farther: int | None = 0) -> Window:
         """As Windows.window."""
-        windows: Windows = MappedArrays(self.inputs).unpacked(self.windows)
+        windows: Windows = unpacked(self.windows, self.inputs)
         return windows.window(work, name, farther)
 
 

@@ -46,6 +46,7 @@ from ..core.tiles.tile_model import (
     tile_arrays,
 )
 from .faulted_folder import build_windows
+from .packing import packed
 from .run_folder import (
     Parts,
     Shared,
@@ -119,7 +120,7 @@ def build(
             write_rock_fields(rock_fields(windows.inputs), folder / FIELDS)
         names = [name for name in frame.grid if windows.meets(frame.grid.box(*name))]
         is_cut = not windows.structures.is_divided
-        shared = Shared(store, frame, arrays.folder, arrays.packed(windows.for_workers()), frozenset(names))
+        shared = Shared(store, frame, arrays.folder, packed(windows.for_workers(), arrays), frozenset(names))
         del windows
 
         def reported(share: float, text: str) -> None:

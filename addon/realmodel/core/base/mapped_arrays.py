@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 import errno
-import functools
-import io
 import json
 import os
-import pickle
 import secrets
 import shutil
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -29,7 +26,6 @@ JoinPieces = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
 _SAMPLE = 64  # rows of each part that say where it begins
-_LARGE = 1 << 16  # bytes of an array that goes to other processes as a file
 _HEADER = 128  # bytes before an array in a file of NumPy
 # NumPy reads headers with ast.literal_eval, in which threads disturb each other before CPython 3.11.5 (its
 # issue 106905: "AST constructor recursion depth mismatch").
@@ -163,37 +159,6 @@ class MappedArrays:
             array = np.load(place, mmap_mode="r")
         self._files[id(array)] = array, place
         return array
-
-    def packed(self, value: object) -> bytes:
-        """A value for other processes, its large arrays in files."""
-        content = io.BytesIO()
-        _Packer(content, self).dump(value)
-        return content.getvalue()
-
-    def unpacked(self, content: bytes) -> Any:
-        """The value that was packed; its large arrays are read-only."""
-        return _Unpacker(io.BytesIO(content), self).load()
-
-
-class _Packer(pickle.Pickler):
-    """Names the files of large arrays in the place of these."""
-
-    def __init__(self, file: BinaryIO, arrays: MappedArrays):
-        super().__init__(file, pickle.HIGHEST_PROTOCOL)
-        self._arrays = arrays
-
-    def persistent_id(self, value: object) -> Path | np.ndarray | None:
-        is_large = isinstance(value, np.ndarray) and value.nbytes >= _LARGE and not value.dtype.hasobject
-        return self._arrays.place(value) if is_large else None
-
-
-class _Unpacker(pickle.Unpickler):
-    def __init__(self, file: BinaryIO, arrays: MappedArrays):
-        super().__init__(file)
-        self._opened = functools.cache(arrays.opened)
-
-    def persistent_load(self, place: Path) -> np.ndarray:
-        return self._opened(place)
 
 
 class _MappedRows(Rows):

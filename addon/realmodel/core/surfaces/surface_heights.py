@@ -22,7 +22,7 @@ from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, raised_heights, tie_data
 from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface, surface_item
-from ..settings.methods import checked_options
+from ..settings.methods import METHODS, checked_options
 from .observed.conformable import alike_of
 from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
@@ -55,6 +55,29 @@ def needed_surfaces(rock: Rock, number: int) -> list[int]:
     if rock.surfaces[number].minimum_thickness is not None:
         needs.append(number - 1)
     return needs
+
+
+def counts_by_node(rock: Rock, number: int, surface: Surface) -> bool:
+    """Whether heights of a surface, in the place of one of a rock mass, follow at each node from points near
+    it alone, without other surfaces and nodes."""
+    method, settings = surface.method_options()
+    is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+    is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
+    if (
+        needed_surfaces(rock, number)
+        or surface.series is not None  # the other sheets count, too
+        or surface.true_thickness  # the other surface counts around each node
+        or settings.get("extrapolate") == "none"
+        or settings.get("neighbours") == 0  # all points are one system
+        or (METHODS[method].is_constrained and is_more_known)  # these count for all nodes together
+        or (METHODS[method].needs_points(settings) and not len(surface.point_array()))
+        or (surface.ties and surface.is_along_bounds)  # where bounds do not hold, its points yield
+        or (method == "plane" and settings["extrapolate"] == "nearest")  # its points count only there
+    ):
+        return False
+    if method == "parallel":
+        return settings["thickness"] is not None and not is_tied
+    return METHODS[method].is_local or METHODS[method].is_triangulated
 
 
 def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:

@@ -90,7 +90,6 @@ def _within_one_cell(own: CellComplex, built: BuiltCells, layers: int) -> np.nda
     """(F,) bool: the faces that lie within one cell of a model of blocks. Between cells of one block in one
     rock mass these are walls between columns, and in bodies also surfaces, the first `layers` of all: a body
     has columns between older surfaces."""
-    assert built.parts is not None
     surface, cells, own_block = own.face_surface, own.face_cells, built.parts.own_block
     is_same = (cells >= 0).all(axis=1) & (own_block[cells[:, 0]] == own_block[cells[:, 1]])
     return is_same & ((surface == _WALL) | ((surface >= 0) & (surface < layers)))
@@ -110,7 +109,7 @@ def _numbered_as_whole(model: ModelData, frame: Frame, window: Window) -> CellCo
 
 
 def _labels(built: BuiltCells, frame: Frame, window: Window, mine: np.ndarray) -> tuple:
-    """What cell_compartments gives for the cells of the tile, by all faults of the whole."""
+    """What compartments gives for the cells of the tile, by all faults of the whole."""
     inputs, few, structures = window.inputs, window.structures, frame.structures
     surfaces = sum(len(entry.surfaces) for entry in inputs)
     own = np.arange(surfaces + len(inputs) * len(few))
@@ -120,7 +119,6 @@ def _labels(built: BuiltCells, frame: Frame, window: Window, mine: np.ndarray) -
             own[body_block(few, surfaces, rock, body)] = body_block(structures, surfaces, rock, there)
     rocks = np.arange(len(inputs), dtype=np.int32)
     counts = [len(entry.surfaces) for entry in inputs]
-    assert built.parts is not None
     as_whole = CellParts(
         window.part[built.parts.part][mine],
         own[built.parts.own_block][mine],

@@ -18,6 +18,7 @@ from ..cells.assembly import assemble
 from ..cells.blocks import Block, blocks_of_arrays
 from ..cells.built_cells import BuiltCells
 from ..cells.cell_complex import CellComplex
+from ..cells.joining import built_cells
 from ..cells.stack_refusals import refused_stack
 from ..exporters.npz import model_arrays, write_arrays
 from ..model.model import Model
@@ -107,7 +108,7 @@ def build_tile(work: Work, frame: Frame, inputs: list[RockInput], box: Box) -> B
         arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind)
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])
     timings = {"intersect": time.perf_counter() - began}
-    built = BuiltCells.of(arrays, frame.cell_kind)
+    built = built_cells(arrays, frame.cell_kind, inputs, frame.structures)
     with work.part(0.8, 1.0):
         model = Model.of(assemble(work, project, inputs, built, timings, frame.structures))
     model.warnings = _warnings(inputs, built, numbers)

@@ -26,7 +26,7 @@ from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
-from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
+from ...surfaces.surface_heights import Trend, counts_by_node, give_heights, used_vertices, where_known
 from ...surfaces.wrong_sides import heights_at
 from .beyond_faults import contradicting
 from .borrowed import as_at_fault, sheet_runs_away
@@ -452,27 +452,7 @@ class InterpolatedSurface:
 
     def _counts_by_node(self, surface: Surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
-        method, settings = surface.method_options()
-        is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
-        is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
-        if (
-            self.entry.draws is not None
-            or surface.series is not None  # the other sheets count, too
-            or surface.true_thickness  # the other surface counts around each node
-            or needed_surfaces(self.entry.rock, self.number)
-            or settings.get("extrapolate") == "none"
-            or settings.get("neighbours") == 0  # all points are one system, whatever the nodes
-            # how dips, bounds and errors count depends on all of them
-            or (METHODS[method].is_constrained and is_more_known)
-            or (METHODS[method].needs_points(settings) and not len(surface.point_array()))
-            or (surface.ties and surface.is_along_bounds)  # where these do not hold, its points yield
-        ):
-            return False
-        if method == "parallel":
-            return settings["thickness"] is not None and not is_tied
-        if method == "plane" and settings["extrapolate"] == "nearest":
-            return False  # contradicting points count only there
-        return METHODS[method].is_local or METHODS[method].is_triangulated
+        return self.entry.draws is None and counts_by_node(self.entry.rock, self.number, surface)
 
     def _values_at(
         self, family: Family, points: np.ndarray, surface: Surface, nodes: np.ndarray
