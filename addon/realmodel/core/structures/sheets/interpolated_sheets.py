@@ -26,7 +26,14 @@ from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
-from ...surfaces.surface_heights import Trend, counts_by_node, give_heights, used_vertices, where_known
+from ...surfaces.surface_heights import (
+    Trend,
+    counts_by_node,
+    give_heights,
+    needed_surfaces,
+    used_vertices,
+    where_known,
+)
 from ...surfaces.wrong_sides import heights_at
 from .beyond_faults import contradicting
 from .borrowed import as_at_fault, sheet_runs_away
