@@ -20,6 +20,8 @@ from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module
 from ..core.cells.assembly import are_joined, list_blocks
 from ..core.cells.cell_complex import CellComplex
+from ..core.proof.closed_form import surface_forms
+from ..core.proof.cut_bases import check_bases
 from ..core.structures.parts.parts import box_around, divide
 from ..core.structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..core.surfaces.surface_input import ReadSurface, SurfaceInput
@@ -42,6 +44,7 @@ def prepared(
     with work.part(_MESHED, 1.0):
         structures = make_surfaces(work, with_arrays, inputs, None, arrays.keep, joins=False)
     if are_joined(inputs, structures) and not structures.is_divided:
+        check_bases(work, inputs, surface_forms(inputs, structures))
         structures = divide(work, structures, box_around(inputs, structures, has_sheets=True))
     for entry in inputs:
         entry.surfaces = [each and Sheet(*map(arrays.keep, each), each.numbers) for each in entry.surfaces]

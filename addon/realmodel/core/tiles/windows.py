@@ -209,10 +209,12 @@ class Windows:
     def window(self, work: Work, tile: tuple[int, int], farther: int | None = 0) -> Window:
         """The window of a tile, by its column and row. farther: this many more rows of triangles; None:
         all. Where nothing is divided it has what meets the tile."""
+        of_plan: dict[_Plan, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         if not self.structures.is_divided:
-            box = self._grid.box(*tile)
-            none = np.zeros(0, np.int8)
-            inputs = [self._rock(rock, box, [], none, {}) for rock in range(len(self.inputs))]
+            box, none = self._grid.box(*tile), np.zeros(0, np.int8)
+            # as no vertex is on a line: what meets the neighbors alone need not be looked at then
+            inner = (*np.nextafter(box[:2], np.inf).tolist(), *np.nextafter(box[2:], -np.inf).tolist())
+            inputs = [self._rock(rock, inner, [], none, of_plan) for rock in range(len(self.inputs))]
             return Window(box, inputs, self.structures, None, np.empty(0, np.int32), np.zeros(1, np.int32))
         safe = self._around(self._around(self._grid.box(*tile)))
         if farther is None:
@@ -223,7 +225,6 @@ class Windows:
         around = self._around(taken)
         present, fixed = self._structures_near(work, tile, around)
         structures, part = self._few(present, fixed, around)
-        of_plan: dict[_Plan, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         inputs = [self._rock(rock, taken, present, fixed, of_plan) for rock in range(len(self.inputs))]
         faults = [number for number in present if number < len(self.structures.faults)]
         reach = self._reach.within(structures, faults, around)
