@@ -34,8 +34,9 @@ class _Packer(pickle.Pickler):
         self._arrays = arrays
 
     def persistent_id(self, value: object) -> Path | np.ndarray | None:
-        is_large = isinstance(value, np.ndarray) and value.nbytes >= _LARGE and not value.dtype.hasobject
-        return self._arrays.place(value) if is_large else None
+        if not isinstance(value, np.ndarray) or value.nbytes < _LARGE or value.dtype.hasobject:
+            return None
+        return self._arrays.place(value)
 
 
 class _Unpacker(pickle.Unpickler):
