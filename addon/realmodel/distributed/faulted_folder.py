@@ -32,6 +32,7 @@ def build_windows(
 ) -> Catalog:
     """Builds all tiles of a project with faults, bodies or fields. Returns the table of the whole."""
     store = shared.store
+    waiting: list[tuple[Name, int | None]]
     waiting = [(name, 0) for name in names if not store.has("joined", name)]
     for times in range(_ROUNDS + 1):
         done = len(names) - len(waiting)

@@ -47,7 +47,10 @@ def prepared(
         check_bases(work, inputs, surface_forms(inputs, structures))
         structures = divide(work, structures, box_around(inputs, structures, has_sheets=True))
     for entry in inputs:
-        entry.surfaces = [each and Sheet(*map(arrays.keep, each), each.numbers) for each in entry.surfaces]
+        entry.surfaces = [
+            each and Sheet(arrays.keep(each.vertices), arrays.keep(each.triangles), each.numbers)
+            for each in entry.surfaces
+        ]
     windows = Windows(work, inputs, structures, arrays.keep)
     warnings = [warning for entry in inputs for warning in entry.warnings]
     if windows.joined is not None:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -153,6 +153,14 @@ class WrongPoints:
             tuple(points[worst].tolist()),
             float(beyond[worst]),
         )
+
+    def joined(self, other: WrongPoints) -> WrongPoints:
+        """The wrong points of two parts of a surface."""
+        worst = min((self, other), key=lambda each: (-each.by, each.worst))
+        items, others = (
+            tuple(sorted({*getattr(self, name), *getattr(other, name)})) for name in ("items", "others")
+        )
+        return replace(worst, items=items, others=others)
 
     def rows(self, surface: Surface) -> tuple[int, ...]:
         """The numbers that the points had in the table or array that they come from."""

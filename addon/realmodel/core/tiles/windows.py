@@ -422,7 +422,7 @@ def _joined(
             if not borders:
                 return Sheet(keep(joins.snapped(mesh.vertices)), mesh.triangles)
             arrays = work.native(joins.mesh, *mesh.arrays)
-            return None if arrays is None else Sheet(*map(keep, arrays))
+            return None if arrays is None else Sheet(keep(arrays[0]), keep(arrays[1]))
 
         found = []
         for entry, sheets in zip(inputs, distinct, strict=True):
