@@ -121,13 +121,14 @@ def test_a_bar_and_tables(client, tmp_path, capsys):
 
 
 def test_what_a_worker_finds_wrong_comes_back(client, tmp_path):
-    from realmodel.core import InputRefused, Project
+    from realmodel.core import InputRefused, Surface
     from realmodel.distributed import build as build_tiles
 
     project = load_project(PROJECT)
-    project.rocks[0].base_elevation = 15.0
-    with pytest.raises(InputRefused, match=r"base_elevation 15 is not below"):
-        build_tiles(Project("x", project.rocks), tmp_path / "t", (35, 30), client)
+    corners = [[0.0, 0.0, 90.0], [80.0, 0.0, 90.0], [0.0, 50.0, 90.0]]
+    project.rocks[0].surfaces.append(Surface("twice", corners, [[0, 1, 2], [0, 1, 2]]))
+    with pytest.raises(InputRefused, match=r"twice.*triangles 0 and 1 overlap"):
+        build_tiles(project, tmp_path / "t", (35, 30), client)
 
 
 def test_the_command_line(client, tmp_path):
@@ -157,11 +158,11 @@ def test_wrong_usage(arguments, said, tmp_path):
 
 def test_what_a_worker_refuses_is_one_line(tmp_path):
     for name in ("project.toml", "library.toml", "clay.csv", "ground.csv"):
-        text = (PROJECT.parent / name).read_text()
-        (tmp_path / name).write_text(text.replace("base_elevation = 0", "base_elevation = 25"))
+        (tmp_path / name).write_text((PROJECT.parent / name).read_text())
+    (tmp_path / "clay.csv").write_text("x,y,z\n1,2,three\n")
     done = batch("--tiles", "35,30", "--out", tmp_path / "t", project=tmp_path / "project.toml")
     assert done.returncode == 1
-    assert re.fullmatch(r"build_model.py: rock 'field': base_elevation 25 is not below .*\n", done.stderr)
+    assert re.fullmatch(r"build_model.py: .*clay\.csv:2: .*: z is not a number: 'three'\n", done.stderr)
 
 
 GONE = """

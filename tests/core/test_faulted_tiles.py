@@ -14,10 +14,9 @@ from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, Us
 from realmodel.core.base.mapped_arrays import MappedArrays
 from realmodel.core.base.work import run
 from realmodel.core.cells.cell_complex import CellComplex
-from realmodel.core.tiles import faulted_windows as windows_module
-from realmodel.core.tiles.faulted_windows import Windows
 from realmodel.core.tiles.grid import TileGrid
 from realmodel.core.tiles.owned_cells import Seam, face_keys, inseparable, owners, reach_of
+from realmodel.core.tiles.windows import Windows, _any_passes
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import faulted_folder
 from tiled_models import assert_same_warnings, sample
@@ -270,7 +269,7 @@ def test_plan_coordinates_are_made_equal_once():
     x[x == 1000] = np.nextafter(1000, 2000)
     inputs, structures = structure_cases.with_structures(project, 2)
     windows = run(lambda work: Windows(work, inputs, structures))
-    assert windows.snapped.startswith("plan coordinates merged that differ only by rounding")
+    assert windows.joined.startswith("plan coordinates merged that differ only by rounding")
     east = [
         [max(vertices[:, 0].max() for vertices, _ in entry.structure.distinct(k)) for k in range(4)]
         for entry in (inputs[0], windows.inputs[0])
@@ -300,16 +299,16 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
 def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path, monkeypatch):
     project = faulted(36, dies_out)
     whole, seen = build(project, cells=cells), []
-    real = faulted_folder._write_window
+    real = Windows.window
 
-    def look(windows, store, name, cancel, farther):
-        real(windows, store, name, cancel, farther)
+    def look(self, work, name, farther):
+        window = real(self, work, name, farther)
         seen.append(farther)
-        window = faulted_folder._window(store.parts(name) / faulted_folder._WINDOW)
         used = sum(len(triangles) for _, triangles in window.inputs[0].surfaces)
         assert used < 0.55 * sum(len(triangles) for _, triangles in whole.rock_inputs[0].surfaces)
+        return window
 
-    monkeypatch.setattr(faulted_folder, "_write_window", look)
+    monkeypatch.setattr(Windows, "window", look)
     tiled = build_tiles(project, tmp_path / "t", (251, 262), cells=cells)
     assert_same_blocks(tiled, whole, 0.05)
     assert seen == [0] * len(tiled.tiles) == [0] * 16
@@ -392,11 +391,11 @@ def test_a_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
     project, built = faulted(12), []
     real = faulted_folder._build
 
-    def stops(shared, name):
+    def stops(shared, task):
         if len(built) == 3:
             raise OSError(28, "No space left on device")
-        built.append(name)
-        real(shared, name)
+        built.append(task)
+        real(shared, task)
 
     monkeypatch.setattr(faulted_folder, "_build", stops)
     with pytest.raises(OSError, match="No space"):
@@ -405,9 +404,9 @@ def test_a_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
         open_tiles(tmp_path / "t")
     first = list(built)
 
-    def goes_on(shared, name):
-        built.append(name)
-        real(shared, name)
+    def goes_on(shared, task):
+        built.append(task)
+        real(shared, task)
 
     monkeypatch.setattr(faulted_folder, "_build", goes_on)
     tiled = build_tiles(project, tmp_path / "t", (340, 340))
@@ -491,8 +490,8 @@ def test_owners_and_seams():
 def test_which_triangles_pass_a_box():
     low, high = np.zeros(3), np.ones(3)
     triangle = np.array([[[-1.0, -1.0, 0.5], [3.0, -1.0, 0.5], [-1.0, 3.0, 0.5]]])
-    assert windows_module._any_passes(triangle, low, high)
-    assert not windows_module._any_passes(triangle + np.array([0, 0, 0.6]), low, high)
+    assert _any_passes(triangle, low, high)
+    assert not _any_passes(triangle + np.array([0, 0, 0.6]), low, high)
     aside = np.array([[[2.5, 0.0, 0.0], [0.0, 2.5, 0.0], [2.5, 2.5, 1.0]]])  # its box meets, it does not
-    assert not windows_module._any_passes(aside, low, high)
-    assert windows_module._any_passes(aside - np.array([0.6, 0, 0]), low, high)
+    assert not _any_passes(aside, low, high)
+    assert _any_passes(aside - np.array([0.6, 0, 0]), low, high)

@@ -222,46 +222,6 @@ def test_memory_does_not_grow_with_the_file(tmp_path, name):
     assert large < 1.25 * small, (small, large)
 
 
-DIVIDED = """
-from realmodel.core.surfaces.local_heights import local_heights
-from realmodel.core.project.project import Surface
-from realmodel.core.tiles.tile_model import write_windows, write_parts
-from realmodel.core.tiles.grid import tile_grid
-from realmodel.core.base.work import run
-import numpy as np
-
-def peak(scale):
-    rows, columns = 200 * scale, 220 * scale
-    file, _ = write_points("6.grd", rows, columns, folder)
-    with MappedArrays(folder / "arrays") as arrays:
-        given = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
-        points = given.read(arrays=arrays).surface.points
-        mesh = tuple(map(arrays.keep, lattice(rows, columns)))
-        extent = np.array([points[:, :2].min(axis=0), points[:, :2].max(axis=0)])
-        settings = Surface("S", method="grid", points=points).method_options()
-        grid = tile_grid([mesh[0]], (1000.0, 1000.0))
-        tiles = folder / f"tiles-{scale}"
-        for name in grid:
-            (tiles / str(name)).mkdir(parents=True)
-        tracemalloc.start()
-        heights = lambda work: local_heights(work, points, extent, 2, *settings, arrays)
-        found, left, _ = run(heights, threads=1)
-        boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
-        write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
-        peak = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-    return peak, len(boxes)
-print(json.dumps([peak(2), peak(4)]))
-"""
-
-
-def test_memory_for_a_raster_in_tiles_does_not_grow(tmp_path):
-    """Its grid is found, and its points and the mesh that it lies on are divided; four times the tiles."""
-    (small, tiles), (large, more) = in_a_process(DIVIDED, tmp_path)
-    assert tiles > 12 and more > 3 * tiles
-    assert large < 1.25 * small, (small, large)
-
-
 LIMITED = """
 def limited(file):
     status = Path("/proc/self/status").read_text()
@@ -269,7 +229,7 @@ def limited(file):
     resource.setrlimit(resource.RLIMIT_DATA, (now + 100_000_000,) * 2)
     surface = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
     with MappedArrays(folder / "arrays") as arrays:
-        found, _ = _read(arrays.folder, (0, surface))
+        found = _read(arrays.folder, (0, surface))
         count = len(arrays.opened(found.surface.points))
     try:
         surface.read()
@@ -295,95 +255,10 @@ def test_a_raster_is_read_in_less_memory_than_its_points_take(tmp_path):
     assert whole == "does not fit"
 
 
-SCATTERED = """
-from realmodel.core import BuildFailed
-from realmodel.core.surfaces.local_heights import local_heights
-from realmodel.core.project.project import Surface
-from realmodel.core.tiles.grid import tile_grid
-from realmodel.core.tiles.tile_model import PLAN, write_certain_heights, write_parts, write_windows
-from realmodel.core.base.work import run
-from realmodel.core.heights import Task, heights
-import numpy as np
-
-def given(work, points, nodes, settings):
-    return heights(settings[0], Task(work, points, nodes, settings[1]))
-
-def pieces(count):
-    random = np.random.default_rng(1)
-    for _ in range(count // 50_000):
-        plan = 1000 * random.random((50_000, 2))
-        plan[::100] = plan[1::100]
-        yield np.column_stack([plan, 20 * np.sin(plan[:, 0] / 70) * np.cos(plan[:, 1] / 90)])
-
-def divided(points, arrays, method):
-    settings = Surface("S", method=method, points=points[:9]).method_options()
-    extent = np.array([[0.0, 0], [1000, 1000]])
-    found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, arrays), threads=1)
-    tiles = folder / method
-    boxes = {(0, 0): (500.0, 500, 510, 510), (1, 0): (510.0, 500, 520, 510)}
-    for name in boxes:
-        (tiles / str(name)).mkdir(parents=True)
-    write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
-    near = read_mapped(tiles / "(0, 0)" / "0-0-near.arrays")
-    return found, settings, near["points"]
-
-def certain(points, arrays):
-    # heights by triangles, at the corners of a square in four tiles
-    settings = Surface("S", method="natural_neighbour", points=points[:9]).method_options()
-    extent = np.array([[0.0, 0], [1000, 1000]])
-    found, left, _ = run(lambda work: local_heights(work, points, extent, 4, *settings, arrays), threads=1)
-    corners = np.array([[500.0, 500, 0], [540, 500, 0], [540, 540, 0], [500, 540, 0]])
-    mesh = corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
-    grid, tiles = tile_grid([corners], (20, 20)), folder / "triangles"
-    for name in grid:
-        (tiles / str(name)).mkdir(parents=True)
-    boxes = write_parts(mesh, 0, PLAN, grid, lambda name: tiles / str(name))
-    write_certain_heights(left, 0, 0, found, boxes, lambda name: tiles / str(name))
-    near, plan = (read_mapped(tiles / "(0, 0)" / f"0-{name}.arrays") for name in ("0-near", "plan"))
-    return settings, np.ascontiguousarray(plan["vertices"][:, :2]), near["z"].tolist()
-
-with MappedArrays(folder / "arrays") as arrays:
-    points = arrays.gather(pieces(800_000), np.empty((0, 3)))
-    divided(points[:5_000], arrays, "kriging")  # the libraries are there then
-    status = Path("/proc/self/status").read_text()
-    now = int(status.split("VmData:")[1].split()[0]) * 1024
-    resource.setrlimit(resource.RLIMIT_DATA, (now + 52_000_000, -1))
-    (folder / "kriging").rename(folder / "before")
-    done, nodes = [], np.array([[503.5, 507.0], [509.0, 501.5]])
-    for method in ("spline", "kriging", "universal_kriging"):
-        found, settings, near = divided(points, arrays, method)
-        done.append([method, len(near), run(lambda work: found.heights(work, near, nodes, 1)).tolist()])
-    by_triangles, at, z = certain(points, arrays)
-    try:
-        run(lambda work: given(work, points, nodes, settings))
-        fits = True
-    except (BuildFailed, MemoryError):  # not enough memory
-        fits = False
-    resource.setrlimit(resource.RLIMIT_DATA, (-1, -1))
-    whole = []
-    for method, *_ in done:
-        settings = Surface("S", method=method, points=points[:9]).method_options()
-        whole.append(run(lambda work: given(work, points, nodes, settings)).z.tolist())
-    done.append(["natural_neighbour", 1000, z])
-    whole.append(run(lambda work: given(work, points, at, by_triangles)).z.tolist())
-print(json.dumps([done, fits, whole]))
-"""
-
-
-@needs_a_limit
-def test_points_are_divided_in_less_memory_than_they_take(monkeypatch, tmp_path):
-    """Those at one place are found, a variogram is fitted, and a tile gets those around; with the same
-    heights."""
-    monkeypatch.setenv("OMP_NUM_THREADS", "1")  # OpenMP ends the process where it finds no room for a thread
-    done, fits, whole = in_a_process(SCATTERED, tmp_path)
-    assert not fits
-    for (method, near, heights), expected in zip(done, whole, strict=True):
-        assert 200 < near < 10_000 and heights == expected, method
-
-
 JOINED = """
 from realmodel.core import Project, Rock, build_surfaces
-from realmodel.distributed.tile_inputs import _joined
+from realmodel.core.base.work import run
+from realmodel.core.tiles.windows import _joined
 import numpy as np
 
 def surfaces(count, arrays):
@@ -395,17 +270,20 @@ def surfaces(count, arrays):
             x, *others = vertices.T
             vertices = arrays.keep(np.column_stack([np.nextafter(x, 1e9), *others]))
         found.append(Surface(str(number), vertices, triangles))
-    return build_surfaces(Project("p", [Rock("r", found)]), keep=arrays.keep)
+    return build_surfaces(Project("p", [Rock("r", found)])).rock_inputs
+
+def joined(inputs, arrays):
+    return run(lambda work: _joined(work, inputs, arrays.keep, borders=True))
 
 with MappedArrays(folder / "arrays") as arrays:
-    _joined(surfaces(2, arrays), arrays, None)  # the libraries and threads are there then
+    joined(surfaces(2, arrays), arrays)  # the libraries and threads are there then
     given = surfaces(20, arrays)
     status = Path("/proc/self/status").read_text()
     now = int(status.split("VmData:")[1].split()[0]) * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (now + 150_000_000, -1))
-    [(shapes, _, _, _)], text = _joined(given, arrays, None)
+    [entry], text = joined(given, arrays)
     expected = lattice(300, 300)
-    print(json.dumps([text, [all(map(np.array_equal, shape, expected)) for shape in shapes]]))
+    print(json.dumps([text, [all(map(np.array_equal, shape, expected)) for shape in entry.surfaces]]))
 """
 
 

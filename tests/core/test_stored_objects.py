@@ -9,27 +9,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import BuildFailed, BuildWarning, Fault, InputRefused, Surface
-from realmodel.core.base.mapped_arrays import write_mapped
+from realmodel.core import BuildWarning, Fault, InputRefused, Surface
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.stored_objects import NamedArrays, StoredClasses, fits
+from realmodel.core.cells.model_record import RECORDED
 from realmodel.core.surfaces.sides import FaultShape
-from realmodel.distributed.stored_objects import read_object, write_object
+
+STORED = StoredClasses(RECORDED)
 
 
-def stored(value, tmp_path):
-    file = tmp_path / "object"
-    with file.open("wb") as out:
-        write_object(value, out)
-    return read_object(file)
+def stored(value):
+    arrays = NamedArrays({})
+    return STORED.read(STORED.write(value, arrays), arrays)
 
 
-def test_objects_come_back_with_their_types_and_identities(tmp_path):
+def test_objects_come_back_with_their_types_and_identities():
     corners, triangles = np.arange(9.0).reshape(3, 3), np.array([[0, 1, 2]], np.int32)
     fault = Fault("F", corners, triangles, ends_at=("G",))
     shape = FaultShape(corners, triangles, True)
     given = {"fault": fault, 3: [shape, (shape, None)], (1, 2): Path("a/b"), "x": [0.1, np.inf, np.int64(7)]}
-    found = stored(given, tmp_path)
+    found = stored(given)
     assert list(found) == ["fault", 3, (1, 2), "x"]
     assert type(found["fault"]) is Fault and found["fault"].ends_at == ("G",)
     first, (second, nothing) = found[3]
@@ -41,10 +40,10 @@ def test_objects_come_back_with_their_types_and_identities(tmp_path):
     assert found["x"] == [0.1, np.inf, 7]
 
 
-def test_errors_of_surfaces_come_back(tmp_path):
+def test_errors_of_surfaces_come_back():
     """RockInput.overlapping."""
-    error = InputRefused("it folds", file=tmp_path / "s.csv", advice="smooth it", place=(1.0, 2.0))
-    found = stored({3: error}, tmp_path)[3]
+    error = InputRefused("it folds", file=Path("s.csv"), advice="smooth it", place=(1.0, 2.0))
+    found = stored({3: error})[3]
     assert type(found) is InputRefused
     assert vars(found) == vars(error)
     assert str(found.within("surface 'S'")) == str(error.within("surface 'S'"))
@@ -52,7 +51,7 @@ def test_errors_of_surfaces_come_back(tmp_path):
 
 def test_objects_of_others_are_not_written():
     with pytest.raises(TypeError, match="StringIO"):
-        write_object([io.StringIO()], io.BytesIO())
+        STORED.write([io.StringIO()], NamedArrays({}))
 
 
 class Harmful:
@@ -62,10 +61,8 @@ class Harmful:
 
 def test_a_pickle_is_refused_and_not_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    file = tmp_path / "object"
-    file.write_bytes(pickle.dumps(Harmful()))
-    with pytest.raises(BuildFailed, match="cannot be read; delete it"):
-        read_object(file)
+    with pytest.raises(ValueError, match=r"utf-8|Expecting"):
+        STORED.read(pickle.dumps(Harmful()), {})
     assert not (tmp_path / "harmed").exists()
 
 
@@ -73,13 +70,9 @@ def test_a_pickle_is_refused_and_not_run(tmp_path, monkeypatch):
     "kind",
     ["os:system", "Path", "Project", "PolyData", ".core.model.model:Model", "realmodel.core.Surface"],
 )
-def test_only_classes_of_windows_are_made(kind, tmp_path):
-    file = tmp_path / "object"
-    text = json.dumps([[[kind, []]], [0]]).encode()
-    with file.open("wb") as out:
-        write_mapped({"objects": np.frombuffer(text, np.uint8)}, out)
-    with pytest.raises(BuildFailed, match="cannot be read"):
-        read_object(file)
+def test_only_classes_of_models_are_made(kind):
+    with pytest.raises(ValueError, match=r"Project has no name|damaged"):
+        STORED.read(json.dumps([[[kind, []]], [0]]).encode(), {})
 
 
 SURFACE = StoredClasses((Surface, Sheet, BuildWarning))

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs that build models in tiles: stopped, done again, refused, on a full disk; what they keep and leave."""
 
-import gc
 import shutil
-import weakref
 
 import numpy as np
 import pytest
@@ -15,6 +13,7 @@ from realmodel.core import (
     build,
     open_tiles,
 )
+from realmodel.core.tiles.windows import Windows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import run_folder, tile_folder
 from tiled_models import (
@@ -75,27 +74,6 @@ def test_tasks_are_done_twice(monkeypatch, tmp_path):
     assert_same_blocks(build_tiles(project, tmp_path / "t", (40, 40)), build(project))
 
 
-def test_surfaces_are_let_go_of_once_they_are_divided(monkeypatch, tmp_path):
-    """The lead has none of them while workers are at work."""
-    real, arrays, left = tile_folder.prepared, [], []
-
-    def prepared(*arguments):
-        made = real(*arguments)
-        arrays.extend(weakref.ref(each) for shapes, *_ in made.rocks for shape in shapes for each in shape)
-        return made
-
-    def build_one(shared, name):
-        gc.collect()
-        left.append(sum(each() is not None for each in arrays))
-        return real_build(shared, name)
-
-    real_build = tile_folder._build
-    monkeypatch.setattr(tile_folder, "prepared", prepared)
-    monkeypatch.setattr(tile_folder, "_build", build_one)
-    build_tiles(sample("two_layers"), tmp_path / "t", (37, 23))
-    assert arrays and left and not any(left)
-
-
 def test_surfaces_are_kept_in_files(monkeypatch, tmp_path):
     """Read, interpolated or given: one is in memory at a time, and the files are gone at the end."""
     ready_one = sample("two_layers")
@@ -103,14 +81,14 @@ def test_surfaces_are_kept_in_files(monkeypatch, tmp_path):
     ready_one.rocks[0].surfaces[0] = Surface("given", vertices, triangles)
     found = []
 
-    def look(prepared, *rest):
-        meshes = [mesh for shapes, region, *_ in prepared.rocks for mesh in (*shapes, region) if mesh]
+    def look(self, work, inputs, *rest):
+        meshes = [mesh for entry in inputs for mesh in (*entry.surfaces, entry.region) if mesh is not None]
         found.extend(isinstance(each, np.memmap) for mesh in meshes for each in mesh)
         assert len(list((tmp_path / "t" / "run").glob("inputs-*"))) == 1
-        return real(prepared, *rest)
+        real(self, work, inputs, *rest)
 
-    real = tile_folder.divided
-    monkeypatch.setattr(tile_folder, "divided", look)
+    real = Windows.__init__
+    monkeypatch.setattr(Windows, "__init__", look)
     for project in (sample("haut_barr"), ready_one):
         build_tiles(project, tmp_path / "t", (1e6, 1e6))
         assert found and all(found)

@@ -20,7 +20,7 @@ from stacks.judge import volume_allowance
 from stacks.model_view import rocks_of
 from stacks.project_files import stack_project
 from stacks.rock_masses import random_rock_masses
-from tiled_models import HOLE, OUTLINE, assert_same_blocks, ready, sample
+from tiled_models import HOLE, OUTLINE, assert_same_blocks, assert_same_warnings, ready, sample
 
 pytestmark = pytest.mark.usefixtures("tiles_in_this_process")
 
@@ -171,11 +171,19 @@ def test_a_surface_with_two_heights_is_refused(tmp_path):
     assert not (tmp_path / "t" / "tiles.toml").exists()
 
 
-def test_the_base_must_be_below(tmp_path):
+def test_a_base_that_cuts_surfaces_off(tmp_path):
     project = ready()
     project.rocks[0].base_elevation = 5.0
-    with pytest.raises(InputRefused, match="base_elevation 5 is not below"):
-        build_tiles(project, tmp_path / "t", (30, 30))
+    tiled, whole = build_tiles(project, tmp_path / "t", (30, 30)), build(project)
+    assert len(tiled.tiles) == 16
+    assert_same_blocks(tiled, whole)
+    assert_same_warnings(tiled, whole)
+    project.rocks[0].base_elevation = 500.0
+    with pytest.raises(InputRefused) as expected:
+        build(project)
+    with pytest.raises(InputRefused) as found:
+        build_tiles(project, tmp_path / "u", (30, 30))
+    assert str(found.value) == str(expected.value)
 
 
 def test_the_index_opens_in_vtk(tmp_path):

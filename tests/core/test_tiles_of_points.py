@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that tiles interpolate themselves: the heights of the undivided model to the last bit."""
+"""Surfaces from points in tiles: the heights of the undivided model to the last bit."""
 
 import numpy as np
 import pytest
@@ -11,10 +11,7 @@ from realmodel.core import (
     build,
 )
 from realmodel.core.base.work import native_module
-from realmodel.core.surfaces.local_heights import LocalHeights, local_surfaces
-from realmodel.core.tiles.windows import PointWindows
 from realmodel.distributed import build as build_tiles
-from realmodel.distributed import tile_folder
 from test_conformable import automatic
 from test_series_of_sheets import rock_of
 from tiled_models import OUTLINE, assert_same_blocks, assert_same_warnings
@@ -34,7 +31,6 @@ GIVEN = {"model": "spherical", "range": 30.0, "sill": 4.0, "nugget": 0.1}
 
 
 def from_points(count=900):
-    """Surfaces of which tiles interpolate those that they can."""
     surfaces = [
         Surface("kriged", points=scattered(count, 1), options={"neighbours": 12}),
         Surface("drift", points=scattered(count, 2, 4), method="universal_kriging", rule="base"),
@@ -58,23 +54,13 @@ def from_points(count=900):
 
 
 @pytest.mark.parametrize("count", [9, 900])
-def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
-    """The heights of the undivided model to the last bit, from a part of the points."""
-    project, seen, real = from_points(count), [], LocalHeights.heights
-
-    def heights(self, work, points, nodes, *others):
-        seen.append((len(nodes), len(points)))
-        return real(self, work, points, nodes, *others)
-
-    monkeypatch.setattr(LocalHeights, "heights", heights)
+def test_surfaces_from_points(count, tmp_path):
+    project = from_points(count)
     tiled = build_tiles(project, tmp_path / "t", (20, 25))
     whole = build(project)
     assert_same_blocks(tiled, whole)
     assert_same_warnings(tiled, whole)
     assert count == 9 or any(warning.kind == "wrong_side" for warning in tiled.warnings)
-    of_tiles = [points for nodes, points in seen if nodes]
-    assert len(of_tiles) == 6 * len(tiled.tiles) + 5  # and around the points, for ties
-    assert count == 9 or np.mean(of_tiles) < 0.7 * count
     assert_same_heights(tiled, whole)
 
 
@@ -137,15 +123,8 @@ def of_all_kinds():
     return Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
 
 
-def test_heights_that_take_more_than_the_points_around(monkeypatch, tmp_path):
-    """By the tiles, with the heights of the undivided model to the last bit."""
-    project, made, real = of_all_kinds(), set(), LocalHeights.heights
-
-    def heights(self, work, points, nodes, *others):
-        made.add((self.method, len(points)) if len(nodes) else None)
-        return real(self, work, points, nodes, *others)
-
-    monkeypatch.setattr(LocalHeights, "heights", heights)
+def test_heights_of_all_methods(tmp_path):
+    project = of_all_kinds()
     tiled, whole = build_tiles(project, tmp_path / "t", (40, 25)), build(project)
     assert_same_heights(tiled, whole)
     assert_same_blocks(tiled, whole)
@@ -153,14 +132,10 @@ def test_heights_that_take_more_than_the_points_around(monkeypatch, tmp_path):
     kinds = {warning.kind for warning in tiled.warnings}
     assert {"minimum_thickness", "wrong_side", "points"} <= kinds
     assert any("within the radius" in str(warning) for warning in tiled.warnings)
-    assert {method for method, _ in made - {None}} == {
-        *("constant", "plane", "parallel", "kriging", "universal_kriging", "spline", "idw", "grid")
-    }
-    assert {count for method, count in made - {None} if method in ("constant", "plane")} == {0}
 
 
 def test_a_surface_that_ends_before_the_region_begins(tmp_path):
-    """Is refused as in the undivided model, once no tile has any of it."""
+    """Is refused as in the undivided model."""
     points = scattered(60, 1) * [0.01, 0.01, 1] - [40, 40, 0]
     surfaces = [Surface("away", points=points, options={"extrapolate": "none", "variogram": GIVEN})]
     project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=9.0, base_elevation=-30.0)])
@@ -172,62 +147,6 @@ def test_a_surface_that_ends_before_the_region_begins(tmp_path):
     assert str(found.value) == str(expected.value)
 
 
-def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
-    """Those that are certain: of scattered points, on a lattice, where all circles are through four points,
-    with few points and far apart, in one line, and where there are nodes outside the hull."""
-    lattice = on_a_grid((34, 30), (4, 4), (-15, -12), 0, 8, 2)
-    aside = on_a_grid((40, 30), (1.5, 1.5), (25, 20), 0.3, 14, 3)
-    line = np.column_stack([np.linspace(0, 100, 30), np.linspace(10, 70, 30), np.linspace(30, 33, 30)])
-    nearest = {"extrapolate": "nearest"}
-    surfaces = [
-        Surface("natural", points=scattered(3000, 1), method="natural_neighbour"),
-        Surface("linear", points=scattered(3000, 2, 4), method="tin"),
-        Surface("lattice", points=lattice, method="natural_neighbour"),
-        Surface("cells", points=np.add(lattice, [0, 0, 3]), method="tin", minimum_thickness=0.5, tie=False),
-        Surface("aside", points=aside, method="natural_neighbour"),
-        Surface("near", points=np.add(aside, [0, 0, 4]), method="natural_neighbour", options=nearest),
-        Surface("nearer", points=np.add(aside, [0, 0, 7]), method="tin", options=nearest),
-        Surface("few", points=scattered(12, 3, 25), method="natural_neighbour"),
-        Surface("in line", points=line, method="natural_neighbour"),
-    ]
-    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
-    seen, real = [], LocalHeights.certain_heights
-
-    def certain_heights(self, work, points, nodes, window):
-        if window is not self.border[1]:  # of all points, for ties
-            seen.append((len(nodes), len(points)))
-        return real(self, work, points, nodes, window)
-
-    monkeypatch.setattr(LocalHeights, "certain_heights", certain_heights)
-    tiled, whole = build_tiles(project, tmp_path / "t", (20, 25)), build(project)
-    assert_same_heights(tiled, whole)
-    assert_same_blocks(tiled, whole)
-    assert_same_warnings(tiled, whole)
-    nodes, points = np.array(seen).T
-    assert nodes @ points / nodes.sum() < 900  # of 3000, 1020 and 1200
-
-
-def test_surfaces_that_tiles_leave_to_the_lead():
-    """Those of one system, those that need one that ends, and those that such ones need."""
-    points = scattered(60, 1)
-    surfaces = [
-        Surface("ends", points=points, options={"extrapolate": "none"}),
-        Surface("on it", method="parallel", options={"to": "ends", "thickness": 1.0}),
-        Surface("bound", points=points),
-        Surface("smooth", points=points, method="dsi", options={"above": "bound"}),
-        Surface("free", points=points, minimum_thickness=1.0, tie=False),
-        Surface("under", method="parallel", options={"to": "on it", "thickness": 1.0}),
-        Surface("shown", points=points, method="parallel", options={"to": "free"}),
-        Surface("last", points=points, minimum_thickness=1.0, tie=False),
-    ]
-    rock = Rock("r", surfaces, region=OUTLINE, edge_length=4.0)
-    assert local_surfaces(rock) == set()
-    surfaces[6] = Surface("apart", points=points)
-    assert local_surfaces(rock) == {4, 6, 7}
-    surfaces[7].tie = True  # raised, it is tied again; it needs the one before
-    assert local_surfaces(rock) == {4}
-
-
 def on_a_grid(shape, steps, corner, turn, shift, seed, left_out=0.0):
     """Points on a grid, turned by an angle, in any order."""
     rng = np.random.default_rng(seed)
@@ -236,36 +155,6 @@ def on_a_grid(shape, steps, corner, turn, shift, seed, left_out=0.0):
     z = shift + 2 * np.sin(x / 15) + rng.normal(0, 0.2, len(x))
     points = np.column_stack([corner[0] + x, corner[1] + y, z])
     return points[rng.permutation(len(x))[: int(len(x) * (1 - left_out))]]
-
-
-def test_grids_are_interpolated_by_windows(monkeypatch, tmp_path):
-    """With nodes missing, nodes beside the grid, and points given twice."""
-    holes = on_a_grid((45, 60), (2.3, 1.7), (20, -10), 0.4, 0, 1, left_out=0.3)
-    holes = holes[(np.abs(holes[:, :2] - [60, 50]) > 12).any(axis=1)]
-    tied = on_a_grid((30, 30), (4, 4), (-10, -10), 0, 12, 3)
-    tied = np.concatenate([tied, np.add(tied[:7], [0, 0, 0.05]), tied[9:11]])
-    surfaces = [
-        Surface("holes", points=holes, method="grid"),
-        Surface("coarse", points=on_a_grid((6, 5), (23, 29), (-5, -5), 0, 6, 2), method="grid"),
-        Surface("tied", points=tied, method="grid"),
-        Surface("aside", points=on_a_grid((20, 90), (1.1, 0.3), (60, 20), -0.2, 18, 4), method="grid"),
-    ]
-    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
-    seen, real = [], LocalHeights.heights
-
-    def heights(self, work, points, nodes, *others):
-        seen.append((len(nodes), len(points)))
-        return real(self, work, points, nodes, *others)
-
-    monkeypatch.setattr(LocalHeights, "heights", heights)
-    tiled, whole = build_tiles(project, tmp_path / "t", (20, 25)), build(project)
-    assert_same_blocks(tiled, whole)
-    assert_same_heights(tiled, whole)
-    assert_same_warnings(tiled, whole)
-    of_tiles = [points for nodes, points in seen if nodes]
-    assert len(of_tiles) == 4 * len(tiled.tiles)
-    for number in (0, 2):  # those that cover most of the region
-        assert np.mean(of_tiles[number::4]) < 0.4 * len(surfaces[number].points)
 
 
 @pytest.mark.parametrize(
@@ -291,39 +180,6 @@ def test_points_that_are_no_grid_are_refused_the_same(change, said, tmp_path):
     assert str(refused.value) == str(here.value)
 
 
-def test_the_automatic_method_is_chosen_once(monkeypatch, tmp_path):
-    """By all points; tiles interpolate by what was chosen, where they can."""
-    smooth = scattered(300, 1, 5)
-    smooth[:, 2] = 5 + 2 * np.sin(smooth[:, 0] / 30) * np.cos(smooth[:, 1] / 40)
-    flat = np.array([[10.0, 10.0, 30.0], [80.0, 70.0, 31.0]])
-    surfaces = [
-        Surface("rough", points=scattered(300, 2), method="auto"),
-        Surface("smooth", points=smooth, method="auto"),
-        Surface("ends", points=scattered(300, 3, 14), method="auto", options={"extrapolate": "nearest"}),
-        Surface("two", points=flat, method="auto"),
-    ]
-    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
-    whole = build(project)
-    chosen = [each.method for each in whole.interpolations]
-    assert {"kriging", "universal_kriging"}.intersection(chosen[:1]) and chosen[3] == "plane"
-    assert chosen[1] in ("spline", "kriging", "universal_kriging")
-    found = []
-    real = tile_folder.prepared
-
-    def prepared(*arguments):
-        made = real(*arguments)
-        found.extend((k, local.method) for (_, k), local in made.frame.local.items())
-        return made
-
-    monkeypatch.setattr(tile_folder, "prepared", prepared)
-    tiled = build_tiles(project, tmp_path / "t", (30, 25))
-    assert found == list(enumerate(chosen))
-    assert_same_blocks(tiled, whole)
-    assert_same_heights(tiled, whole)
-    assert_same_warnings(tiled, whole)
-    assert [surface.method for surface in project.rocks[0].surfaces] == ["auto"] * 4
-
-
 def test_what_auto_proposes_is_said_of_tiles_too(tmp_path):
     project = Project("p", [rock_of(automatic([15, 15, 15], 4))])
     tiled = build_tiles(project, tmp_path / "t", (600, 1100))
@@ -331,8 +187,8 @@ def test_what_auto_proposes_is_said_of_tiles_too(tmp_path):
     assert_same_warnings(tiled, build(project))
 
 
-def test_tiles_do_not_interpolate_where_borders_are_joined(tmp_path):
-    """Then the mesh changes, and heights are made for the whole."""
+def test_borders_are_joined(tmp_path):
+    """Of the mesh of a region and of a ready mesh beside it."""
     project = from_points()
     edge = np.array([[np.nextafter(100.0, 200.0), 40.0], [140.0, 50.0], [100.0, 60.0]])
     other = Surface("other", np.column_stack([edge, [1, 2, 3.0]]), np.array([[0, 1, 2]]))
@@ -359,24 +215,3 @@ def test_borders_of_one_mesh_are_not_compared(monkeypatch, tmp_path):
     tiled, whole = build_tiles(project, tmp_path / "t", (40, 45)), build(project)
     assert_same_blocks(tiled, whole)
     assert_same_heights(tiled, whole)
-
-
-def test_windows_hold_the_nearest_points():
-    rng = np.random.default_rng(7)
-    for points in (
-        scattered(600, 1)[:, :2],
-        rng.uniform(0, 1, (500, 2)) * [300, 0],
-        np.mgrid[0:20, 0:30].T.reshape(-1, 2) * 4.0,
-    ):
-        boxes = [(0.0, 0.0, 30.0, 20.0), (60.0, 10.0, 61.0, 90.0), (-300.0, 500.0, -280.0, 510.0)]
-        found = PointWindows(points, boxes, 16)
-        windows = {box: [] for box in range(3)}
-        for begin in range(0, len(points), 100):
-            for box, which in found.of(points[begin : begin + 100], begin == 0):
-                windows[box].append(which + begin)
-        for box, window in zip(boxes, map(np.concatenate, windows.values()), strict=True):
-            assert window[0] == 0 and (np.diff(window) > 0).all()
-            for place in rng.uniform(box[:2], box[2:], (50, 2)):
-                squared = np.square(points - place).sum(axis=1)
-                near = squared <= np.sort(squared)[16]
-                assert np.isin(np.flatnonzero(near), window).all()

@@ -19,7 +19,6 @@ from realmodel.core import (
 )
 from realmodel.core.ensembles import Realizer
 from realmodel.core.project.project_writer import save_project
-from realmodel.core.surfaces.local_heights import local_surfaces
 from structure_cases import plane_fault, prepared
 
 OUTLINE = [[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [0.0, 20.0]]
@@ -265,15 +264,6 @@ def test_where_it_has_no_effect_it_is_refused(surface, words):
 def test_the_function_refuses_it_for_other_methods():
     with pytest.raises(InputRefused, match="'true_thickness' has no effect with method 'plane'"):
         interpolate([[0, 0, 1.0]], PLAN, "plane", true_thickness=True)
-
-
-def test_tiles_leave_it_to_the_lead():
-    low = Surface("low", points=np.array([[1.0, 1, 0], [9, 3, 1], [4, 15, 2]]), method="idw")
-    for true, expected in ((False, {0, 1}), (True, set())):
-        high = Surface(
-            "high", method="parallel", options={"to": "low", "thickness": 1.0}, true_thickness=true
-        )
-        assert local_surfaces(rock(low, high).rocks[0]) == expected
 
 
 def test_the_same_for_any_number_of_threads():

@@ -3,189 +3,63 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator
-from dataclasses import asdict, replace
-from pathlib import Path
-from typing import Any
+from dataclasses import asdict
 
 import numpy as np
 
-from ..core import BuildFailed, BuildWarning, Project
-from ..core.base.atomic import Outputs
+from ..core import BuildFailed, BuildWarning
 from ..core.base.errors import place_text
-from ..core.base.mapped_arrays import MappedArrays
-from ..core.base.work import Cancel, Reporter, Work, native_module, run
-from ..core.cells.assembly import list_blocks
-from ..core.cells.cell_complex import CellComplex
-from ..core.results.model_fields import rock_fields
-from ..core.structures.parts.parts import box_around, divide
-from ..core.structures.setup import make_surfaces, mesh_inputs, read_inputs
-from ..core.tiles import TiledModel
-from ..core.tiles.catalog import CATALOG, Catalog
-from ..core.tiles.faulted_tile import Whole, build_faulted_tile
-from ..core.tiles.faulted_windows import Window, Windows
+from ..core.base.work import Cancel, Reporter, run
+from ..core.tiles.catalog import Catalog
+from ..core.tiles.faulted_tile import build_faulted_tile
 from ..core.tiles.owned_cells import Seam
-from ..core.tiles.tile_fields import FIELDS, write_rock_fields
-from ..core.tiles.tile_model import Frame, Name, read_arrays, without_shapes
-from .run_folder import (
-    Parts,
-    Store,
-    blocks_of,
-    entry_of,
-    finish,
-    finished,
-    mapped_arrays,
-    places_of,
-    stem,
-    write_tile,
-)
-from .stored_objects import read_object, write_object
-from .tile_inputs import SurfaceReader
+from ..core.tiles.tile_model import Name, read_arrays
+from .run_folder import Parts, Shared, Store, blocks_of, entry_of, places_of, stem, write_tile
 from .workers import Workers
 
-_PREPARED, _BUILT = 0.4, 0.97  # of the time
-_READ, _MESHED = 0.2, 0.3  # of that until windows are prepared
 _ROUNDS = 4  # in which tiles are built again from more around them, at last from everything
-_WINDOW = "window"
 
 
-def build_faulted(
-    project: Project,
-    folder: Path,
-    size: tuple[float, float],
-    cells: str,
+def build_windows(
+    shared: Shared,
+    names: list[Name],
+    digest: str,
+    warnings: list[BuildWarning],
     workers: Workers,
     report: Reporter,
     cancel: Cancel | None,
-) -> TiledModel:
-    """tile_folder.build for a project with faults, bodies or fields. size: of tiles."""
-    with mapped_arrays(folder) as arrays:
-        built = _built(project, folder, size, cells, arrays, workers, report, cancel)
-    return built if isinstance(built, TiledModel) else finish(*built)
-
-
-def _built(
-    project: Project,
-    folder: Path,
-    size: tuple[float, float],
-    cells: str,
-    arrays: MappedArrays,
-    workers: Workers,
-    report: Reporter,
-    cancel: Cancel | None,
-) -> TiledModel | tuple[Store, Catalog]:
-    """The files of the run and the table of the whole; or the model, where the folder is finished. arrays:
-    where surfaces and their sheets are kept."""
-    reader = SurfaceReader(arrays, workers)
-
-    def prepared(work: Work) -> tuple:
-        with work.phase(0.0, _READ, "reading"):
-            inputs, with_arrays = read_inputs(work, project, reader)
-        with work.part(_READ, _MESHED):
-            mesh_inputs(work, inputs, arrays.keep)
-        with work.part(_MESHED, 1.0):
-            structures = make_surfaces(work, with_arrays, inputs, None, arrays.keep, joins=False)
-        if not structures.is_divided:  # fields alone
-            structures = divide(work, structures, box_around(inputs, structures, has_sheets=True))
-        warnings = [warning for entry in inputs for warning in entry.warnings]
-        return Windows(work, inputs, structures, arrays.keep), structures, warnings
-
-    windows, structures, warnings = run(prepared, lambda share, text: report(_PREPARED * share, text), cancel)
-    inputs = windows.inputs
-    frame = Frame(without_shapes(project, inputs), cells, windows.divide(size), ())
-    digest = _digest(frame, windows)
-    if (folder / CATALOG).exists():
-        return finished(folder, digest)
-    store = Store(folder, digest)
-    if any(entry.fields for entry in inputs):
-        write_rock_fields(rock_fields(inputs), folder / FIELDS)
-    names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
-    whole = Whole(
-        list_blocks(inputs, np.zeros(len(names) + len(structures)), CellComplex.empty(cells), structures),
-        replace(
-            structures,
-            faults=[replace(each, vertices=None, triangles=None, points=None) for each in structures.faults],
-            bodies=[replace(each, vertices=None, triangles=None) for each in structures.bodies],
-        ),
-        [*names, *structures.names],
-        np.array([0] * len(names) + structures.kinds, np.int32),
-    )
-    listed = store.listed(frame.grid, lambda: _write_windows(windows, frame, store, cancel))
-    waiting = [name for name in listed if not store.has("joined", name)]
+) -> Catalog:
+    """Builds all tiles of a project with faults, bodies or fields. Returns the table of the whole."""
+    store = shared.store
+    waiting: list[tuple[Name, int | None]]
+    waiting = [(name, 0) for name in names if not store.has("joined", name)]
     for times in range(_ROUNDS + 1):
-        _build_tiles((store, frame, whole), waiting, len(listed), workers, report, cancel)
-        asked = _farther(store, listed)
+        done = len(names) - len(waiting)
+        for _ in workers.in_any_order(_build, shared, waiting, cancel):
+            done += 1
+            report(done / len(names), f"{done} of {len(names)} tiles built")
+        asked = _farther(store, names)
         if not asked:
             break
         if times == _ROUNDS:
             raise BuildFailed(next(iter(asked.values())))
+        farther = None if times == _ROUNDS - 1 else 2 ** (times + 1) - 1
+        waiting = [(name, farther) for name in asked]
         for name in asked:
             store.record("joined", name).unlink()
-            farther = None if times == _ROUNDS - 1 else 2 ** (times + 1) - 1
-            _write_window(windows, store, name, cancel, farther)
-        waiting = list(asked)
-    if windows.snapped is not None:
-        warnings.append(BuildWarning(windows.snapped, "joined"))
-    return store, _catalog(frame, store, listed, digest, warnings)
+    return _catalog(shared, names, digest, warnings)
 
 
-def _digest(frame: Frame, windows: Windows) -> str:
-    """Of all that the result depends on."""
-    lines = frame.grid.x.tolist(), frame.grid.y.tolist()
-    digest = hashlib.sha256(repr((native_module().VERSION, frame.cell_kind, lines, frame.project)).encode())
-    for entry in windows.inputs:
-        digest.update(repr((entry.rock.base_elevation, [s.rule for s in entry.rock.surfaces])).encode())
-    structures = windows.structures
-    for fault in structures.faults:
-        digest.update(repr((fault.name, fault.youngest, list(fault.ends_at), fault.dies_out)).encode())
-    digest.update(
-        repr((structures.displaced, structures.times, [b.void for b in structures.bodies])).encode()
-    )
-    for array in windows.arrays():
-        digest.update(np.ascontiguousarray(array))
-    return digest.hexdigest()
-
-
-def _write_windows(windows: Windows, frame: Frame, store: Store, cancel: Cancel | None) -> list[Name]:
-    names = [name for name in frame.grid if windows.meets(frame.grid.box(*name))]
-    for name in names:
-        _write_window(windows, store, name, cancel, 0)
-    return names
-
-
-def _write_window(
-    windows: Windows, store: Store, name: Name, cancel: Cancel | None, farther: int | None
-) -> None:
-    window = run(lambda work: windows.window(work, name, farther), cancel=cancel)
-    with Outputs() as outputs, outputs.file(store.parts(name) / _WINDOW) as file:
-        write_object(window, file)
-
-
-def _build_tiles(
-    shared: Any,
-    waiting: list[Name],
-    count: int,
-    workers: Workers,
-    report: Reporter,
-    cancel: Cancel | None,
-) -> None:
-    done = count - len(waiting)
-    for _ in workers.in_any_order(_build, shared, waiting, cancel):
-        done += 1
-        report(_PREPARED + (_BUILT - _PREPARED) * done / count, f"{done} of {count} tiles built")
-
-
-def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
+def _build(shared: Shared, task: tuple[Name, int | None]) -> None:
     """On a worker: builds a tile, proves it, and writes it, and what its neighbors have to have, too. Dask
     repeats a task whose worker is lost, also if it was done."""
-    store, frame, whole = shared
+    store, frame, (name, farther) = shared.store, shared.frame, task
     if store.has("joined", name):
         return
-    window = _window(store.parts(name) / _WINDOW)
-    box = frame.grid.box(*name)
-    built = run(lambda work: build_faulted_tile(work, frame, whole, window, name), threads=1)
-    report = built.around.validate(places_of(frame, box), threads=1)
+    window = run(lambda work: shared.window(work, name, farther), threads=1)
+    built = run(lambda work: build_faulted_tile(work, frame, window, name), threads=1)
+    report = built.around.validate(places_of(frame, frame.grid.box(*name)), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
     model = built.model
@@ -202,13 +76,6 @@ def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
     )
     warnings = [asdict(warning) for warning in built.around.warnings]
     write_tile(store, name, model, warnings=warnings, is_within=is_within)
-
-
-def _window(path: Path) -> Window:
-    window = read_object(path)
-    if not isinstance(window, Window):
-        raise BuildFailed(f"{path}: is not a window of a tile; delete it and start again")
-    return window
 
 
 def _farther(store: Store, names: list[Name]) -> dict[Name, str]:
@@ -243,9 +110,8 @@ def _read(store: Store, name: Name, names: list[Name]) -> dict[str, np.ndarray]:
     return read_arrays(store.file("patches", name)) if name in names else {"others": np.empty((0, 2))}
 
 
-def _catalog(
-    frame: Frame, store: Store, names: list[Name], digest: str, warnings: list[BuildWarning]
-) -> Catalog:
+def _catalog(shared: Shared, names: list[Name], digest: str, warnings: list[BuildWarning]) -> Catalog:
+    store, frame = shared.store, shared.frame
     parts, cells, faces = Parts(), Parts(), 0
     kinds = [("parts", parts)] if frame.cell_kind == "columns" else [("parts", parts), ("cells", cells)]
     for name in names:

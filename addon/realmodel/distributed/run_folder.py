@@ -8,9 +8,9 @@ import math
 import secrets
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ import numpy as np
 from ..core import BuildFailed, OutputFailed, UsageError
 from ..core.base.atomic import Outputs
 from ..core.base.mapped_arrays import MappedArrays
-from ..core.base.work import wait_for_stopped
+from ..core.base.work import Work, wait_for_stopped
 from ..core.cells.blocks import Block
 from ..core.exporters.encodings.vtk_xml import write_pieces
 from ..core.exporters.npz import write_arrays
@@ -28,9 +28,11 @@ from ..core.model.model import Model
 from ..core.proof.validation import PLACES_OF_REPORT
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
-from ..core.tiles.settling import Box
+from ..core.tiles.grid import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
 from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
+from ..core.tiles.windows import Window, Windows
+from .packing import unpacked
 
 RUN = "run"  # what only a run needs, in the folder
 _DIGEST = "digest"  # in there: of all that the result depends on
@@ -102,10 +104,6 @@ class Store:
         ending = "arrays" if kind == "built" else "npz"
         return folder / f"{prefix}{stem(name)}.{ending}"
 
-    def parts(self, name: Name) -> Path:
-        """The folder with what a tile needs of each surface."""
-        return self._run / f"parts-{stem(name)}"
-
     def record(self, kind: str, name: Name) -> Path:
         return self._run / f"{kind}-{stem(name)}.json"
 
@@ -124,27 +122,28 @@ class Store:
             text = f"{self.record(kind, name)}: cannot be read; delete {self._run} and start again"
             raise BuildFailed(text) from error
 
-    def listed(self, grid: Iterable[Name], write: Callable[[], list[Name]]) -> list[Name]:
-        """The tiles that need something, in order of the grid: as `write` gives them, which writes what each
-        tile needs, unless that was done."""
-        listed = self._run / "parts.json"
-        if not listed.exists():
-            try:
-                for name in grid:
-                    self.parts(name).mkdir(exist_ok=True)
-            except OSError as error:
-                raise OutputFailed(f"{self._run}: {error.strerror or error}") from error
-            names = write()
-            with Outputs() as outputs, outputs.file(listed) as file:
-                file.write(json.dumps(names).encode())
-        return [tuple(name) for name in json.loads(listed.read_text())]
-
     def write(self, path: Path, arrays: dict[str, np.ndarray]) -> None:
         with Outputs() as outputs, outputs.file(path) as file:
             write_arrays(arrays, file)
 
     def remove(self) -> None:
         shutil.rmtree(self._run, ignore_errors=True)
+
+
+@dataclass(frozen=True)
+class Shared:
+    """What all tasks get. inputs: the folder of MappedArrays; windows: packed there. names: of all tiles."""
+
+    store: Store
+    frame: Frame
+    inputs: Path
+    windows: bytes
+    names: frozenset[Name]
+
+    def window(self, work: Work, name: Name, farther: int | None = 0) -> Window:
+        """As Windows.window."""
+        windows: Windows = unpacked(self.windows, self.inputs)
+        return windows.window(work, name, farther)
 
 
 def another(folder: Path) -> UsageError:

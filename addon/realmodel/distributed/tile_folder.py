@@ -18,8 +18,8 @@ from ..core.base.mapped_arrays import read_mapped, write_mapped
 from ..core.base.work import Cancel, Progress, Reporter, progress_bar, report_nothing, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
-from ..core.surfaces.local_heights import PartHeights
-from ..core.surfaces.wrong_sides import WrongPoints
+from ..core.project.project_checks import check_project
+from ..core.results.model_fields import rock_fields
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
     OPPOSITE,
@@ -36,6 +36,7 @@ from ..core.tiles.borders import (
 from ..core.tiles.catalog import CATALOG, Catalog
 from ..core.tiles.grid import checked_size
 from ..core.tiles.settling import BorderVertices, settled
+from ..core.tiles.tile_fields import FIELDS, write_rock_fields
 from ..core.tiles.tile_model import (
     Frame,
     Name,
@@ -44,9 +45,11 @@ from ..core.tiles.tile_model import (
     read_arrays,
     tile_arrays,
 )
-from .faulted_folder import build_faulted
+from .faulted_folder import build_windows
+from .packing import packed
 from .run_folder import (
     Parts,
+    Shared,
     Store,
     blocks_of,
     entry_of,
@@ -57,7 +60,7 @@ from .run_folder import (
     require_own,
     write_tile,
 )
-from .tile_inputs import PreparedInputs, divided, prepared
+from .tile_inputs import digest_of, frame_of, prepared
 from .workers import Workers, no_workers, require_this_version, workers_of
 
 _PREPARED, _JOINED = 0.25, 0.97  # of the time
@@ -98,40 +101,48 @@ def build(
     is_finished = (folder / CATALOG).exists()
     if not is_finished:
         require_this_version(client)
-    with no_workers() if is_finished else workers_of(client, workers) as done_by:
-        if project.faults or project.bodies or any(rock.has_fields for rock in project.rocks):
-            return build_faulted(project, folder, size, cells, done_by, report, cancel)
-        with mapped_arrays(folder) as arrays:
-            found = prepared(
-                project,
-                size,
-                cells,
-                arrays,
-                done_by,
-                lambda share, text: report(_PREPARED * share, text),
-                cancel,
-            )
-            if is_finished:
-                return finished(folder, found.digest)
-            store = Store(folder, found.digest)
-            names = store.listed(
-                found.frame.grid, lambda: divided(found, arrays, done_by, store.parts, cancel)
-            )
-            found = found.let_go()
-        _build_all(store, found.frame, names, done_by, report, cancel)
-    return finish(store, _catalog(found, store, names))
+    check_project(project)
+    with (
+        no_workers() if is_finished else workers_of(client, workers) as done_by,
+        mapped_arrays(folder) as arrays,
+    ):
+        windows, warnings = run(
+            lambda work: prepared(work, project, arrays, done_by),
+            lambda share, text: report(_PREPARED * share, text),
+            cancel,
+        )
+        frame = frame_of(project, windows, size, cells)
+        digest = digest_of(frame, windows)
+        if is_finished:
+            return finished(folder, digest)
+        store = Store(folder, digest)
+        if any(entry.fields for entry in windows.inputs):
+            write_rock_fields(rock_fields(windows.inputs), folder / FIELDS)
+        names = [name for name in frame.grid if windows.meets(frame.grid.box(*name))]
+        is_cut = not windows.structures.is_divided
+        shared = Shared(store, frame, arrays.folder, packed(windows.for_workers(), arrays), frozenset(names))
+        del windows
+
+        def reported(share: float, text: str) -> None:
+            report(_PREPARED + (_JOINED - _PREPARED) * share, text)
+
+        build_all = _build_all if is_cut else build_windows
+        catalog = build_all(shared, names, digest, warnings, done_by, reported, cancel)
+    return finish(store, catalog)
 
 
 def _build_all(
-    store: Store,
-    frame: Frame,
+    shared: Shared,
     names: list[Name],
+    digest: str,
+    warnings: list[BuildWarning],
     workers: Workers,
     report: Reporter,
     cancel: Cancel | None,
-) -> None:
-    """Builds all tiles, and joins each as soon as those around it are built."""
-    everywhere = frozenset(names)
+) -> Catalog:
+    """Builds all tiles, and joins each as soon as those around it are built. Returns the table of the
+    whole."""
+    store, everywhere = shared.store, shared.names
     built = {name for name in names if store.has("built", name)}
     joined = {name for name in names if store.has("joined", name)}
 
@@ -148,18 +159,17 @@ def _build_all(
         for name in names
         if name not in joined and built.issuperset(_around(name, everywhere))
     ]
-    shared = (store, frame, everywhere)
     for (kind, name), _ in workers.in_any_order(_step, shared, tasks, cancel, following=following):
         (built if kind == "built" else joined).add(name)
         done = (_BUILT * len(built) + (1 - _BUILT) * len(joined)) / len(names)
-        text = f"{len(built)} of {len(names)} tiles built, {len(joined)} joined"
-        report(_PREPARED + (_JOINED - _PREPARED) * done, text)
+        report(done, f"{len(built)} of {len(names)} tiles built, {len(joined)} joined")
+    return _catalog(shared, names, digest, warnings)
 
 
-def _step(shared: tuple[Store, Frame, frozenset], task: tuple[str, Name]) -> None:
+def _step(shared: Shared, task: tuple[str, Name]) -> None:
     """On a worker. Dask repeats a task whose worker is lost, also if it was done."""
     kind, name = task
-    if not shared[0].has(kind, name):
+    if not shared.store.has(kind, name):
         (_build if kind == "built" else _join)(shared, name)
 
 
@@ -179,11 +189,12 @@ def _around(name: Name, names: frozenset) -> list[Name]:
     return [name, *(other for other in near if other in names and other != name)]
 
 
-def _build(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
+def _build(shared: Shared, name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
-    store, frame, names = shared
+    store, frame, names = shared.store, shared.frame, shared.names
     box = frame.grid.box(*name)
-    built = run(lambda work: build_tile(work, frame, box, store.parts(name)), threads=1)
+    inputs = run(lambda work: shared.window(work, name), threads=1).inputs
+    built = run(lambda work: build_tile(work, frame, inputs, box), threads=1)
     model, sides = built.model, built.borders
     numbers = sides["numbers"]
     edges = BorderEdges.of(model, numbers)
@@ -195,19 +206,12 @@ def _build(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
     with Outputs() as outputs, outputs.file(store.file("built", name)) as file:
         write_mapped(tile_arrays(model), file)
     store.write(store.file("sides", name), sides)
-    store.done(
-        "built",
-        name,
-        warnings=[asdict(warning) for warning in model.warnings],
-        below=[[*key, asdict(wrong)] for key, wrong in built.wrong.items()],
-        above=[[*key, asdict(wrong)] for key, wrong in built.above.items()],
-        heights=[[*key, asdict(of)] for key, of in built.heights.items()],
-    )
+    store.done("built", name, warnings=[asdict(warning) for warning in model.warnings])
 
 
-def _join(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
+def _join(shared: Shared, name: Name) -> None:
     """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
-    store, frame, names = shared
+    store, frame, names = shared.store, shared.frame, shared.names
     model = model_of(frame.project, read_mapped(store.file("built", name)))
     around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
@@ -251,10 +255,10 @@ def _patches(arrays: dict, side: str) -> Patches:
     return Patches(shape, block, part, int(arrays[f"{side}_open"]))
 
 
-def _catalog(found: PreparedInputs, store: Store, names: list[Name]) -> Catalog:
-    """The table of the whole."""
-    frame = found.frame
-    parts, compared, unequal, warnings = Parts(), 0, 0, list(found.warnings)
+def _catalog(shared: Shared, names: list[Name], digest: str, warnings: list[BuildWarning]) -> Catalog:
+    """The table of the whole. warnings: about all of it."""
+    store, frame = shared.store, shared.frame
+    parts, compared, unequal, warnings = Parts(), 0, 0, list(warnings)
     for name in names:
         arrays = read_arrays(store.file("patches", name))
         for part, block in zip(arrays["parts"].tolist(), arrays["block_of_part"].tolist(), strict=True):
@@ -281,45 +285,29 @@ def _catalog(found: PreparedInputs, store: Store, names: list[Name]) -> Catalog:
     return Catalog(
         frame.project,
         frame.cell_kind,
-        found.digest,
+        digest,
         frame.grid,
         blocks_of(frame, records, parts, parts),
         [entry_of(name, record) for name, record in zip(names, records, strict=True)],
         compared,
         unequal,
-        [*warnings, *_warnings(frame, store, names)],
+        [*warnings, *_warnings(store, names)],
     )
 
 
-def _warnings(frame: Frame, store: Store, names: list[Name]) -> list[BuildWarning]:
-    """Those of all tiles; what they say of triangles and points as one."""
+def _warnings(store: Store, names: list[Name]) -> list[BuildWarning]:
+    """Those of all tiles; what they say of triangles as one."""
     items: dict[tuple, set] = {}
-    wrong: dict[tuple[str, int, int], WrongPoints] = {}
-    heights: dict[tuple[int, int], PartHeights] = {}
     for name in names:
-        record = store.read_record("built", name)
-        for warning in record["warnings"]:
+        for warning in store.read_record("built", name)["warnings"]:
             key: tuple = (warning["kind"], warning["rock"], warning["surface"])
             if warning["kind"] != "no_area":
                 key = (*key, warning["text"])
             items.setdefault(key, set()).update(warning["items"])
-        for side in ("below", "above"):
-            _join_each(wrong, [((side, r, k), WrongPoints(**own)) for r, k, own in record[side]])
-        _join_each(heights, [((r, k), PartHeights(**own)) for r, k, own in record["heights"]])
     found = []
-    for (r, k), of in sorted(heights.items()):
-        found += frame.local[r, k].warnings(of, frame.project.rocks[r], k)
-    for (side, r, k), own in sorted(wrong.items()):
-        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], side))
     for (kind, rock, surface, *text), numbers in items.items():
         if kind == "no_area":
             what = "triangle" if len(numbers) == 1 else "triangles"
             text = [f"{len(numbers)} {what} without area left out"]
         found.append(BuildWarning(text[0], kind, rock, surface, tuple(sorted(numbers))))
     return found
-
-
-def _join_each(found: dict, parts: list[tuple]) -> None:
-    """Adds parts to what others had of the same."""
-    for key, part in parts:
-        found[key] = found[key].joined(part) if key in found else part

@@ -23,7 +23,6 @@ from .errors import BuildFailed, OutputFailed
 StoreArray = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
 # One array of pieces, one after another; the second is empty, and has the type and the columns of all.
 JoinPieces = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
-MakeZeros = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the caller to change
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
 _SAMPLE = 64  # rows of each part that say where it begins

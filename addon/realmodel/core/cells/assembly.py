@@ -19,8 +19,8 @@ from ..surfaces.surface_arrays import SurfaceArrays
 from .blocks import Block, named_blocks
 from .built_cells import BuiltCells
 from .cell_complex import CellComplex
-from .joining import build_joined
-from .labels import cell_compartments, warnings_where_rock_is
+from .joining import build_joined, built_cells
+from .labels import compartments, warnings_where_rock_is
 from .model_data import ModelData, SomeModel
 from .stack_refusals import refused_stack
 
@@ -60,14 +60,21 @@ def build_stage(
     return run(task, progress, cancel, threads=model.threads)
 
 
+def are_joined(inputs: list[RockInput], structures: Structures) -> bool:
+    """Whether the cells of rock masses are those of parts of space, joined: where structures divide them, or
+    fields, or a base that cuts surfaces off."""
+    return structures.is_divided or any(entry.fields or entry.reaches_base for entry in inputs)
+
+
 def intersect(work: Work, inputs: list[RockInput], cells: str, structures: Structures) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
-    if structures.is_divided or any(entry.fields or entry.reaches_base for entry in inputs):
+    if are_joined(inputs, structures):
         return build_joined(work, inputs, structures, cells)
     rocks = [entry.native() for entry in inputs]
     refused = refused_as(lambda error: refused_stack(error, inputs))
     with work.phase(0.0, 1.0, "intersecting and cutting"), refused as native:
-        return BuiltCells.of(work.native(native.build_rock_masses, rocks, cells=cells), cells)
+        arrays = work.native(native.build_rock_masses, rocks, cells=cells)
+    return built_cells(arrays, cells, inputs, structures)
 
 
 def assemble(
@@ -87,7 +94,7 @@ def assemble(
         blocks = list_blocks(inputs, built.volumes, own, structures)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
         kinds = [0] * len(names) + structures.kinds
-        compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
+        compartment, compartment_names, sides = compartments(inputs, built.parts, structures)
         model = ModelData(
             own,
             named_blocks(blocks),

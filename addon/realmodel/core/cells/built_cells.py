@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,7 +22,7 @@ class NativeWarning(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class CellParts:
-    """Where the cells of a model with structures are. part: (C,) int32, the part of space of each cell.
+    """Where cells are. part: (C,) int32, the part of space of each cell.
     own_block: (C,) int32, its block with those of bodies as body_block numbers them. rock: (B,) int32, the
     rock mass of these blocks. divided: (S, B) uint8, whether a structure divides such a block."""
 
@@ -37,18 +36,9 @@ class CellParts:
 class BuiltCells:
     """The cells of all rock masses. Blocks have the numbers of the surfaces above them, those of bodies the
     numbers of their structures, counted after all surfaces; so have faces. volumes: (S,) float64 of these
-    blocks. parts: None without structures."""
+    blocks."""
 
     complex: CellComplex
     volumes: np.ndarray
-    warnings: list[NativeWarning] = field(default_factory=list)
-    parts: CellParts | None = None
-
-    @classmethod
-    def of(cls, arrays: Mapping[str, Any], cell_kind: str) -> BuiltCells:
-        """Of a result of the native module."""
-        warnings = [
-            NativeWarning(kind, int(surface), tuple(int(item) for item in items), text)
-            for kind, surface, items, text in arrays["warnings"]
-        ]
-        return cls(CellComplex.of(arrays, cell_kind), arrays["volumes"], warnings)
+    parts: CellParts
+    warnings: list[NativeWarning]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,8 @@ from ..structures.parts.part_models import (
 from ..structures.parts.parts import Structures, compartment_of
 from ..structures.parts.refusals import refused_structure
 from ..surfaces.rock_input import RockInput
-from .built_cells import BuiltCells, CellParts
+from .built_cells import BuiltCells, CellParts, NativeWarning
+from .cell_complex import CellComplex
 from .reach import Reach
 from .stack_refusals import refused_stack
 
@@ -54,7 +56,6 @@ def build_joined(
     if reach is None and structures.is_divided:
         reach = Reach(work, structures)
     solids = SolidsOfFields(work, inputs)
-    divides = blocks_divided(inputs, structures)
     surfaces = _first_surfaces(inputs)[-1]
     piece = None if structures.continued is None else (structures.continued, structures.largest)
     refused = refused_as(lambda error: _refused(error, inputs, structures))
@@ -63,13 +64,12 @@ def build_joined(
             native.build_parts,
             [_part(work, structures, reach, part, cells, solids) for part in range(len(structures.sides))],
             (surfaces, structures.native()),
-            divides,
+            blocks_divided(inputs, structures),
             cells,
             piece=piece,
         )
     _level_bases(joined, inputs)
-    built = BuiltCells.of(joined, cells)
-    return _with_parts(built, joined["cell_part"], inputs, structures, divides)
+    return built_cells(joined, cells, inputs, structures)
 
 
 def _level_bases(joined: dict, inputs: list[RockInput]) -> None:
@@ -107,27 +107,31 @@ def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: i
         face_surface=np.where(face < 0, face, number[np.maximum(face, 0)]).astype(np.int32),
         cell_block=number[built.complex.cell_block],
     )
-    parts = built.parts and replace(built.parts, part=part[built.parts.part])
+    parts = replace(built.parts, part=part[built.parts.part])
     return replace(built, complex=renumbered, volumes=volumes, parts=parts)
 
 
-def _with_parts(
-    built: BuiltCells, part: np.ndarray, inputs: list[RockInput], structures: Structures, divides: np.ndarray
+def built_cells(
+    arrays: Mapping[str, Any], cells: str, inputs: list[RockInput], structures: Structures
 ) -> BuiltCells:
-    """The cells with each body as one block of all rock masses, and their parts. divides: as `blocks_divided`
-    has it."""
+    """The cells of a result of the native module, with each body as one block of all rock masses, and their
+    parts: one where nothing divides rock masses."""
+    own = CellComplex.of(arrays, cells)
     first, count = _first_surfaces(inputs), len(structures)
-    own, surfaces = built.complex.cell_block, first[-1]
+    block, surfaces = own.cell_block, first[-1]
     rocks = np.arange(len(inputs), dtype=np.int32)
     rock = np.append(np.repeat(rocks, np.diff(first)), np.repeat(rocks, count))
-    body = own >= surfaces
-    blocks = np.where(body, surfaces + (own - surfaces) % max(1, count), own).astype(np.int32)
-    of_bodies = built.volumes[surfaces:].reshape(len(inputs), count).sum(axis=0)
+    of_body = surfaces + (block - surfaces) % max(1, count)
+    of_bodies = arrays["volumes"][surfaces:].reshape(len(inputs), count).sum(axis=0)
+    part = arrays["cell_part"] if "cell_part" in arrays else np.zeros(len(block), np.int32)
     return BuiltCells(
-        replace(built.complex, cell_block=blocks),
-        np.append(built.volumes[:surfaces], of_bodies),
-        built.warnings,
-        CellParts(part, own, rock, divides),
+        replace(own, cell_block=np.where(block >= surfaces, of_body, block).astype(np.int32)),
+        np.append(arrays["volumes"][:surfaces], of_bodies),
+        CellParts(part, block, rock, blocks_divided(inputs, structures)),
+        [
+            NativeWarning(kind, int(surface), tuple(map(int, items)), text)
+            for kind, surface, items, text in arrays["warnings"]
+        ],
     )
 
 

@@ -10,28 +10,15 @@ from ..structures.parts.parts import Structures, compartment_names, compartment_
 from .built_cells import BuiltCells, CellParts
 
 
-def cell_compartments(
-    inputs: list, built: BuiltCells, structures: Structures
+def compartments(
+    inputs: list, own: CellParts, structures: Structures
 ) -> tuple[np.ndarray, list[str], np.ndarray]:
-    """(C,) int32 the compartment of each cell, the names of the compartments that have cells, and (N, F) int8
-    the side of each fault that they lie on, 0 where it does not divide them.
+    """Of cells in parts (C,) int32 the compartment of each, the names of the compartments that have cells,
+    and (N, F) int8 the side of each fault that they lie on, 0 where it does not divide them.
 
     A compartment lies on one side of each fault that divides its blocks: where faults die out their two sides
     are one compartment, and what is younger than a fault is not divided by it.
     """
-    if built.parts is None:
-        rock_of = np.repeat(np.arange(len(inputs)), [len(entry.surfaces) for entry in inputs])
-        block = built.complex.cell_block
-        none = np.empty((0, len(rock_of)), np.uint8)  # no structure divides a block
-        own = CellParts(np.zeros(len(block), np.int32), block, rock_of, none)
-        return compartments(inputs, own, structures)
-    return compartments(inputs, built.parts, structures)
-
-
-def compartments(
-    inputs: list, own: CellParts, structures: Structures
-) -> tuple[np.ndarray, list[str], np.ndarray]:
-    """As cell_compartments, of the parts of some cells."""
     rock_of, block, part = own.rock, own.own_block, own.part
     parts = len(structures.sides)
     kind = block.astype(np.int64) * parts + part
@@ -60,8 +47,8 @@ def _dying(structures: Structures) -> np.ndarray:
 def warnings_where_rock_is(inputs: list, built: BuiltCells, structures: Structures) -> list[BuildWarning]:
     """The warnings about compartments that hold rock."""
     found = []
-    parts = [] if built.parts is None else np.unique(built.parts.part).tolist()
-    for entry in inputs:
+    for entry in (entry for entry in inputs if entry.divided().warnings):
+        parts = np.unique(built.parts.part).tolist()
         held = {compartment_of(structures, entry, part) for part in parts}
         found += [warning for members, warning in entry.divided().warnings if held.intersection(members)]
     return found

@@ -6,6 +6,6 @@ nodes, with variances and warnings; or heights drawn at random that the points a
 """
 
 from .interpolation import Interpolation, Task
-from .run import chosen, heights, left_out_heights
+from .run import heights, left_out_heights
 
-__all__ = ["Interpolation", "Task", "chosen", "heights", "left_out_heights"]
+__all__ = ["Interpolation", "Task", "heights", "left_out_heights"]

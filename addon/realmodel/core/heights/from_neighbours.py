@@ -101,12 +101,11 @@ class KrigingStructure:
     missing: str | None = None
 
 
-def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
-    """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
-    they may be in a file."""
+def structure(task: Task) -> KrigingStructure:
+    """The variogram of the settings, or fitted to the points."""
     if task.settings.get("drift") == "auto":
         plane = _regional_plane(task)
-        return replace(structure(_around(task, plane), are_apart), plane=plane)
+        return replace(structure(_around(task, plane)), plane=plane)
     if task.companions is not None:
         return _joint_structure(task, task.companions)
     settings = task.settings
@@ -128,7 +127,6 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
         anisotropy=along,
         drift=settings.get("drift", "constant"),
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
-        are_apart=are_apart,
         dips=dips_of_fit(task),
         has_bounds=has_bounds,
         error=task.error,
@@ -459,16 +457,12 @@ def without_near_points(alone: int, nodes: int) -> list[str]:
     ]
 
 
-def beyond_radius(task: Task) -> np.ndarray:
-    """(N,) bool: the nodes that have no point within the radius."""
+def _beyond_radius(task: Task) -> list[str]:
     radius = task.settings.get("radius")
     if radius is None or not len(task.nodes):
-        return np.zeros(len(task.nodes), bool)
-    return task.run(native_module().nearest_distance, task.points, task.nodes) > radius
-
-
-def _beyond_radius(task: Task) -> list[str]:
-    return without_near_points(int(beyond_radius(task).sum()), len(task.nodes))
+        return []
+    away = task.run(native_module().nearest_distance, task.points, task.nodes)
+    return without_near_points(int((away > radius).sum()), len(task.nodes))
 
 
 def nearest_heights(task: Task, nodes: np.ndarray) -> np.ndarray:

@@ -9,28 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.mapped_arrays import in_pieces
 from ..base.work import native_module
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
-
-
-def hull_corners(points: np.ndarray) -> np.ndarray:
-    """(H, 3) corners of the convex hull of points (P, 3) in plan, at height 0: the same nodes are outside."""
-    corners = np.empty((0, 2))
-    for piece in in_pieces(points):
-        corners = native_module().hull_corners(np.concatenate([corners, piece[:, :2]]))
-    return np.column_stack([corners, np.zeros(len(corners))])
-
-
-def hull_border(points: np.ndarray) -> np.ndarray:
-    """(B, 3) those of points (P, 3), no two at one place, that are on the border of their convex hull, as
-    coordinates from the first of them show it; counterclockwise."""
-    border, start = np.empty((0, 3)), points[0, :2]
-    for piece in in_pieces(points):
-        rows = np.concatenate([border, piece])
-        border = rows[native_module().hull_border(np.ascontiguousarray(rows[:, :2] - start))]
-    return border
 
 
 def outside_hull(task: Task) -> np.ndarray:

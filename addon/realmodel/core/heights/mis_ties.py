@@ -3,138 +3,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from ..base.algebra import begins_run
 from ..base.errors import place_text
-from ..base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeZeros, in_memory, in_pieces
 
 # of the height range of all points: beyond this it is a mistake in the data, and interpolation refuses it
 LARGEST_SHARE = 0.05
-_AT_ONCE = 1 << 18  # points among which those at one place are looked for
 
 
-def without_mis_ties(
-    points: np.ndarray, zeros: MakeZeros = np.zeros, gather: JoinPieces = in_memory
-) -> tuple[np.ndarray, str | None]:
+def without_mis_ties(points: np.ndarray) -> tuple[np.ndarray, str | None]:
     """Points with one height at each position, and a warning (None: nothing was changed).
 
-    points: (P, 3) float64, which may be in a file. Where heights at one position differ by no more than a
-    twentieth of the height range of all points, their mean replaces the first of them; larger contradictions
-    are left in. zeros, gather: where arrays are kept.
+    points: (P, 3) float64. Where heights at one position differ by no more than a twentieth of the height
+    range of all points, their mean replaces the first of them; larger contradictions are left in.
     """
-    found = _Places(points, zeros, is_once=False)
-    return found.kept(gather), found.warning()
-
-
-def each_place_once(
-    points: np.ndarray, zeros: MakeZeros, gather: JoinPieces
-) -> tuple[np.ndarray, str | None, bool]:
-    """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
-    larger contradictions are left in."""
-    found = _Places(points, zeros, is_once=True)
-    return found.kept(gather), found.warning(), not found.has_contradictions
-
-
-class _Places:
-    """Selects the points that are left when those at one position are merged. is_once: also those with equal
-    heights."""
-
-    def __init__(self, points: np.ndarray, zeros: MakeZeros, is_once: bool):
-        self._points = points
-        self._keeps = zeros((len(points),), bool)
-        self._changed: list[tuple[np.ndarray, np.ndarray]] = []  # numbers and heights
-        self._count, self._worst = 0, (0.0, 0.0, 0.0)  # how far apart, and where
-        self.has_contradictions = False
-        most = LARGEST_SHARE * float(np.ptp(points[:, 2])) if len(points) else 0.0
-        for numbers, rows in _by_place(points, zeros):
-            self._settle(numbers, rows, most, is_once)
-
-    def _settle(self, numbers: np.ndarray, rows: np.ndarray, most: float, is_once: bool) -> None:
-        place, first, apart = _places(rows)
-        contradict = apart > most
-        tolerated = (apart > 0) & ~contradict
-        merged = ~contradict if is_once else tolerated
-        keep = ~merged[place]
-        keep[first[merged]] = True
-        if is_once and contradict.any():
-            among = np.flatnonzero(keep)
-            keep[among] = False
-            keep[among[np.unique(rows[among] + 0.0, axis=0, return_index=True)[1]]] = True
-        self._keeps[numbers] = keep
-        self.has_contradictions |= bool(contradict.any())
-        if not tolerated.any():
-            return
-        self._count += int(tolerated.sum())
-        self._changed.append((numbers[first[tolerated]], _means(rows, place)[tolerated]))
-        worst = int(np.where(tolerated, apart, 0.0).argmax())
-        x, y = rows[first[worst], :2].tolist()
-        self._worst = max(self._worst, (float(apart[worst]), -x, -y))  # of equals the first from the west
-
-    def kept(self, gather: JoinPieces) -> np.ndarray:
-        """The points themselves where all are left as they are."""
-        if not self._changed and all(piece.all() for piece in in_pieces(self._keeps)):
-            return self._points
-        return gather(self._pieces(), np.empty((0, self._points.shape[1])))
-
-    def _pieces(self) -> Iterator[np.ndarray]:
-        numbers = np.concatenate([np.empty(0, np.int64), *(each for each, _ in self._changed)])
-        heights = np.concatenate([np.empty(0), *(each for _, each in self._changed)])
-        order = np.argsort(numbers)
-        numbers, heights = numbers[order], heights[order]
-        for begin in range(0, len(self._points), ROWS_AT_ONCE):
-            piece = np.array(self._points[begin : begin + ROWS_AT_ONCE])
-            first, last = np.searchsorted(numbers, [begin, begin + len(piece)])
-            piece[numbers[first:last] - begin, 2] = heights[first:last]
-            yield piece[self._keeps[begin : begin + len(piece)]]
-
-    def warning(self) -> str | None:
-        if not self._count:
-            return None
-        apart, x, y = self._worst
-        places = "1 position has" if self._count == 1 else f"{self._count} positions have"
-        most = f"up to {apart:.6g} apart (at {place_text((-x, -y))})"
-        return f"{places} several heights, {most}: their mean is used"
-
-
-def _by_place(points: np.ndarray, zeros: MakeZeros) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Numbers of points, ascending, and the points, so that all at one place come together: all at once, or
-    sorted by what their coordinates are mixed to."""
-    if len(points) <= _AT_ONCE:
-        yield np.arange(len(points)), np.asarray(points)
-        return
-    groups = -(-2 * len(points) // _AT_ONCE)
-    ends = np.zeros(groups + 1, np.int64)
-    for piece in in_pieces(points):
-        ends[1:] += np.bincount(_mixed(piece, groups), minlength=groups)
-    ends = np.cumsum(ends)
-    rows, numbers, at, begin = (
-        zeros(points.shape, float),
-        zeros((len(points),), np.int64),
-        ends[:-1].copy(),
-        0,
-    )
-    for piece in in_pieces(points):
-        group = _mixed(piece, groups)
-        order = np.argsort(group, kind="stable")
-        count = np.bincount(group, minlength=groups)
-        to = np.arange(len(piece)) + np.repeat(at - (np.cumsum(count) - count), count)
-        rows[to], numbers[to] = piece[order], order + begin
-        at += count
-        begin += len(piece)
-    for first, last in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True):
-        yield np.array(numbers[first:last]), np.array(rows[first:last])
-
-
-def _mixed(points: np.ndarray, groups: int) -> np.ndarray:
-    """(P,) numbers below `groups`, equal for points at one place."""
-    x, y = (np.ascontiguousarray(points[:, axis] + 0.0).view(np.uint64) for axis in (0, 1))  # no -0
-    mixed = (x * np.uint64(0x9E3779B97F4A7C15)) ^ (y * np.uint64(0xC2B2AE3D27D4EB4F) + np.uint64(1))
-    mixed ^= mixed >> np.uint64(29)
-    mixed *= np.uint64(0xBF58476D1CE4E5B9)
-    return ((mixed >> np.uint64(32)) * np.uint64(groups) >> np.uint64(32)).astype(np.int64)
+    place, first, apart = _places(points)
+    most = LARGEST_SHARE * float(np.ptp(points[:, 2])) if len(points) else 0.0
+    tolerated = (apart > 0) & (apart <= most)
+    if not tolerated.any():
+        return points, None
+    keeps, found = ~tolerated[place], np.array(points)
+    keeps[first[tolerated]] = True
+    found[first[tolerated], 2] = _means(points, place)[tolerated]
+    worst = int(np.where(tolerated, apart, 0.0).argmax())  # of equals the first from the west
+    count = int(tolerated.sum())
+    places = "1 position has" if count == 1 else f"{count} positions have"
+    most_apart = f"up to {apart[worst]:.6g} apart (at {place_text(points[first[worst], :2])})"
+    return found[keeps], f"{places} several heights, {most_apart}: their mean is used"
 
 
 def shuffled(places: np.ndarray) -> np.ndarray:

@@ -7,14 +7,14 @@ Calculated without NumPy's linear algebra, whose last digits differ between proc
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..base.elementary import hypot
 from ..base.errors import InputRefused, place_text
-from ..base.mapped_arrays import ROWS_AT_ONCE, MakeZeros, in_pieces
+from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 
@@ -44,39 +44,20 @@ class RegularGrid:
         """(P, 2) int64: the nodes that points are."""
         return np.rint(self.places(points[:, :2])).astype(np.int64)
 
-    def box_of_cells(self, box: Sequence[float]) -> tuple[float, float, float, float]:
-        """A box in plan around the nodes of all cells that places in a box get their heights from."""
-        at = self.places(np.array([[box[a], box[b]] for a in (0, 2) for b in (1, 3)]))
-        last = np.array(self.shape) - 1
-        low = np.clip(np.floor(at.min(axis=0)), 0, last) - 1
-        high = np.clip(np.floor(at.max(axis=0)) + 1, 0, last) + 1
-        corners = np.array([[i, j] for i in (low[0], high[0]) for j in (low[1], high[1])])
-        plan = self.origin + corners[:, :1] * self.axes[0] + corners[:, 1:] * self.axes[1]
-        return (*plan.min(axis=0).tolist(), *plan.max(axis=0).tolist())
 
-
-def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
+def bilinear(task: Task) -> Result:
     """Bilinear between the four nodes of a cell (a product of linear functions). Outside the grid, and in
-    cells that lack a node: the heights of its border straight on, or of the nearest point.
-
-    grid: that of all points, where the task has a part of them; None: it has all."""
+    cells that lack a node: the heights of its border straight on, or of the nearest point."""
     if not len(task.nodes):
         return Result(np.empty(0), outside=np.empty(0, bool))
-    is_part = grid is not None
-    if grid is None:
-        grid = find_grid(task.points)
+    grid = find_grid(task.points)
     at = grid.places(task.nodes)
     last = np.array(grid.shape) - 1
     outside = ((at < -_OFF_GRID) | (at > last + _OFF_GRID)).any(axis=1)
     at = np.clip(np.where(np.abs(at - np.rint(at)) < _ON_LINE, np.rint(at), at), 0, last)
     i, j = np.minimum(at.astype(np.int64), last - 1).T
     u, v = at[:, 0] - i, at[:, 1] - j
-    low = np.array([i.min(), j.min()]) if is_part else np.zeros(2, np.int64)
-    high = np.array([i.max(), j.max()]) + 1 if is_part else last
-    known = _heights(task.points, grid, low, high)
-    if not is_part:
-        require_one_height(task.points, grid, known)
-    i, j = i - low[0], j - low[1]
+    known = _heights(task.points, grid)
     z = np.zeros(len(at))
     for di, dj, weight in (
         (0, 0, (1 - u) * (1 - v)),
@@ -92,26 +73,12 @@ def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
     return Result(z, outside=outside | missing)
 
 
-def _heights(
-    points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray, zeros: MakeZeros = np.zeros
-) -> np.ndarray:
-    """The heights of the nodes from `low` to `high`; NaN where there is no point."""
-    z = zeros(tuple((high - low + 1).tolist()), float)
-    z.fill(np.nan)
+def _heights(points: np.ndarray, grid: RegularGrid) -> np.ndarray:
+    """The heights of the nodes; NaN where there is no point. Raises InputRefused where two points that are
+    one node have different heights."""
+    z = np.full(grid.shape, np.nan)
     for piece in in_pieces(points):
-        node = grid.nodes(piece)
-        inside = ((node >= low) & (node <= high)).all(axis=1)
-        z[tuple((node[inside] - low).T)] = piece[inside, 2]
-    return z
-
-
-def require_one_height(
-    points: np.ndarray, grid: RegularGrid, z: np.ndarray | None = None, zeros: MakeZeros = np.zeros
-) -> None:
-    """Raises InputRefused where two points that are one node have different heights. z: of all nodes, of one
-    point each, where they are known. zeros: for them where they are not."""
-    if z is None:
-        z = _heights(points, grid, np.zeros(2, np.int64), np.array(grid.shape) - 1, zeros)
+        z[tuple(grid.nodes(piece).T)] = piece[:, 2]
     for piece in in_pieces(points):
         differs = z[tuple(grid.nodes(piece).T)] != piece[:, 2]
         for bad in piece[differs][:1]:
@@ -120,18 +87,7 @@ def require_one_height(
                 item="points",
                 place=tuple(bad),
             )
-
-
-def has_each_node_once(points: np.ndarray, grid: RegularGrid, zeros: MakeZeros) -> bool:
-    """Whether no two points are one node of their grid. zeros: where it is noted which ones there are."""
-    seen = zeros(grid.shape, bool).reshape(-1)
-    for piece in in_pieces(points):
-        i, j = grid.nodes(piece).T
-        node = i * grid.shape[1] + j
-        if seen[node].any() or len(np.unique(node)) < len(node):
-            return False
-        seen[node] = True
-    return True
+    return z
 
 
 def find_grid(points: np.ndarray) -> RegularGrid:

@@ -68,21 +68,6 @@ def with_dips(method: str, task: Task) -> tuple[Task, list[str]]:
     return replace(task, dips=dips), [warning] if warning else []
 
 
-def chosen(task: Task) -> tuple[str, dict]:
-    """The method that "auto" takes for a task without nodes, and its options: they give the same heights.
-    Raises InputRefused."""
-    if not len(task.points):
-        raise InputRefused("there are no points", item="points")
-    points = from_neighbours.thinned("auto", task, without_mis_ties(task.points)[0])
-    with refused_as(refused_points):
-        with_own, _ = with_dips("auto", replace(task, points=points))
-        trial, _ = automatic.choose(with_own)
-    method, options = trial.candidate.method, trial.candidate.options
-    if "extrapolate" in METHODS[method].options:
-        options = {**options, "extrapolate": task.settings["extrapolate"]}
-    return method, options
-
-
 def refused_points(error: NativeError) -> InputRefused:
     """The refusal of points that the native part found fault with."""
     return InputRefused(str(error), item="points", place=error.place)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +11,6 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import UsageError
-from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.named import NamedList, keyword_only, number_of
 from ..base.sheet import Triangulation
 from ..base.work import Cancel, Progress, Work, native_module, run
@@ -20,14 +18,13 @@ from ..exporters import SURFACES
 from ..heights import Interpolation
 from ..notebook import ShortRepr
 from ..project.build_options import check_stage
-from ..project.project import Project, Rock
+from ..project.project import Project
 from ..project.project_checks import check_project
 from ..settings.method_options import check_threads
 from ..structures.parts.parts import Structures
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import triangle_sheets, vertex_attributes
-from ..surfaces.surface_input import Reader, read_each
 from .notebook_view import surfaces_to_pyvista
 
 if TYPE_CHECKING:
@@ -100,16 +97,10 @@ def build_surfaces(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     stage: int | None = None,
-    keep: StoreArray = as_it_is,
-    reader: Reader = read_each,
-    flat: Callable[[Rock], Collection[int]] | None = None,
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
-    Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
-    surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave. reader:
-    how surfaces are read. flat(rock): surfaces that are not interpolated (rock_input.interpolate_rock), when
-    the method "auto" has made its choice; None: all are.
+    Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass.
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
@@ -119,25 +110,16 @@ def build_surfaces(
     if not any(rock.surfaces for rock in project.rocks):
         raise UsageError("the project has no surfaces")
     native_module()
-    return run(
-        lambda work: _build(work, project, stage, keep, reader, flat), progress, cancel, threads=threads
-    )
+    return run(lambda work: _build(work, project, stage), progress, cancel, threads=threads)
 
 
-def _build(
-    work: Work,
-    project: Project,
-    stage: int | None,
-    keep: StoreArray,
-    reader: Reader,
-    flat: Callable[[Rock], Collection[int]] | None,
-) -> SurfaceSet:
+def _build(work: Work, project: Project, stage: int | None) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
-        inputs, with_arrays = read_inputs(work, project, reader)
+        inputs, with_arrays = read_inputs(work, project)
     with work.part(_READ, _MESHED):
-        mesh_inputs(work, inputs, keep)
+        mesh_inputs(work, inputs)
     with work.part(_MESHED, 1.0):
-        structures = make_surfaces(work, with_arrays, inputs, stage, keep, flat)
+        structures = make_surfaces(work, with_arrays, inputs, stage)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

@@ -4,7 +4,6 @@ compartments."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..base.errors import BuildFailed
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..project.project import Project, Rock
+from ..project.project import Project
 from ..project.structure_entries import Fault
 from ..surfaces.field_data import apply_observations, left_out_warnings
 from ..surfaces.prepare import (
@@ -24,7 +23,6 @@ from ..surfaces.prepare import (
     mesh_rock,
     propose_series,
     read_rocks,
-    settle_methods,
 )
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
@@ -42,7 +40,6 @@ from .sheets.sheets import make_sheets, warn_of_doubts
 _DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
 _SHEETS = 0.5  # of the progress of surfaces: until only fields are left
-_CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
 
 
 def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tuple[list[RockInput], Project]:
@@ -72,14 +69,12 @@ def make_surfaces(
     inputs: list[RockInput],
     stage: int | None,
     keep: StoreArray = as_it_is,
-    flat: Callable[[Rock], Collection[int]] | None = None,
     joins: bool = True,
 ) -> Structures:
     """Interpolates the surfaces of rock masses that are read and meshed, and divides these by the faults and
     bodies of the project, as read_inputs gives it.
 
-    keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
-    joins: as of make_structures. Raises InputRefused, BuildFailed.
+    keep: as of interpolate_rock. joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
     middle = _SHEETS if any(rock.has_fields for rock in project.rocks) else 1.0
@@ -87,29 +82,12 @@ def make_surfaces(
         if project.faults or project.bodies:
             structures = make_structures(work, project, inputs, stage, joins, keep)
         else:
-            _make_whole_sheets(work, inputs, stage, keep, flat)
+            for entry in work.share_out(inputs):
+                interpolate_rock(work, entry, stage, keep)
             structures = structures_of(project, [], [])
     with work.part(middle, 1.0):
         make_fields(work, inputs, stage)
     return structures
-
-
-def _make_whole_sheets(
-    work: Work,
-    inputs: list[RockInput],
-    stage: int | None,
-    keep: StoreArray,
-    flat: Callable[[Rock], Collection[int]] | None,
-) -> None:
-    """As make_surfaces, where nothing divides rock masses."""
-    for entry in work.share_out(inputs):
-        numbers: Collection[int] = ()
-        if flat is not None:
-            propose_series(work, entry, interpolation_order(entry.rock, stage))
-            with work.part(0.0, _CHOSEN):
-                settle_methods(work, entry)
-            numbers = flat(entry.rock)
-        interpolate_rock(work, entry, stage, keep, numbers)
 
 
 def make_structures(

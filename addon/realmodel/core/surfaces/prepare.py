@@ -38,7 +38,7 @@ from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
 from .rock_input import RockInput
-from .surface_heights import give_heights, interpolation_order, settle_method
+from .surface_heights import give_heights, interpolation_order
 from .surface_input import Reader, SurfaceInput, read_each
 from .wrong_order import points_above_younger
 from .wrong_sides import points_too_low
@@ -278,14 +278,6 @@ def _density_points(rock: Rock) -> np.ndarray:
     return np.concatenate(given) if given else np.empty((0, 2))
 
 
-def settle_methods(work: Work, entry: RockInput) -> None:
-    """Replaces the method "auto" of surfaces by the one that it chooses."""
-    waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
-    for number in work.share_out(waiting):
-        with work.phase(0.0, 1.0, f"choosing the method of {entry.rock.surfaces[number].name}"):
-            settle_method(work, entry, number)
-
-
 def propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> None:
     """Adds warnings about surfaces of the method "auto" that are conformable; with faults on either side."""
     chosen = sorted(number for number in numbers if entry.rock.surfaces[number].method == "auto")
@@ -304,19 +296,11 @@ def interpolate_rock(
     entry: RockInput,
     stage: int | None = None,
     keep: StoreArray = as_it_is,
-    flat: Collection[int] = (),
 ) -> None:
     """Interpolates the surfaces of a rock mass; for a stage only those that it needs. keep: stores the
-    finished surfaces; unless it is as_it_is, their interpolations and attributes are dropped. flat: the
-    numbers of surfaces that are left at height 0: the caller interpolates these, and looks for points on
-    wrong sides, too."""
-    waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
-    if flat:
-        nodes, triangles = entry.planar_mesh()
-        plan = Sheet(keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles)
-        for number in flat:
-            entry.surfaces[number] = plan
-    if not flat and entry.draws is None:
+    finished surfaces; unless it is as_it_is, their interpolations and attributes are dropped."""
+    waiting = interpolation_order(entry.rock, stage)
+    if entry.draws is None:
         entry.warnings += points_above_younger(entry.rock, waiting)
         propose_series(work, entry, waiting)
     for number in work.share_out(waiting):
@@ -326,8 +310,7 @@ def interpolate_rock(
             entry.surfaces[number] = Sheet(*map(keep, entry.surface(number)))
             entry.interpolations[number] = None
             del entry.attributes[number]
-    if not flat:
-        entry.warnings += points_too_low(work, entry, sorted(waiting))
-        if keep is as_it_is:  # tiles have no such warnings
-            entry.warnings += doubtful_heights(work, entry, sorted(waiting))
-        entry.untied.clear()
+    entry.warnings += points_too_low(work, entry, sorted(waiting))
+    if keep is as_it_is:  # tiles have no such warnings
+        entry.warnings += doubtful_heights(work, entry, sorted(waiting))
+    entry.untied.clear()

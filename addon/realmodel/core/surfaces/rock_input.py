@@ -97,6 +97,11 @@ class RockInput:
         return next((each for each in self.fields if surface in each.numbers), None)
 
     @property
+    def is_clipped(self) -> bool:
+        """Whether there is a region that ends its surfaces; those on its own mesh end where it ends."""
+        return self.region is not None and not all(surface.interpolated for surface in self.rock.surfaces)
+
+    @property
     def reaches_base(self) -> bool:
         """Whether sheets that are made reach down to the base elevation, or below it, and are cut there."""
         base, given = self.rock.base_elevation, zip(self.rock.surfaces, self.surfaces, strict=True)

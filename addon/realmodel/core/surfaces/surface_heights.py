@@ -13,7 +13,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, naming, place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..heights import Interpolation, chosen, heights
+from ..heights import Interpolation, heights
 from ..heights.interpolation import Task
 from ..heights.mis_ties import without_mis_ties
 from ..heights.on_mesh import BOUNDS, within_bounds
@@ -22,7 +22,7 @@ from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, raised_heights, tie_data
 from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface, surface_item
-from ..settings.methods import checked_options
+from ..settings.methods import METHODS, checked_options
 from .observed.conformable import alike_of
 from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
@@ -55,6 +55,29 @@ def needed_surfaces(rock: Rock, number: int) -> list[int]:
     if rock.surfaces[number].minimum_thickness is not None:
         needs.append(number - 1)
     return needs
+
+
+def counts_by_node(rock: Rock, number: int, surface: Surface) -> bool:
+    """Whether heights of a surface, in the place of one of a rock mass, follow at each node from points near
+    it alone, without other surfaces and nodes."""
+    method, settings = surface.method_options()
+    is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+    is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
+    if (
+        needed_surfaces(rock, number)
+        or surface.series is not None  # the other sheets count, too
+        or surface.true_thickness  # the other surface counts around each node
+        or settings.get("extrapolate") == "none"
+        or settings.get("neighbours") == 0  # all points are one system
+        or (METHODS[method].is_constrained and is_more_known)  # these count for all nodes together
+        or (METHODS[method].needs_points(settings) and not len(surface.point_array()))
+        or (surface.ties and surface.is_along_bounds)  # where bounds do not hold, its points yield
+        or (method == "plane" and settings["extrapolate"] == "nearest")  # its points count only there
+    ):
+        return False
+    if method == "parallel":
+        return settings["thickness"] is not None and not is_tied
+    return METHODS[method].is_local or METHODS[method].is_triangulated
 
 
 def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
@@ -182,19 +205,6 @@ def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> li
         return []
     z = heights_at(work, shape, points[:, :2])
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
-
-
-def settle_method(work: Work, entry: RockInput, number: int) -> None:
-    """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
-    rock, surface = entry.rock, entry.rock.surfaces[number]
-    method, settings = surface.method_options()
-    if method != "auto":
-        return
-    with naming(surface_item(rock, surface), surface.shape_source):
-        nowhere = np.empty((0, 2))
-        task = Task(work, surface.point_array(), nowhere, settings, dips=surface.known_dips())
-        method, options = chosen(replace(task, error=surface.error))
-    rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
 def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Sheet:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,33 +61,9 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
     minimum thickness keeps it above the one before it. What an older surface's points do above a younger
     one is no contradiction: there the younger one ends, or has cut.
     """
-    surfaces = entry.rock.surfaces
+    rock, surfaces, shapes = entry.rock, entry.rock.surfaces, entry.surfaces
     points = {number: surfaces[number].known_points() for number in numbers}
-    points = {number: own for number, own in points.items() if len(own)}
-    warnings = []
-    found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock))
-    for number, (beyond, others) in found.items():
-        warnings += listed(entry.rock, number, beyond, "below", others)
-    return warnings
-
-
-def kept_off(rock: Rock) -> frozenset[int]:
-    """The surfaces that a minimum thickness keeps off the one before."""
-    return frozenset(n for n, surface in enumerate(rock.surfaces) if surface.minimum_thickness is not None)
-
-
-def below_older(
-    work: Work,
-    rock: Rock,
-    shapes: list[Sheet | None],
-    points: dict[int, np.ndarray],
-    off: Collection[int],
-) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """Of points (N, 3) of surfaces, by their numbers: how far each lies below what its surface is kept above
-    (N,), and of which surface this is (N,). shapes: of all surfaces, None where heights are not known. off:
-    those that a minimum thickness keeps off the one before."""
-    surfaces = rock.surfaces
-    points = {number: own for number, own in points.items() if number > 0}
+    points = {number: own for number, own in points.items() if len(own) and number > 0}
     beneath = {number: _Beneath(len(own)) for number, own in points.items()}
     for older in range(max(points, default=0)):
         shape = shapes[older]
@@ -98,14 +74,14 @@ def below_older(
         ends = np.cumsum([len(points[number]) for number in younger])
         for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
             beneath[number].add(own, older, RULES[surfaces[older].rule])
-    found = {}
+    warnings = []
     for number, below in beneath.items():
-        surface = surfaces[number]
-        floor = below.firm if RULES[surface.rule].cuts else below.top
-        if number in off and below.last is not None and shapes[number - 1] is not None:
+        floor = below.firm if RULES[surfaces[number].rule].cuts else below.top
+        is_kept_off = surfaces[number].minimum_thickness is not None
+        if is_kept_off and below.last is not None and shapes[number - 1] is not None:
             floor.raise_to(below.last, number - 1)
-        found[number] = floor.z - points[number][:, 2], floor.surface
-    return found
+        warnings += listed(rock, number, floor.z - points[number][:, 2], "below", floor.surface)
+    return warnings
 
 
 class _Beneath:

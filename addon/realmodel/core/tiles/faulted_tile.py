@@ -11,31 +11,19 @@ import numpy as np
 from ..base.sheet import Sheet
 from ..base.work import Work
 from ..cells.assembly import assemble
-from ..cells.blocks import Block, named_blocks
+from ..cells.blocks import named_blocks
 from ..cells.built_cells import BuiltCells, CellParts
 from ..cells.cell_complex import CellComplex
 from ..cells.joining import blocks_divided, body_block, build_joined
 from ..cells.labels import compartments
 from ..cells.model_data import ModelData
 from ..model.model import Model
-from ..structures.parts.parts import Structures
 from ..surfaces.surface_arrays import SurfaceArrays
-from .faulted_windows import Window
 from .owned_cells import Seam, inseparable, owners, reach_of
 from .tile_model import Frame, Name
+from .windows import Window
 
 _WALL = -1  # face_surface
-
-
-@dataclass(frozen=True)
-class Whole:
-    """What tiles know of the whole besides their Frame. blocks: without numbers of cells. structures: all of
-    them, without shapes. surface_names, surface_kind: as of Model."""
-
-    blocks: list[Block]
-    structures: Structures
-    surface_names: list[str]
-    surface_kind: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -51,7 +39,7 @@ class FaultedTile:
     part: np.ndarray
 
 
-def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, name: Name) -> FaultedTile:
+def build_faulted_tile(work: Work, frame: Frame, window: Window, name: Name) -> FaultedTile:
     """Raises InputRefused."""
     inputs, few = window.inputs, window.structures
     began = time.perf_counter()
@@ -67,12 +55,12 @@ def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, n
     together = inseparable(model.complex)
     owner = owners(model.complex, frame.grid, together)
     mine = (owner == name).all(axis=1)
-    as_whole = _numbered_as_whole(model, whole, window)
+    as_whole = _numbered_as_whole(model, frame, window)
     cells = as_whole.without_cells(~mine)
-    labels = _labels(built, whole, window, mine)
+    labels = _labels(built, frame, window, mine)
     number = np.arange(int(mine.sum()))
     is_mine = np.append(mine, False)[model.face_cells]
-    is_one = _within_one_cell(as_whole, built, len(whole.surface_names) - len(whole.structures))
+    is_one = _within_one_cell(as_whole, built, len(frame.surface_names) - len(frame.structures))
     if frame.cell_kind == "blocks":
         cells, number = cells.one_cell_each(is_one[is_mine.any(axis=1)])
         cells = replace(cells, cell_kind=frame.cell_kind)
@@ -81,7 +69,7 @@ def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, n
         labels = labels[0][first], *labels[1:]
     of_tile = np.full(len(mine), -1)
     of_tile[mine] = number
-    found = _model(frame, whole, window, cells, labels)
+    found = _model(frame, window, cells, labels)
     part = np.arange(len(found.cell_block)) if frame.cell_kind == "blocks" else found.cell_component
     both = np.column_stack([found.cell_component, part])
     between = np.flatnonzero((is_mine[:, 0] != is_mine[:, 1]) & (model.face_cells >= 0).all(axis=1))
@@ -102,17 +90,16 @@ def _within_one_cell(own: CellComplex, built: BuiltCells, layers: int) -> np.nda
     """(F,) bool: the faces that lie within one cell of a model of blocks. Between cells of one block in one
     rock mass these are walls between columns, and in bodies also surfaces, the first `layers` of all: a body
     has columns between older surfaces."""
-    assert built.parts is not None
     surface, cells, own_block = own.face_surface, own.face_cells, built.parts.own_block
     is_same = (cells >= 0).all(axis=1) & (own_block[cells[:, 0]] == own_block[cells[:, 1]])
     return is_same & ((surface == _WALL) | ((surface >= 0) & (surface < layers)))
 
 
-def _numbered_as_whole(model: ModelData, whole: Whole, window: Window) -> CellComplex:
+def _numbered_as_whole(model: ModelData, frame: Frame, window: Window) -> CellComplex:
     """The cells of the model around a tile with surfaces and blocks numbered as in the whole."""
     surfaces = sum(len(entry.surfaces) for entry in window.inputs)
     number = np.concatenate([np.arange(surfaces), surfaces + window.numbers, [-2, -1]]).astype(np.int32)
-    of_surface = {block.surface: n for n, block in enumerate(whole.blocks)}
+    of_surface = {block.surface: n for n, block in enumerate(frame.blocks)}
     blocks = np.array([of_surface[int(number[block.surface])] for block in model.blocks], np.int32)
     return replace(
         model.complex,
@@ -121,9 +108,9 @@ def _numbered_as_whole(model: ModelData, whole: Whole, window: Window) -> CellCo
     )
 
 
-def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray) -> tuple:
-    """What cell_compartments gives for the cells of the tile, by all faults of the whole."""
-    inputs, few, structures = window.inputs, window.structures, whole.structures
+def _labels(built: BuiltCells, frame: Frame, window: Window, mine: np.ndarray) -> tuple:
+    """What compartments gives for the cells of the tile, by all faults of the whole."""
+    inputs, few, structures = window.inputs, window.structures, frame.structures
     surfaces = sum(len(entry.surfaces) for entry in inputs)
     own = np.arange(surfaces + len(inputs) * len(few))
     for rock in range(len(inputs)):
@@ -132,7 +119,6 @@ def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray) -
             own[body_block(few, surfaces, rock, body)] = body_block(structures, surfaces, rock, there)
     rocks = np.arange(len(inputs), dtype=np.int32)
     counts = [len(entry.surfaces) for entry in inputs]
-    assert built.parts is not None
     as_whole = CellParts(
         window.part[built.parts.part][mine],
         own[built.parts.own_block][mine],
@@ -142,9 +128,9 @@ def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray) -
     return compartments(inputs, as_whole, structures)
 
 
-def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels: tuple) -> Model:
+def _model(frame: Frame, window: Window, own: CellComplex, labels: tuple) -> Model:
     volume = own.cell_volumes()
-    cells, components = own.count_blocks(len(whole.blocks))
+    cells, components = own.count_blocks(len(frame.blocks))
     blocks = [
         replace(
             block,
@@ -152,10 +138,10 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels:
             cells=int(cells[n]),
             components=int(components[n]),
         )
-        for n, block in enumerate(whole.blocks)
+        for n, block in enumerate(frame.blocks)
     ]
     nothing = Sheet(np.empty((0, 3)), np.empty((0, 3), np.int32))
-    ends = [nothing] * len(whole.structures)
+    ends = [nothing] * len(frame.structures)
     for n, shape in zip(window.numbers.tolist(), window.structures.shapes, strict=True):
         ends[n] = shape
     shapes = [entry.surface(number) for entry in window.inputs for number in range(len(entry.surfaces))]
@@ -164,11 +150,11 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels:
         own,
         named_blocks(blocks),
         SurfaceArrays(shapes + ends),
-        surface_names=whole.surface_names,
+        surface_names=frame.surface_names,
         project=frame.project,
         rock_inputs=[replace(entry, structure=None) for entry in window.inputs],
         is_cut=True,
-        surface_kind=whole.surface_kind,
+        surface_kind=frame.surface_kind,
         cell_compartment=labels_of_cells,
         compartment_names=names,
         compartment_sides=sides,

@@ -21,6 +21,8 @@ _BEYOND = 1 / 64  # of the model's extent: how far the outermost tiles reach bey
 _MOST_TILES = 100_000
 _TRIANGLES_AT_ONCE = 1 << 17
 
+Box = tuple[float, float, float, float]  # low x, low y, high x, high y
+
 
 @dataclass(frozen=True)
 class TileGrid:
@@ -42,16 +44,16 @@ class TileGrid:
         return ((column, row) for row in range(self.rows) for column in range(self.columns))
 
     @property
-    def whole(self) -> tuple[float, float, float, float]:
+    def whole(self) -> Box:
         """The box of all tiles."""
         return float(self.x[0]), float(self.y[0]), float(self.x[-1]), float(self.y[-1])
 
-    def box(self, column: int, row: int) -> tuple[float, float, float, float]:
+    def box(self, column: int, row: int) -> Box:
         """Low x, low y, high x, high y."""
         x, y = self.x, self.y
         return float(x[column]), float(y[row]), float(x[column + 1]), float(y[row + 1])
 
-    def tiles_meeting(self, box: tuple[float, float, float, float]) -> Iterator[tuple[int, int]]:
+    def tiles_meeting(self, box: Box) -> Iterator[tuple[int, int]]:
         """The tiles that a box meets; what lies beyond the outermost lines counts to the outermost tiles."""
         columns, rows = (
             range(int(_strip(lines, box[axis], "left")), int(_strip(lines, box[axis + 2], "right")) + 1)
@@ -118,21 +120,6 @@ def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:
     return float(ends[widest] + (ends[widest + 1] - ends[widest]) * _IN_GAP)
 
 
-@dataclass(frozen=True)
-class MeshPart:
-    """What of a mesh a tile needs: vertices (V, 2 or 3), triangles (T, 3) int32, and the number that each of
-    these has in the mesh, (T,) int32, and each vertex, (V,)."""
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    numbers: np.ndarray
-    of_vertices: np.ndarray
-
-    @property
-    def sheet(self) -> Sheet:
-        return Sheet(self.vertices, self.triangles)
-
-
 def triangles_by_tile(mesh: Sheet, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
     """Piece by piece the numbers, ascending, of the triangles whose boxes meet a tile."""
     vertices, triangles = map(np.asarray, mesh)  # a memmap would be slower
@@ -156,16 +143,6 @@ def triangles_by_tile(mesh: Sheet, grid: TileGrid) -> Iterator[tuple[tuple[int, 
             yield tile, (own[which] + begin).astype(np.int32)
 
 
-def points_by_tile(points: np.ndarray, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
-    """The numbers, ascending, of the points (P, 3) in each tile; those on lines are in the next one."""
-    column, row = (
-        np.searchsorted(lines, points[:, axis], "right") - 1 for axis, lines in enumerate((grid.x, grid.y))
-    )
-    inside = np.flatnonzero((column >= 0) & (column < grid.columns) & (row >= 0) & (row < grid.rows))
-    for tile, which in _grouped(column[inside], row[inside], grid):
-        yield tile, inside[which]
-
-
 def _grouped(
     column: np.ndarray, row: np.ndarray, grid: TileGrid
 ) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
@@ -182,16 +159,7 @@ def _grouped(
         yield divmod(tile, grid.rows), which
 
 
-def part_of(mesh: Sheet, numbers: np.ndarray) -> MeshPart:
-    """Some triangles of a mesh, (T,) int32."""
-    vertices, triangles = mesh
-    used, corners = np.unique(triangles[numbers], return_inverse=True)
-    return MeshPart(
-        np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers, used
-    )
-
-
-def clipped_region(region: Sheet, box: tuple[float, float, float, float]) -> Sheet:
+def clipped_region(region: Sheet, box: Box) -> Sheet:
     """A triangulation ((V, 2), (T, 3)) of what of a region lies in a box; where an edge meets the box is
     rounded, equally for both triangles at it. For questions about positions, not for building."""
     low_x, low_y, high_x, high_y = box
@@ -224,7 +192,7 @@ def _half(polygon: list, axis: int, line: float, sign: int) -> list:
     return kept
 
 
-def box_triangles(box: tuple[float, float, float, float]) -> Sheet:
+def box_triangles(box: Box) -> Sheet:
     """A box as two triangles."""
     low_x, low_y, high_x, high_y = box
     corners = [[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]]

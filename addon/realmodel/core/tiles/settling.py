@@ -18,8 +18,8 @@ import numpy as np
 
 from ..base.algebra import begins_run
 from .borders import Side, sides_of
+from .grid import Box
 
-Box = tuple[float, float, float, float]
 _Exact = tuple[str, str, str]
 
 

@@ -29,7 +29,7 @@ class Structures:
     sides: (P, S) int8 of the parts: 1 above a fault or outside of a body, -1 below or inside, 0 where a
     branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided.
 
-    For those around a tile (tiles/faulted_windows.py): continued, as from native continued_structures; ends:
+    For those around a tile (tiles/windows.py): continued, as from native continued_structures; ends:
     heights below and above all rock. None: both are found from the structures and sheets themselves."""
 
     faults: list[Fault]

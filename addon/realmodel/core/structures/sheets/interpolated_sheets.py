@@ -22,12 +22,18 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...settings.variogram import lacks_deviation
-from ...surfaces.local_heights import is_local
 from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
-from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
+from ...surfaces.surface_heights import (
+    Trend,
+    counts_by_node,
+    give_heights,
+    needed_surfaces,
+    used_vertices,
+    where_known,
+)
 from ...surfaces.wrong_sides import heights_at
 from .beyond_faults import contradicting
 from .borrowed import as_at_fault, sheet_runs_away
@@ -453,14 +459,7 @@ class InterpolatedSurface:
 
     def _counts_by_node(self, surface: Surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
-        settings = surface.method_options()[1]
-        return (
-            is_local(surface)
-            and self.entry.draws is None
-            and settings.get("extrapolate") != "none"
-            and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
-            and not needed_surfaces(self.entry.rock, self.number)
-        )
+        return self.entry.draws is None and counts_by_node(self.entry.rock, self.number, surface)
 
     def _values_at(
         self, family: Family, points: np.ndarray, surface: Surface, nodes: np.ndarray
