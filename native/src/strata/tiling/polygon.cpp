@@ -28,9 +28,10 @@ void Clipper::begin(PolygonView subject) {
 
 void Clipper::find_positions(PolygonView polygon,
                              std::vector<std::array<double, 2>>& positions) const {
-    positions.clear();
-    for (const Corner& corner : polygon)
-        positions.push_back(exact::position_in_reach(scope_, corner.point));
+    positions.resize(polygon.size());
+    std::ranges::transform(polygon, positions.begin(), [&](const Corner& corner) {
+        return exact::position_in_reach(scope_, corner.point);
+    });
 }
 
 /// Whether some corner of a polygon lies to the left of each edge of another one; two polygons
@@ -40,15 +41,15 @@ bool Clipper::reaches_inside(PolygonView polygon,
                              const std::vector<std::array<double, 2>>& positions,
                              PolygonView window, const FilterOf& filter_of_edge,
                              SidesOfCorners& sides) {
-    sides.clear();
+    sides.resize(window.size() * polygon.size());
+    std::int8_t* side = sides.data();
     for (std::size_t j = 0; j < window.size(); ++j) {
         const exact::ReachFilter& filter = filter_of_edge(j);
         bool any_left = false;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const int side =
-                exact::side_of(scope_, filter, window[j].line, polygon[i].point, positions[i]);
-            any_left |= side > 0;
-            sides.push_back(static_cast<std::int8_t>(side));
+        for (std::size_t i = 0; i < polygon.size(); ++i, ++side) {
+            *side = static_cast<std::int8_t>(
+                exact::side_of(scope_, filter, window[j].line, polygon[i].point, positions[i]));
+            any_left |= *side > 0;
         }
         if (!any_left) return false;
     }
