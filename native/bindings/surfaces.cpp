@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// hull_corners, hull_border, outside_hull, tin, natural_neighbour, and both of parts of points;
-// surface_heights, surface_places, dsi, ties, tied_heights, raised_heights, nodes_around,
-// crowded_data.
+// outside_hull, tin, natural_neighbour, surface_heights, surface_places, dsi, ties, tied_heights,
+// raised_heights, crowded_data.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -24,18 +23,6 @@ namespace realmodel::bindings {
 
 namespace {
 
-NumpyArray<double> hull_corners(const NumpyArray<double>& nodes) {
-    const auto input = rows<2>(nodes, "nodes");
-    return to_array(unlocked([&] {
-        return interpolation::ConvexHull({input.begin(), input.end()}).corners();
-    }));
-}
-
-NumpyArray<std::int32_t> hull_border(const NumpyArray<double>& nodes) {
-    const auto input = rows<2>(nodes, "nodes");
-    return to_array(unlocked([&] { return interpolation::hull_border(input); }));
-}
-
 NumpyArray<bool> outside_hull(const NumpyArray<double>& points, const NumpyArray<double>& nodes,
                               WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
@@ -50,24 +37,6 @@ NumpyArray<double> on_triangulation(const NumpyArray<double>& points,
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     return to_array(unlocked([&] { return method(from, to, run(execution)); }));
-}
-
-/// border, all, window, is_whole.
-using AroundSubset =
-    std::tuple<NumpyArray<double>, std::array<double, 4>, std::array<double, 4>, bool>;
-
-template <auto method>
-std::tuple<NumpyArray<double>, NumpyArray<bool>> on_subset(const NumpyArray<double>& points,
-                                                           const NumpyArray<double>& nodes,
-                                                           const AroundSubset& around_subset,
-                                                           WatchedExecution* execution) {
-    const auto from = rows<3>(points, "points");
-    const auto to = rows<2>(nodes, "nodes");
-    const auto& [border, all, window, is_whole] = around_subset;
-    const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
-    auto result = unlocked([&] { return method(from, to, around, run(execution)); });
-    return {to_array(std::move(result.z)),
-            to_array(std::move(result.certain)).attr("view")("bool")};
 }
 
 NumpyArray<double> surface_heights(const NumpyArray<double>& vertices,
@@ -195,15 +164,6 @@ NumpyArray<double> raised_heights(const NumpyArray<double>& nodes,
     }));
 }
 
-NumpyArray<std::int32_t> nodes_around(const NumpyArray<double>& nodes,
-                                      const NumpyArray<std::int32_t>& triangles,
-                                      const NumpyArray<double>& places) {
-    const auto from = rows<2>(nodes, "nodes");
-    const auto faces = rows<3>(triangles, "triangles");
-    const auto at = rows<2>(places, "places");
-    return to_array(unlocked([&] { return interpolation::nodes_around(from, faces, at); }));
-}
-
 std::pair<NumpyArray<std::int32_t>, NumpyArray<double>> crowded_data(
     const NumpyArray<double>& nodes, const NumpyArray<std::int32_t>& triangles,
     const std::tuple<NumpyArray<double>, NumpyArray<double>, NumpyArray<double>>& data,
@@ -251,11 +211,6 @@ data       places (C, 2); lower and upper bounds (C,); margins (C,), by how much
 tolerance  heights so near to what is asked for are right
 
 Returns (N,). Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
-    module.def(
-        "nodes_around", &nodes_around, arg("nodes"), arg("triangles"), arg("places"),
-        R"(The nodes (K,) of the triangles that places (C, 2) lie in, of nodes (N, 2), triangles (T, 3).
-
-Ascending. Raises InputError: kind "not_finite", "bad_index".)");
     module.def("crowded_data", &crowded_data, arg("nodes"), arg("triangles"), arg("data"),
                arg("least"),
                R"(The data that a mesh, nodes (N, 2), triangles (T, 3), cannot honor beside others.
@@ -270,12 +225,6 @@ Raises InputError: kind "not_finite", "bad_index".)");
 
 void bind_surfaces(py::module_& module) {
     using py::arg;
-    module.def("hull_corners", &hull_corners, arg("nodes"),
-               R"(The corners (H, 2) of the convex hull of finite nodes (N, 2). Exact.)");
-    module.def("hull_border", &hull_border, arg("nodes"),
-               R"(The numbers (B,) of nodes (N, 2) on the border of their convex hull, no two equal.
-
-Counterclockwise; of nodes in one line all, from one end. Exact.)");
     module.def("outside_hull", &outside_hull, arg("points"), arg("nodes"),
                py::arg("execution") = py::none(),
                R"(The nodes (N, 2) outside the convex hull of points (P, 3) in plan: (N,) bool.)");
@@ -289,20 +238,6 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cance
     module.def("natural_neighbour", &on_triangulation<interpolation::natural_neighbors>,
                arg("points"), arg("nodes"), py::arg("execution") = py::none(),
                R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
-    module.def(
-        "tin_of_part", &on_subset<interpolation::linear_on_subset>, arg("points"), arg("nodes"),
-        arg("around"), py::arg("execution") = py::none(),
-        R"(tin at nodes (N, 2) from a part of some points, in their order, the first of all before them.
-
-points  (P, 3) float64, no two at one place
-around  border (B, 3), those of all points that hull_border gives, for coordinates from the first of
-        all; low x, low y, high x, high y of all points; the same of the box of which the part has
-        all points; whether these are all points
-
-Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)");
-    module.def("natural_neighbour_of_part", &on_subset<interpolation::natural_neighbors_of_subset>,
-               arg("points"), arg("nodes"), arg("around"), py::arg("execution") = py::none(),
-               R"(natural_neighbour at nodes; arguments and result as tin_of_part.)");
     module.def(
         "surface_heights", &surface_heights, arg("vertices"), arg("triangles"), arg("nodes"),
         py::arg("execution") = py::none(),

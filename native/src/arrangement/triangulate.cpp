@@ -60,6 +60,9 @@ private:
     }
     int turn_at(std::int32_t i) { return turn(link(i).previous, i, link(i).next); }
     bool is_exact() const { return rounding_ == PlanePosition{0, 0}; }
+    /// Whether an ear is looked for that rounded places tell of: what is surely on one side in
+    /// these is so in the exact ones, so that nothing has to be asked exactly.
+    bool is_rounded(EarTest test) const { return test <= EarTest::kFat && !is_exact(); }
     /// Exact corners at one place are one node.
     bool are_same(const LoopCorner& p, const LoopCorner& q) const {
         return p.node == q.node || (is_exact() && p.at == q.at);
@@ -288,22 +291,21 @@ bool EarClipping::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, s
     const NodeId node = link(other).corner.node;
     for (const std::int32_t i : {a, tip, c})
         if (node == link(i).corner.node) return false;
-    const bool is_fat = test <= EarTest::kFat;
-    const auto is_beyond = [&](std::int32_t p, std::int32_t q, int turned) {
-        return turned < 0 &&
-               (!is_fat || is_exact() ||
-                twice_area(at(p), at(q), at(other)) < -slack(at(p), at(q), at(other), rounding_));
-    };
-    const int ab = turn(a, tip, other);
-    if (is_beyond(a, tip, ab)) return false;
-    const int bc = turn(tip, c, other);
-    if (is_beyond(tip, c, bc)) return false;
-    const int ca = turn(c, a, other);
-    if (is_beyond(c, a, ca)) return false;
+    bool is_on_border = false;
+    for (const auto& [p, q] : {std::pair(a, tip), std::pair(tip, c), std::pair(c, a)}) {
+        if (is_rounded(test)) {
+            if (twice_area(at(p), at(q), at(other)) < -slack(at(p), at(q), at(other), rounding_))
+                return false;
+            continue;
+        }
+        const int turned = turn(p, q, other);
+        if (turned < 0) return false;
+        is_on_border |= turned == 0;
+    }
     if (are_same(other, a) || are_same(other, tip) || are_same(other, c)) return false;
-    if (test == EarTest::kStrict && (ab == 0 || bc == 0 || ca == 0)) return false;
+    if (test == EarTest::kStrict && is_on_border) return false;
     // where a corner that turns left lies inside, one that does not lies inside as well
-    return is_fat || turn_at(other) <= 0;
+    return test <= EarTest::kFat || turn_at(other) <= 0;
 }
 
 /// In doubles: it decides how good the triangle is, not whether it is one.
@@ -322,9 +324,9 @@ std::int32_t EarClipping::blocker_of(std::int32_t tip, EarTest test) {
     const std::int32_t a = link(tip).previous, c = link(tip).next;
     if (are_same(a, tip) || are_same(tip, c) || are_same(a, c)) return kNoEar;
     if (test == EarTest::kNone) return kNone;
-    if (turn(a, tip, c) <= 0) return kNoEar;
-    if (test <= EarTest::kFat && !is_exact() &&
-        twice_area(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_))
+    if (is_rounded(test)
+            ? twice_area(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_)
+            : turn(a, tip, c) <= 0)
         return kNoEar;
     if (test == EarTest::kRound) {
         for (const std::int32_t other : {link(a).previous, link(c).next})

@@ -206,7 +206,9 @@ public:
     NearPoint approximate(PointId point) const;
     /// The double nearest to the height of a plane above a point.
     double rounded_height(PlaneId plane, PointId point);
-    double rounded_height(PlaneId plane, PointId point, const NearPoint& near);
+    /// The same of a plane whose height there is known by a name.
+    double rounded_height(PlaneId plane, const HeightName& name, PointId point,
+                          const NearPoint& near);
     /// Slope and offset of a line, rounded: equal for lines that run through the same positions.
     std::array<double, 3> line_key(LineId line);
 

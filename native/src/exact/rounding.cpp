@@ -217,6 +217,19 @@ std::optional<double> near_height(const PlanArrangement& g, PlaneId plane, const
     return nearest_sum(corner.z, -quotient(determinant(n.a, dx, -n.b, dy), n.c));
 }
 
+std::optional<double> near_edge_height(const PlanArrangement& g, SpaceId from, SpaceId to,
+                                       const NearPoint& point) {
+    keep_extended();
+    const SpaceVertex &s = g.space(from), &t = g.space(to);
+    const Point &p = g.point(s.plan), &q = g.point(t.plan), &o = g.point(point.origin);
+    const ExtendedInterval x = difference(p.x, q.x), y = difference(p.y, q.y);
+    const bool is_x = size(x.value) >= size(y.value);
+    const ExtendedInterval way =
+        is_x ? sum(difference(p.x, o.x), point.x) : sum(difference(p.y, o.y), point.y);
+    const ExtendedInterval rise = determinant(way, difference(s.z, t.z), {0, 0}, {0, 0});
+    return nearest_sum(s.z, quotient(rise, is_x ? x : y));
+}
+
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
     if (!kExtended) return std::nullopt;
     keep_extended();
@@ -328,16 +341,16 @@ std::array<double, 2> LocalArrangement::rounded(PointId id) {
 }
 
 double LocalArrangement::rounded_height(PlaneId plane, PointId id) {
-    return rounded_height(plane, id, approximate(id));
+    return rounded_height(plane, height_name(plane, id), id, approximate(id));
 }
 
-double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
+double LocalArrangement::rounded_height(PlaneId plane_id, const HeightName& name, PointId id,
+                                        const NearPoint& close) {
     const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
-    if (is_vertex(id)) {
-        const SpaceId s = shared_.plane(plane_id).above(vertex(id));
-        if (s != kNone) return shared_.space(s).z;
-    }
-    if (const auto z = near_height(shared_, plane_id, close)) return *z;
+    if (name.is_edge() && name.from() == name.to()) return shared_.space(name.from()).z;
+    if (const auto z = name.is_edge() ? near_edge_height(shared_, name.from(), name.to(), close)
+                                      : near_height(shared_, plane_id, close))
+        return *z;
     {
         const DoubleDoubleArithmetic in{shared_};
         const auto n = plane_normal<DoubleDoubleInterval>(in, shared_, plane_id);

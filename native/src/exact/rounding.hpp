@@ -26,6 +26,11 @@ std::optional<double> nearest_sum(double from, const ExtendedInterval& value);
 std::optional<double> near_height(const PlanArrangement& geometry, PlaneId plane,
                                   const NearPoint& point);
 
+/// That of an input edge above a point of it: the same as that of every plane that stands on the
+/// edge, in a third of the time.
+std::optional<double> near_edge_height(const PlanArrangement& geometry, SpaceId from, SpaceId to,
+                                       const NearPoint& point);
+
 /// LocalArrangement::line_key of a line relative to the origin of the keys, likewise.
 std::optional<std::array<double, 3>> near_line_key(const NearLine& line);
 

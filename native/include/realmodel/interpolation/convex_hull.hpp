@@ -21,9 +21,6 @@ public:
     /// On the border is inside. A hull of no positions contains none.
     bool contains(const PlanPosition& position) const;
 
-    /// Each once, the lower chain first; none in the middle of an edge.
-    std::vector<PlanPosition> corners() const;
-
 private:
     std::vector<PlanPosition> lower_, upper_;
 };

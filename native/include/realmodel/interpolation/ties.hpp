@@ -69,13 +69,6 @@ std::vector<double> tied_heights(std::span<const double> heights,
                                  std::span<const double> sided, const TieTerms& terms,
                                  const Execution& execution = {});
 
-/// The nodes of the triangles of a planar mesh that places lie in: those whose heights tie() asks
-/// for. Ascending.
-/// @throws InputError kind "not_finite" (items: the node), "bad_index" (items: the triangle)
-std::vector<std::int32_t> nodes_around(std::span<const std::array<double, 2>> nodes,
-                                       std::span<const std::array<std::int32_t, 3>> triangles,
-                                       std::span<const std::array<double, 2>> places);
-
 /// A sheet that was raised at the nodes of a planar mesh to least heights.
 struct RaisedSheet {
     std::span<const std::array<double, 2>> nodes;

@@ -140,21 +140,6 @@ double TieRows::product(const TieRow& a, const TieRow& b, double radius) const {
     return sum;
 }
 
-std::vector<std::int32_t> nodes_around(std::span<const PlanPosition> nodes,
-                                       std::span<const std::array<std::int32_t, 3>> triangles,
-                                       std::span<const PlanPosition> places) {
-    const spatial::MeshLocator locator(nodes, triangles);
-    std::vector<std::int32_t> near_nodes;
-    for (const PlanPosition& place : places) {
-        if (const auto at = locator.find(place)) {
-            const auto& corners = triangles[static_cast<std::size_t>(at->triangle)];
-            near_nodes.insert(near_nodes.end(), corners.begin(), corners.end());
-        }
-    }
-    sort_unique(near_nodes);
-    return near_nodes;
-}
-
 namespace {
 
 constexpr double kRidge = 1e-9;  // of the diagonal: no pivot is 0

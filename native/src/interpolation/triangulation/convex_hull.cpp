@@ -43,13 +43,6 @@ bool ConvexHull::contains(const PlanPosition& position) const {
                                     : exact::orient2d(before, *beyond, position) <= 0;
 }
 
-std::vector<PlanPosition> ConvexHull::corners() const {
-    std::vector<PlanPosition> out = lower_;
-    for (std::size_t i = 1; i + 1 < upper_.size(); ++i)
-        out.push_back(upper_[i]);
-    return out;
-}
-
 std::vector<std::int32_t> hull_border(std::span<const PlanPosition> positions) {
     std::vector<std::int32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0);

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,16 +17,11 @@
 #include "meshing/constrained_delaunay.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/interpolation/convex_hull.hpp"
 #include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
 namespace {
-
-constexpr double kSlack = 1e-6;  // of the size of a circle, for rounding
-constexpr double kFlat = 1e-7;   // of the squared side: of flatter triangles circles are rounding
-constexpr double kOfOrigin = 4e-16;  // what coordinates relative to the origin may be off by
 
 /// The border of the hull of data points.
 class HullBorder {
@@ -167,111 +161,6 @@ double HullBorder::nearest_value(const PlanPosition& position) const {
     return value;
 }
 
-/// Tells of circles whether a subset of some points has all points that may lie in them. Positions
-/// are local coordinates.
-class SubsetCheck {
-public:
-    SubsetCheck(const DataPoints& data, const PointsAround& around);
-
-    /// Whether a node lies in the hull of all points, its border included. Exact.
-    bool in_hull(const PlanPosition& node) const { return hull_.contains(node); }
-    const HullBorder& border() const { return border_; }
-    /// Whether the subset is the whole.
-    bool is_whole() const { return is_whole_; }
-
-    /// Whether two points are next to each other on the border of the hull.
-    bool is_hull_edge(const PlanPosition& a, const PlanPosition& b) const;
-
-    /// Whether the subset has all points in the circle through p and two points, or, of an edge of
-    /// the hull, on the side of the edge where p is.
-    bool has_all_in_circle(const PlanPosition& p, const PlanPosition& a,
-                           const PlanPosition& b) const;
-
-private:
-    bool has_all_in(const spatial::PlanBox& box) const;
-
-    ConvexHull hull_;
-    HullBorder border_;
-    std::vector<std::pair<PlanPosition, std::size_t>> place_on_border_;  // ascending
-    spatial::PlanBox all_, window_;
-    bool is_whole_;
-};
-
-std::vector<PlanPosition> local_positions(const DataPoints& data,
-                                          std::span<const std::array<double, 3>> points) {
-    return transformed(points, [&](const auto& p) { return data.to_local({p[0], p[1]}); });
-}
-
-SubsetCheck::SubsetCheck(const DataPoints& data, const PointsAround& around)
-    : hull_(local_positions(data, around.border)), is_whole_(around.is_whole) {
-    const std::vector<PlanPosition> places = local_positions(data, around.border);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::size_t next = (i + 1) % places.size();
-        border_.add(places[i], around.border[i][2], places[next], around.border[next][2]);
-        place_on_border_.emplace_back(places[i], i);
-    }
-    std::sort(place_on_border_.begin(), place_on_border_.end());
-    const double x = data.origin[0], y = data.origin[1];
-    const double off = kOfOrigin * std::max(std::abs(x), std::abs(y));
-    const auto local_box = [&](const std::array<double, 4>& box) {
-        return spatial::PlanBox{box[0] - x, box[1] - y, box[2] - x, box[3] - y};
-    };
-    all_ = local_box(around.all).widened(2 * off);
-    window_ = local_box(around.window).widened(-2 * off);
-}
-
-bool SubsetCheck::is_hull_edge(const PlanPosition& a, const PlanPosition& b) const {
-    const auto place = [&](const PlanPosition& p) {
-        const auto entry = std::lower_bound(place_on_border_.begin(), place_on_border_.end(),
-                                            std::pair(p, std::size_t{0}));
-        const bool is_on_border = entry != place_on_border_.end() && entry->first == p;
-        return is_on_border ? entry->second : place_on_border_.size();
-    };
-    const std::size_t count = place_on_border_.size(), i = place(a), j = place(b);
-    if (i == count || j == count) return false;
-    return (i + 1) % count == j || (j + 1) % count == i;
-}
-
-bool SubsetCheck::has_all_in(const spatial::PlanBox& box) const {
-    return std::max(box.low_x, all_.low_x) >= window_.low_x &&
-           std::max(box.low_y, all_.low_y) >= window_.low_y &&
-           std::min(box.high_x, all_.high_x) <= window_.high_x &&
-           std::min(box.high_y, all_.high_y) <= window_.high_y;
-}
-
-bool SubsetCheck::has_all_in_circle(const PlanPosition& p, const PlanPosition& a,
-                                    const PlanPosition& b) const {
-    if (is_whole_) return true;
-    const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1];
-    const double cross = ax * by - ay * bx, dot = ax * bx + ay * by;
-    const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
-    const double ux = bx - ax, uy = by - ay, edge_length = std::sqrt(ux * ux + uy * uy);
-    if (dot <= 0 && is_hull_edge(a, b)) {
-        // Less than half a circle: it reaches from the edge as high as the tangent of half the arc
-        // tells, and is nowhere wider.
-        const double high =
-            0.5 * std::abs(cross) / (std::sqrt(aa) * std::sqrt(bb) - dot) * (1 + kSlack);
-        const double off_x = std::abs(uy) * high, off_y = std::abs(ux) * high;
-        const spatial::PlanBox box{std::min(a[0], b[0]) - off_x, std::min(a[1], b[1]) - off_y,
-                                   std::max(a[0], b[0]) + off_x, std::max(a[1], b[1]) + off_y};
-        return has_all_in(box.widened(kSlack * edge_length));
-    }
-    if (!(std::abs(cross) > kFlat * std::max({aa, bb, edge_length * edge_length}))) return false;
-    const double x = (by * aa - ay * bb) / (2 * cross), y = (ax * bb - bx * aa) / (2 * cross);
-    const double radius = std::sqrt(x * x + y * y) * (1 + kSlack);
-    const double middle_x = p[0] + x, middle_y = p[1] + y;
-    // What of the circle is in the box of all points.
-    const auto beyond = [](double at, double low, double high) {
-        return std::max({low - at, at - high, 0.0});
-    };
-    const auto half = [&](double off) {
-        return std::sqrt(std::max(radius * radius - off * off, 0.0));
-    };
-    const double half_x = half(beyond(middle_y, all_.low_y, all_.high_y)) + kSlack * radius;
-    const double half_y = half(beyond(middle_x, all_.low_x, all_.high_x)) + kSlack * radius;
-    return has_all_in({middle_x - half_x, middle_y - half_y, middle_x + half_x, middle_y + half_y});
-}
-
 using FaceHandle = PointTriangulation::FaceHandle;
 using Delaunay = PointTriangulation::Delaunay;
 using DelaunayEdge = Delaunay::Edge;
@@ -282,24 +171,14 @@ using KernelPoint = Kernel::Point_2;
 // are rounding.
 constexpr double kAreasAgree = 1e-7;
 
-/// What a value follows from. check: whether a subset of the points suffices; null where there are
-/// all.
+/// What a value follows from.
 struct ValueSource {
     const DataPoints& data;
     const PointTriangulation& triangulation;
-    const SubsetCheck* check;
 
     const Delaunay& delaunay() const { return triangulation.delaunay(); }
     std::int32_t number(const DelaunayEdge& edge, int turned) const {
         return edge.first->vertex((edge.second + turned) % 3)->number;
-    }
-    bool circle_suffices(const PlanPosition& p, std::int32_t a, std::int32_t b) const {
-        return check == nullptr || check->has_all_in_circle(p, data.local[a], data.local[b]);
-    }
-    bool triangle_suffices(FaceHandle face) const {
-        const auto [a, b, c] = triangulation.corners(face);
-        return circle_suffices(data.local[a], b, c) || circle_suffices(data.local[b], c, a) ||
-               circle_suffices(data.local[c], a, b);
     }
 };
 
@@ -330,49 +209,25 @@ NodeLocation place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face
     return place;
 }
 
-/// Whether triangles that a value on a place follows from are those of all points.
-bool suffices(const ValueSource& source, const NodeLocation& place) {
-    if (source.check == nullptr || source.check->is_whole()) return true;
-    if (place.is_on_hull)
-        return source.check->is_hull_edge(source.data.local[place.from],
-                                          source.data.local[place.to]) &&
-               source.triangle_suffices(place.face);
-    return source.triangle_suffices(place.face) &&
-           (!place.is_on_edge || source.triangle_suffices(place.other));
+double linear(const ValueSource& source, const PlanPosition& node, const NodeLocation& place) {
+    return source.triangulation.linear(node, place.face);
 }
 
-/// A value, and whether the points suffice for it.
-struct SubsetValue {
-    double value;
-    bool is_certain;
-};
-
-SubsetValue linear(const ValueSource& source, const PlanPosition& node, const NodeLocation& place) {
-    return {source.triangulation.linear(node, place.face), suffices(source, place)};
-}
-
-/// value(source, node, place) for each node in a triangle; the border's value elsewhere. around:
-/// null where there are all points.
+/// value(source, node, place) for each node in a triangle; the border's value elsewhere.
 template <class Value>
-SubsetValues on_triangulation(std::span<const std::array<double, 3>> points,
-                              std::span<const PlanPosition> nodes, const PointsAround* around,
-                              const Execution& execution, const char* text, Value&& value) {
+std::vector<double> on_triangulation(std::span<const std::array<double, 3>> points,
+                                     std::span<const PlanPosition> nodes,
+                                     const Execution& execution, const char* text, Value&& value) {
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
     const PointTriangulation triangulation(data, execution.progress);
-    std::optional<SubsetCheck> check;
-    if (around != nullptr) check.emplace(data, *around);
-    const ValueSource source{data, triangulation, check ? &*check : nullptr};
-    SubsetValues out{std::vector<double>(nodes.size()), std::vector<std::uint8_t>(nodes.size(), 1)};
+    const ValueSource source{data, triangulation};
+    std::vector<double> z(nodes.size());
     const NodeLoop loop{nodes.size(), 256, execution, text};
     loop.over_nodes(
         [] { return std::vector<spatial::Neighbor>(); },
         [&](std::vector<spatial::Neighbor>& nearest, std::size_t i) {
             const PlanPosition node = data.to_local(nodes[i]);
-            if (check && !check->in_hull(node)) {
-                out.z[i] = check->border().nearest_value(node);
-                return;
-            }
             Delaunay::Locate_type kind = Delaunay::OUTSIDE_AFFINE_HULL;
             int at = 0;
             FaceHandle face = triangulation.near(node, nearest);
@@ -380,18 +235,14 @@ SubsetValues on_triangulation(std::span<const std::array<double, 3>> points,
                 face = triangulation.delaunay().locate({node[0], node[1]}, kind, at, face);
             }
             if (kind == Delaunay::VERTEX) {
-                out.z[i] = data.values[face->vertex(at)->number];
+                z[i] = data.values[face->vertex(at)->number];
             } else if (kind == Delaunay::FACE || kind == Delaunay::EDGE) {
-                const NodeLocation place = place_of(triangulation.delaunay(), kind, face, at);
-                const SubsetValue here = value(source, node, place);
-                out.z[i] = here.value;
-                out.certain[i] = here.is_certain ? 1 : 0;
+                z[i] = value(source, node, place_of(triangulation.delaunay(), kind, face, at));
             } else {
-                out.z[i] = triangulation.border().nearest_value(node);
-                out.certain[i] = !check || check->is_whole() ? 1 : 0;
+                z[i] = triangulation.border().nearest_value(node);
             }
         });
-    return out;
+    return z;
 }
 
 /// Whether a circle through a node and both ends of an edge has its center nowhere, for doubles.
@@ -468,23 +319,16 @@ bool add_weights(const ValueSource& source, const KernelPoint& node,
 }
 
 /// Sibson's coordinates, checked: their weighted mean must give the node back.
-SubsetValue natural(const ValueSource& source, const PlanPosition& node,
-                    const NodeLocation& place) {
+double natural(const ValueSource& source, const PlanPosition& node, const NodeLocation& place) {
     thread_local PointWeights weights;
     thread_local std::vector<DelaunayEdge> hole;
     weights.clear();
-    bool is_certain = true;
     if (place.is_on_hull) {
         add_weights_on_hull(source, node, place, weights);
-        is_certain = suffices(source, place);
     } else {
         hole.clear();
         const KernelPoint point(node[0], node[1]);
         source.delaunay().get_boundary_of_conflicts(point, std::back_inserter(hole), place.face);
-        for (const DelaunayEdge& edge : hole) {
-            is_certain = is_certain && source.circle_suffices(node, source.number(edge, 1),
-                                                              source.number(edge, 2));
-        }
         if (!add_weights(source, point, hole, weights)) return linear(source, node, place);
     }
     const DataPoints& data = source.data;
@@ -499,10 +343,9 @@ SubsetValue natural(const ValueSource& source, const PlanPosition& node,
         reach += weight * elementary::hypot(dx, dy);
     }
     if (!(sum > 0) || !std::isfinite(sum) || !(elementary::hypot(x, y) <= kAreasAgree * reach)) {
-        const SubsetValue plain = linear(source, node, place);
-        return {plain.value, plain.is_certain && is_certain};
+        return linear(source, node, place);
     }
-    return {base + z / sum, is_certain};
+    return base + z / sum;
 }
 
 }  // namespace
@@ -510,25 +353,13 @@ SubsetValue natural(const ValueSource& source, const PlanPosition& node,
 std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3>> points,
                                             std::span<const std::array<double, 2>> nodes,
                                             const Execution& execution) {
-    return on_triangulation(points, nodes, nullptr, execution, "linear interpolation", linear).z;
+    return on_triangulation(points, nodes, execution, "linear interpolation", linear);
 }
 
 std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
                                       std::span<const std::array<double, 2>> nodes,
                                       const Execution& execution) {
-    return on_triangulation(points, nodes, nullptr, execution, "natural neighbors", natural).z;
-}
-
-SubsetValues linear_on_subset(std::span<const std::array<double, 3>> points,
-                              std::span<const std::array<double, 2>> nodes,
-                              const PointsAround& around, const Execution& execution) {
-    return on_triangulation(points, nodes, &around, execution, "linear interpolation", linear);
-}
-
-SubsetValues natural_neighbors_of_subset(std::span<const std::array<double, 3>> points,
-                                         std::span<const std::array<double, 2>> nodes,
-                                         const PointsAround& around, const Execution& execution) {
-    return on_triangulation(points, nodes, &around, execution, "natural neighbors", natural);
+    return on_triangulation(points, nodes, execution, "natural neighbors", natural);
 }
 
 }  // namespace realmodel::interpolation

@@ -74,8 +74,8 @@ bool VertexHeights::find_single(PointId point, std::span<std::int32_t> planes) {
         known = {code, known[0]};
         level.plane = std::min(level.plane, plane);
     }
-    std::optional<exact::NearPoint> near;
-    heights_.assign(1, rounded(level, point, near));
+    heights_.assign(
+        1, scope_.rounded_height(level.plane, level.name, point, scope_.approximate(point)));
     std::fill(planes.begin(), planes.end(), 0);
     return true;
 }
@@ -165,19 +165,10 @@ std::int32_t VertexHeights::level_of(PointId point, PlaneId plane) {
     return static_cast<std::int32_t>(levels_.size()) - 1;
 }
 
-/// @param near  where the point lies, found for the first level that asks for it
-double VertexHeights::rounded(const HeightLevel& level, PointId point,
-                              std::optional<exact::NearPoint>& near) {
-    if (level.name.is_edge() && level.name.from() == level.name.to())
-        return scope_.shared().space(level.name.from()).z;
-    if (!near) near = scope_.approximate(point);
-    return scope_.rounded_height(level.plane, point, *near);
-}
-
 void VertexHeights::rank_levels(PointId point) {
-    std::optional<exact::NearPoint> near;
+    const exact::NearPoint near = scope_.approximate(point);
     for (HeightLevel& level : levels_)
-        level.z = rounded(level, point, near);
+        level.z = scope_.rounded_height(level.plane, level.name, point, near);
     const auto level = [&](std::int32_t i) -> HeightLevel& {
         return levels_[static_cast<std::size_t>(i)];
     };

@@ -5,7 +5,6 @@
 #include <array>
 #include <compare>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -161,7 +160,6 @@ private:
     };
 
     bool find_single(PointId point, std::span<std::int32_t> planes);
-    double rounded(const HeightLevel& level, PointId point, std::optional<exact::NearPoint>& near);
     std::int32_t level_of(PointId point, PlaneId plane);
     void find_distinct(PointId point, std::span<const std::int32_t> planes);
     void rank_levels(PointId point);

@@ -20,61 +20,65 @@ void keep_left(LocalArrangement& scope, PolygonView polygon, DirectedLine line,
 
 void Clipper::begin(PolygonView subject) {
     subject_ = subject;
+    ++number_;
+    known_sides_.clear();
     filters_.clear();
-    for (std::size_t i = 0; i < subject.size(); ++i)
-        filters_.push_back(filter_of(subject, i));
-    find_positions(subject, subject_positions_);
+    positions_.clear();
+    for (std::size_t i = 0; i < subject.size(); ++i) {
+        filters_.push_back(exact::reach_filter(scope_, edge_of(subject, i)));
+        positions_.push_back(exact::position_in_reach(scope_, subject[i].point));
+    }
 }
 
-void Clipper::find_positions(PolygonView polygon,
-                             std::vector<std::array<double, 2>>& positions) const {
-    positions.clear();
-    for (const Corner& corner : polygon)
-        positions.push_back(exact::position_in_reach(scope_, corner.point));
-}
-
-/// Whether some corner of a polygon lies to the left of each edge of another one; two polygons
-/// share an area where that is so both ways.
-template <class FilterOf>
-bool Clipper::reaches_inside(PolygonView polygon,
-                             const std::vector<std::array<double, 2>>& positions,
-                             PolygonView window, const FilterOf& filter_of_edge,
-                             SidesOfCorners& sides) {
-    sides.clear();
+/// Two polygons share an area where some corner of each lies to the left of each of the other's
+/// edges. Polygons of a tiling have corners in common, so what is known of these stays.
+bool Clipper::overlaps(PolygonView window) {
+    const std::size_t m = subject_.size();
+    const auto side = [this](const exact::ReachFilter& filter, DirectedLine line, PointId point,
+                             const std::array<double, 2>& position) {
+        return static_cast<std::int8_t>(exact::side_of(scope_, filter, line, point, position));
+    };
+    window_corners_.clear();
+    for (const Corner& corner : window) {
+        KnownCorner& known = known_[index(corner.point) % kKnown];
+        if (known.point != corner.point || known.subject != number_) {
+            known = {corner.point, number_, known_sides_.size()};
+            const auto position = exact::position_in_reach(scope_, corner.point);
+            for (std::size_t i = 0; i < m; ++i)
+                known_sides_.push_back(side(filters_[i], subject_[i].line, corner.point, position));
+        }
+        window_corners_.push_back(known.first_side);
+    }
+    for (std::size_t i = 0; i < m; ++i) {
+        if (std::ranges::none_of(window_corners_,
+                                 [&](std::size_t first) { return known_sides_[first + i] > 0; }))
+            return false;
+    }
+    subject_sides_.resize(window.size() * m);
+    std::int8_t* at = subject_sides_.data();
     for (std::size_t j = 0; j < window.size(); ++j) {
-        const exact::ReachFilter& filter = filter_of_edge(j);
+        const exact::ReachFilter filter = exact::reach_filter(scope_, edge_of(window, j));
         bool any_left = false;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const int side =
-                exact::side_of(scope_, filter, window[j].line, polygon[i].point, positions[i]);
-            any_left |= side > 0;
-            sides.push_back(static_cast<std::int8_t>(side));
+        for (std::size_t i = 0; i < m; ++i, ++at) {
+            *at = side(filter, window[j].line, subject_[i].point, positions_[i]);
+            any_left |= *at > 0;
         }
         if (!any_left) return false;
     }
     return true;
 }
 
-bool Clipper::overlaps(PolygonView window) {
-    find_positions(window, window_positions_);
-    return reaches_inside(
-               window, window_positions_,
-               subject_, [&](std::size_t i) -> const auto& { return filters_[i]; },
-               window_sides_) &&
-           reaches_inside(
-               subject_, subject_positions_, window,
-               [&](std::size_t j) { return filter_of(window, j); }, subject_sides_);
-}
-
 PolygonView Clipper::intersect(PolygonView window) {
     result_.clear();
     if (!overlaps(window)) return {};
-    if (std::ranges::find(subject_sides_, 0) == subject_sides_.end() &&
-        std::ranges::find(window_sides_, 0) == window_sides_.end()) {
-        follow(window);
-    } else {
+    bool is_on_line = std::ranges::find(subject_sides_, 0) != subject_sides_.end();
+    for (std::size_t j = 0; j < window.size() && !is_on_line; ++j)
+        is_on_line = std::ranges::count(window_sides(j), 0) > 0;
+    if (is_on_line) {
         cut_by_lines(window);
         rotate(window);
+    } else {
+        follow(window);
     }
     return result_;
 }
@@ -85,10 +89,9 @@ PolygonView Clipper::intersect(PolygonView window) {
 void Clipper::follow(PolygonView window) {
     const std::size_t m = subject_.size(), n = window.size();
     const auto after = [](std::size_t i, std::size_t count) { return i + 1 < count ? i + 1 : 0; };
-    const auto is_inside = [](const SidesOfCorners& sides, std::size_t corner,
-                              std::size_t corners) {
-        for (; corner < sides.size(); corner += corners) {
-            if (sides[corner] < 0) return false;
+    const auto is_in_window = [&](std::size_t i) {
+        for (; i < subject_sides_.size(); i += m) {
+            if (subject_sides_[i] < 0) return false;
         }
         return true;
     };
@@ -96,7 +99,7 @@ void Clipper::follow(PolygonView window) {
     const auto crossed = [&](std::size_t i, int side) {
         for (std::size_t j = 0; j < n; ++j) {
             if (subject_sides_[j * m + i] == side && subject_sides_[j * m + after(i, m)] == -side &&
-                window_sides_[i * n + j] != window_sides_[i * n + after(j, n)])
+                window_sides(j)[i] != window_sides(after(j, n))[i])
                 return j;
         }
         return n;
@@ -106,12 +109,12 @@ void Clipper::follow(PolygonView window) {
             {scope_.crossing_between_ends(subject_[i].line.id(), window[j].line.id()), leaving});
     };
     for (std::size_t i = 0; i < m; ++i) {
-        if (is_inside(subject_sides_, i, m)) result_.push_back(subject_[i]);
+        if (is_in_window(i)) result_.push_back(subject_[i]);
         if (const std::size_t j = crossed(i, -1); j < n) add_crossing(i, j, subject_[i].line);
         const std::size_t out = crossed(i, 1);
         if (out == n) continue;
         add_crossing(i, out, window[out].line);
-        for (std::size_t j = after(out, n); j != out && is_inside(window_sides_, j, n);
+        for (std::size_t j = after(out, n); j != out && std::ranges::min(window_sides(j)) > 0;
              j = after(j, n))
             result_.push_back(window[j]);
     }

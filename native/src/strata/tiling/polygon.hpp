@@ -90,24 +90,31 @@ public:
 
 private:
     using SidesOfCorners = std::vector<std::int8_t>;
-    exact::ReachFilter filter_of(PolygonView polygon, std::size_t edge) const {
-        return exact::reach_filter(scope_, edge_of(polygon, edge));
+    /// Known corners are looked up in the slot that their number gives; who comes last stays.
+    static constexpr std::size_t kKnown = 64;
+    struct KnownCorner {
+        PointId point = kNone;
+        std::uint32_t subject = 0;   ///< of whose edges this is known
+        std::size_t first_side = 0;  ///< in `known_sides_`
+    };
+    /// Of corner j of the window, for each edge of the subject.
+    std::span<const std::int8_t> window_sides(std::size_t j) const {
+        return {known_sides_.data() + window_corners_[j], subject_.size()};
     }
-    void find_positions(PolygonView polygon, std::vector<std::array<double, 2>>& positions) const;
-    template <class FilterOf>
-    bool reaches_inside(PolygonView polygon, const std::vector<std::array<double, 2>>& positions,
-                        PolygonView window, const FilterOf& filter_of_edge, SidesOfCorners& sides);
     void follow(PolygonView window);
     void cut_by_lines(PolygonView window);
     void rotate(PolygonView window);
 
     LocalArrangement& scope_;
     PolygonView subject_;
-    std::vector<exact::ReachFilter> filters_;  ///< of its edges
-    std::vector<std::array<double, 2>> subject_positions_, window_positions_;
-    SidesOfCorners subject_sides_,
-        window_sides_;      ///< of the corners, for each line of the other polygon
-    SidesOfCorners sides_;  ///< of what is left
+    std::uint32_t number_ = 0;                      ///< of the subject
+    std::vector<exact::ReachFilter> filters_;       ///< of its edges
+    std::vector<std::array<double, 2>> positions_;  ///< of its corners
+    SidesOfCorners subject_sides_;                  ///< of these, for each edge of the window
+    std::array<KnownCorner, kKnown> known_;
+    SidesOfCorners known_sides_;
+    std::vector<std::size_t> window_corners_;  ///< their first sides
+    SidesOfCorners sides_;                     ///< of what is left
     Polygon result_, next_;
 };
 

@@ -62,20 +62,16 @@ TEST(ConvexHull, IsWhatLiesLeftOfEveryLineThatHasAllPointsOnItsLeft) {
     EXPECT_THROW(outside_hull(points, Nodes{{std::nan(""), 0}}, {1}), InputError);
 }
 
-TEST(ConvexHull, ItsCornersAndItsBorder) {
+TEST(ConvexHull, ItsBorder) {
     Nodes lattice;
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 3; ++j)
             lattice.push_back({1.0 * j, 1.0 * i});
     }
-    EXPECT_EQ(ConvexHull(lattice).corners(), (Nodes{{0, 0}, {2, 0}, {2, 3}, {0, 3}}));
     EXPECT_EQ(hull_border(lattice), (std::vector<std::int32_t>{0, 1, 2, 5, 8, 11, 10, 9, 6, 3}));
     EXPECT_EQ(hull_border(Nodes{{2, 2}, {0, 0}, {1, 1}}), (std::vector<std::int32_t>{1, 2, 0}));
     EXPECT_EQ(hull_border(Nodes{{2, 2}}), (std::vector<std::int32_t>{0}));
     EXPECT_TRUE(hull_border({}).empty());
-    EXPECT_TRUE(ConvexHull({}).corners().empty());
-    EXPECT_EQ(ConvexHull({{1, 1}, {0, 0}, {2, 2}}).corners(), (Nodes{{0, 0}, {2, 2}}));
-    EXPECT_EQ(ConvexHull({{1, 1}}).corners(), (Nodes{{1, 1}}));
 }
 
 }  // namespace

@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstring>
 
 #include "../dense_kriging.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/interpolation/convex_hull.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -54,62 +52,6 @@ TEST(Triangulated, RefusesAndStops) {
         Progress progress;
         progress.cancel();
         EXPECT_THROW(method(hills(5000, 10), scattered_nodes(9, 10), {0, &progress}), Cancelled);
-    }
-}
-
-using PartMethod = SubsetValues (*)(std::span<const std::array<double, 3>>,
-                                    std::span<const std::array<double, 2>>, const PointsAround&,
-                                    const Execution&);
-constexpr std::array<PartMethod, 2> part_methods{linear_on_subset, natural_neighbors_of_subset};
-
-/// Of hills and of a lattice, the nodes also on points, on edges, on the hull and beside it.
-TEST(Triangulated, APartKnowsWhereItSuffices) {
-    const std::array<double, 2> origin{4e5, 5e6};
-    Points lattice;
-    for (int i = 0; i < 900; ++i)
-        lattice.push_back({4e5 + 4.0 * (i * 7 % 30), 5e6 + 4.0 * (i / 30), 1.0 * (i * i % 11)});
-    Nodes nodes = scattered_nodes(400, 140, {4e5 - 10, 5e6 - 10});
-    for (int i = 0; i < 400; ++i)
-        nodes.push_back({4e5 + 2.0 * (i % 20), 5e6 + 6.0 * (i / 20)});
-    for (const Points& points : {hills(900, 120, origin), lattice}) {
-        PointsAround around;
-        Nodes local;
-        around.all = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-        for (const auto& [x, y, z] : points) {
-            local.push_back({x - points[0][0], y - points[0][1]});
-            around.all = {std::min(around.all[0], x), std::min(around.all[1], y),
-                          std::max(around.all[2], x), std::max(around.all[3], y)};
-        }
-        Points border;
-        for (const std::int32_t i : hull_border(local))
-            border.push_back(points[static_cast<std::size_t>(i)]);
-        around.border = border;
-        around.window = {4e5 - 20, 5e6 - 20, 4e5 + 70, 5e6 + 90};
-        Points part;
-        for (const auto& p : points) {
-            if (p == points[0] || (p[0] <= around.window[2] && p[1] <= around.window[3]))
-                part.push_back(p);
-        }
-        ASSERT_LT(part.size(), points.size() * 3 / 4);
-        for (std::size_t k = 0; k < methods.size(); ++k) {
-            const std::vector<double> expected = methods[k](points, nodes, {1, nullptr});
-            const SubsetValues found = part_methods[k](part, nodes, around, {1, nullptr});
-            std::size_t in_middle = 0, certain = 0;
-            for (std::size_t i = 0; i < nodes.size(); ++i) {
-                if (found.certain[i] != 0) {
-                    EXPECT_EQ(found.z[i], expected[i]);
-                }
-                if (nodes[i][0] > 4e5 + 40 || nodes[i][1] > 5e6 + 60) continue;
-                ++in_middle;
-                certain += found.certain[i];
-            }
-            EXPECT_EQ(certain, in_middle);
-            PointsAround whole = around;
-            whole.is_whole = true;
-            const SubsetValues of_all = part_methods[k](points, nodes, whole, {1, nullptr});
-            EXPECT_EQ(of_all.z, expected);
-            EXPECT_EQ(std::count(of_all.certain.begin(), of_all.certain.end(), 1), 800);
-        }
     }
 }
 
