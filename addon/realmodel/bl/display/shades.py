@@ -38,15 +38,13 @@ def apply(scene, by):
             remove(obj)
         return
     value = _value_of(scene, by)
-    values_of_objects = [
-        (obj, value(pair, meshes.mesh_coordinates(obj.data))) for obj, pair in shown if _takes(obj)
-    ]
-    finite = [values[np.isfinite(values)] for _, values in values_of_objects]
+    shaded = [(obj, value(pair, meshes.mesh_coordinates(obj.data))) for obj, pair in shown if _takes(obj)]
+    finite = [values[np.isfinite(values)] for _, values in shaded]
     finite = np.concatenate(finite) if finite else np.empty(0)
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
     limits = (0.0 if by in _FROM_ZERO else low, high)
     scene.realmodel.view.shade_limits = limits
-    for obj, values in values_of_objects:
+    for obj, values in shaded:
         write(obj.data, layer_values.colors(values, limits))
 
 

@@ -193,16 +193,14 @@ def _maps(scene):
 
 
 def _misfits(scene):
-    shown_misfits = misfits.shown(scene)
-    places = np.array([misfit.place for misfit in shown_misfits if misfit.place is not None][:_MOST]).reshape(
-        -1, 3
-    )
+    shown = misfits.shown(scene)
+    places = np.array([misfit.place for misfit in shown if misfit.place is not None][:_MOST]).reshape(-1, 3)
     places = np.unique(places, axis=0)  # several may speak of one place
     red = colors.plain_material(*_RED)
     body = _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
     if body is not None:
         body.show_in_front = True  # also where blocks are in front of it
-    ends = [end for misfit in shown_misfits if misfit.end is not None for end in (misfit.place, misfit.end)]
+    ends = [end for misfit in shown if misfit.end is not None for end in (misfit.place, misfit.end)]
     if not ends:
         return
     places = np.array(ends) - project_settings.model_origin(scene)

@@ -122,17 +122,16 @@ class FillJob(ThreadJob):
             model, places = fill_within(job, self._mesh, beds, self._strata)
         with job.phase(_SHARE, 1.0, "making meshes"):
             local = self._shape.to_local(places)
-            bed_shapes = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
-            bed_shapes = [
-                None if shape is None else filled_beds.exposed(shape, self._shape.matrix)
-                for shape in bed_shapes
+            solids = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
+            solids = [
+                None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in solids
             ]
-        return model, bed_shapes, beds.numbers(self._shape.vertices)
+        return model, solids, beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 
     def _put(self, made):
-        model, bed_shapes, masks = made
+        model, solids, masks = made
         scene = bpy.data.scenes.get(self._scene)
         obj = None if scene is None else scene.objects.get(self._shape.name)
         if obj is None or obj.type != "MESH":
@@ -142,9 +141,7 @@ class FillJob(ThreadJob):
         where.children.link(collection)
         self.warnings = [warning.text for warning in model.warnings]
         rocks = {}
-        beds = [
-            pair for pair in zip(model.blocks, bed_shapes, strict=True) if pair[0].property
-        ]  # without gaps
+        beds = [pair for pair in zip(model.blocks, solids, strict=True) if pair[0].property]  # without gaps
         digits = len(str(len(beds)))
         for number, (block, shape) in enumerate(beds, 1):
             if shape is None:

@@ -223,17 +223,13 @@ def _write_materials(mesh, parts, operand_layers):
     are_both = all(len(source.polygons) for source in parts.sources)
     if are_both and any(second):
         slots = first or [None]
-        slots += [
-            material for material in dict.fromkeys(second) if material is not None and material not in slots
-        ]
-        second = [
-            slots.index(material) if material else min(n, len(slots) - 1) for n, material in enumerate(second)
-        ]
+        slots += [key for key in dict.fromkeys(second) if key is not None and key not in slots]
+        second = [slots.index(key) if key else min(n, len(slots) - 1) for n, key in enumerate(second)]
     else:
         slots = first or ([] if are_both else second)
         second = [min(n, max(len(slots) - 1, 0)) for n in range(max(len(second), 1))]
-    for material in slots:
-        mesh.materials.append(None if material is None else bpy.data.materials.get(material))
+    for key in slots:
+        mesh.materials.append(None if key is None else bpy.data.materials.get(key))
     index = np.zeros(len(mesh.polygons), np.int32)
     numbers = (np.arange(max(len(first), 1)), np.array(second))
     for source, layers, new in zip(parts.sources, operand_layers, numbers, strict=True):

@@ -234,15 +234,13 @@ def _opened(model):
     of_faces = np.minimum.reduceat(reach[model.face_vertices], model.face_offsets[:-1])
     for side in range(2):
         np.minimum.at(nearest, model.face_blocks[:, side], of_faces)
-    candidates = []
+    planes = []
     for share in _OPENED:
         offset = reach.max() - share * np.ptp(reach)
         areas = model.section(offset * ahead, ahead).area_by_block()
         met = areas[areas > _SEEN * areas.sum()]
-        candidates.append(
-            (np.count_nonzero(nearest[:-1] < offset), len(met), met.min(initial=np.inf), offset)
-        )
-    return model.cut_by_plane(max(candidates)[-1] * ahead, ahead).below
+        planes.append((np.count_nonzero(nearest[:-1] < offset), len(met), met.min(initial=np.inf), offset))
+    return model.cut_by_plane(max(planes)[-1] * ahead, ahead).below
 
 
 def camera_matrix(points, size, left=0.0, rotation=None):

@@ -60,10 +60,8 @@ def columns(row, _context, _text):
 
 def values(row, _context, _text):
     surface = settings.surface_of(row)
-    file_values = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)[
-        :_MOST_VALUES
-    ]
-    return [reading_text.value_text(reading_text.value(value)) for value in file_values]
+    texts = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)[:_MOST_VALUES]
+    return [reading_text.value_text(reading_text.value(value)) for value in texts]
 
 
 def layers(row, _context, _text):

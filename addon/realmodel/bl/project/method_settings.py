@@ -120,13 +120,11 @@ def dips_unused(row):
 def options_of(row):
     """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
     declared = METHODS[row.method].options
-    options = {
-        key: option_value for key, option_value in _other_options(row.other_options) if key in declared
-    }
+    options = {key: option for key, option in _other_options(row.other_options) if key in declared}
     for key, setting in declared.items():
-        option_value = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
-        if key not in options and option_value is not None and option_value != setting.default:
-            options[key] = option_value
+        option = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
+        if key not in options and option is not None and option != setting.default:
+            options[key] = option
     return options
 
 
@@ -138,12 +136,12 @@ def set_options(row, method, options):
         for key in DEFAULT_OPTIONS.keys() & METHODS[method].options.keys():  # of a row without a method
             set_value(row, key, OPTIONS, METHODS[method].options[key].default)
     others = {}
-    for key, option_value in options.items():
-        if key == "variogram" and option_value is not None:
-            set_variogram(row, option_value)
-        elif OPTIONS[key].kind != "surface" or option_value is None or np.isscalar(option_value):
-            set_value(row, key, OPTIONS, option_value)
-        elif isinstance(heights := surface(key, option_value), tuple):
+    for key, option in options.items():
+        if key == "variogram" and option is not None:
+            set_variogram(row, option)
+        elif OPTIONS[key].kind != "surface" or option is None or np.isscalar(option):
+            set_value(row, key, OPTIONS, option)
+        elif isinstance(heights := surface(key, option), tuple):
             others[f"{key} vertices"], others[f"{key} triangles"] = heights
         else:
             others[key] = heights

@@ -89,9 +89,7 @@ def _divided(observations):
 def units_of(scene, row, names=None):
     """UnitNames of a rock mass, or of one that is not there yet. names: {name in tables: its name here}."""
     surfaces = (
-        []
-        if row is None
-        else [Surface(surface.name, block=surface.block or None) for surface in row.surfaces]
+        [] if row is None else [Surface(entry.name, block=entry.block or None) for entry in row.surfaces]
     )
     bodies = [body.name for body in scene.realmodel.bodies]
     blocks = Rock("", surfaces).block_names()

@@ -198,10 +198,8 @@ def _cloud(scene, row, points):
 
 def _sticks(scene, row):
     """The sticks of a fault, or its scattered points."""
-    point_file = method_settings.point_file(row, project_settings.absolute(row.filepath))
-    sticks, _ = read_fault_points(
-        point_file, method_settings.value(row, "stick", FAULT), scene.realmodel.units
-    )
+    source = method_settings.point_file(row, project_settings.absolute(row.filepath))
+    sticks, _ = read_fault_points(source, method_settings.value(row, "stick", FAULT), scene.realmodel.units)
     return (sticks, np.empty((0, 2), np.int32)) if isinstance(sticks, np.ndarray) else _chains(sticks)
 
 

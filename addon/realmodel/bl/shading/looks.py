@@ -468,13 +468,11 @@ class _Nodes(Nodes):
         return node
 
     def attribute(self, name):
-        group_node = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
-        if group_node is None:
-            group_node = self.new("ShaderNodeGroup")
-            group_node.node_tree = group_once(
-                "ShaderNodeTree", "RealModel Bedding", GROUP, _fill_bedding_group
-            )
-        return group_node.outputs[name]
+        group = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
+        if group is None:
+            group = self.new("ShaderNodeGroup")
+            group.node_tree = group_once("ShaderNodeTree", "RealModel Bedding", GROUP, _fill_bedding_group)
+        return group.outputs[name]
 
 
 def _fill_bedding_group(group):
