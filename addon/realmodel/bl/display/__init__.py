@@ -124,7 +124,7 @@ def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
     if _field is not None:
         _field.follow_exaggeration(scene)
-    items = [item for item in scene.objects if any(key in item for key in _STRETCHED)]
+    items = [obj for obj in scene.objects if any(key in obj for key in _STRETCHED)]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
     residuals.follow_exaggeration(scene)
 
@@ -204,7 +204,7 @@ def built(scene, bounds, stage=None):
     made = [row.object for row in scene.realmodel.results]
     made += [surface.interface for _, surface in settings.interface_rows(scene)]
     for layer in scene.view_layers:
-        if any(item is not None and item.name not in layer.objects for item in made):
+        if any(obj is not None and obj.name not in layer.objects for obj in made):
             layer.update()  # or it would show all new objects when it learns of them
     forget_meshes()
     shown_models.forget()
@@ -292,12 +292,12 @@ def evaluated(depsgraph):
     Cached data of meshes are outdated then."""
     names = set()
     for update in depsgraph.updates:
-        item = update.id.original
-        if isinstance(item, bpy.types.Mesh) and update.is_updated_geometry:
-            drawing.forget({item.name_full})
-            coordinates.forget({item.name_full})
-        if isinstance(item, _SHAPES) and (update.is_updated_geometry or update.is_updated_transform):
-            names.add((isinstance(item, bpy.types.Object), item.name_full))
+        datablock = update.id.original
+        if isinstance(datablock, bpy.types.Mesh) and update.is_updated_geometry:
+            drawing.forget({datablock.name_full})
+            coordinates.forget({datablock.name_full})
+        if isinstance(datablock, _SHAPES) and (update.is_updated_geometry or update.is_updated_transform):
+            names.add((isinstance(datablock, bpy.types.Object), datablock.name_full))
     return names
 
 

@@ -17,13 +17,13 @@ SURVIVING, RESIDUALS = "surviving", "residuals"
 
 def of_kind(scene, kind):
     """{block object: body} of the bodies of a kind."""
-    return {item.parent: item for item in listed(scene, kind) if item.parent is not None}
+    return {body.parent: body for body in listed(scene, kind) if body.parent is not None}
 
 
 def listed(scene, kind):
     """All bodies of a kind, also those whose block was removed."""
     collection = scene.realmodel.view.collection
-    return [] if collection is None else [item for item in collection.objects if item.get(KIND) == kind]
+    return [] if collection is None else [body for body in collection.objects if body.get(KIND) == kind]
 
 
 def put(scene, kind, shapes, material=None):
@@ -31,33 +31,33 @@ def put(scene, kind, shapes, material=None):
 
     shapes: for each block that has one (block object, PolygonMesh). material: if it is not the block's.
     """
-    known = of_kind(scene, kind)
+    bodies_of_blocks = of_kind(scene, kind)
     wanted = {block for block, _ in shapes}
-    remove(scene, kind, [item for item in listed(scene, kind) if item.parent not in wanted])
+    remove(scene, kind, [body for body in listed(scene, kind) if body.parent not in wanted])
     for block, shape in shapes:
-        item = known.get(block)
-        if item is not None and item.data.users == 1:
-            replacing.give_shape(item, shape)
+        body = bodies_of_blocks.get(block)
+        if body is not None and body.data.users == 1:
+            replacing.give_shape(body, shape)
         else:
-            item = add(scene, kind, f"{block.name} {kind}", shape)
-            item[model_tree.BLOCK] = block.get(model_tree.BLOCK, "")
-            item.hide_viewport = kind == MARKS  # viewports draw marks themselves
-            item.parent = block
+            body = add(scene, kind, f"{block.name} {kind}", shape)
+            body[model_tree.BLOCK] = block.get(model_tree.BLOCK, "")
+            body.hide_viewport = kind == MARKS  # viewports draw marks themselves
+            body.parent = block
         if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
-            item.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))
+            body.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))
         if material is None:
-            _take_material(item, block)
-        elif not len(item.data.materials):
-            item.data.materials.append(material)
+            _take_material(body, block)
+        elif not len(body.data.materials):
+            body.data.materials.append(material)
 
 
 def add(scene, kind, name, shape):
     """A new body of a kind; shape: PolygonMesh. Returns its object."""
-    item = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
-    item[KIND], item[model_tree.TAG] = kind, "view"
-    item.hide_select = True
-    view_collection(scene).objects.link(item)
-    return item
+    body = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
+    body[KIND], body[model_tree.TAG] = kind, "view"
+    body.hide_select = True
+    view_collection(scene).objects.link(body)
+    return body
 
 
 def give_materials(mesh, materials, faces):
@@ -67,14 +67,14 @@ def give_materials(mesh, materials, faces):
         if material.name not in slots:
             slots[material.name] = len(slots)
             mesh.materials.append(material)
-    given = np.array([slots[material.name] for material in materials], np.int32)
-    mesh.polygons.foreach_set("material_index", np.repeat(given, faces))
+    slots_of_parts = np.array([slots[material.name] for material in materials], np.int32)
+    mesh.polygons.foreach_set("material_index", np.repeat(slots_of_parts, faces))
     mesh.update()
 
 
-def _take_material(item, block):
+def _take_material(body, block):
     material = block.material_slots[0].material if len(block.material_slots) else None
-    slots = item.data.materials
+    slots = body.data.materials
     if not len(slots):
         slots.append(material)
     elif slots[0] != material:
@@ -84,14 +84,14 @@ def _take_material(item, block):
 def follow_materials(scene):
     """The bodies take the materials that their blocks have now."""
     for kind in (CUT, CELLS, SURVIVING):
-        for block, item in of_kind(scene, kind).items():
-            _take_material(item, block)
+        for block, body in of_kind(scene, kind).items():
+            _take_material(body, block)
 
 
 def remove(scene, kind, items=None):
     """Removes the bodies of a kind, or of them only some, with their meshes."""
-    for item in listed(scene, kind) if items is None else items:
-        replacing.remove(item)
+    for body in listed(scene, kind) if items is None else items:
+        replacing.remove(body)
     remove_collection_if_empty(scene)
 
 

@@ -35,10 +35,10 @@ def apply(scene):
             _put_into_slot(row.object, common or plain)
     blocks = {settings.row_of_block(scene, row): row for row in scene.realmodel.results}
     for place, surface in settings.interface_rows(scene):
-        item, row = surface.interface, blocks.get(surface)
-        if not _can_take(item) or not len(scene.realmodel.results):
+        obj, row = surface.interface, blocks.get(surface)
+        if not _can_take(obj) or not len(scene.realmodel.results):
             continue
-        if any(m is not None for m in item.data.materials):
+        if any(m is not None for m in obj.data.materials):
             continue  # the user's own
         if common is not None:
             material = common
@@ -48,9 +48,9 @@ def apply(scene):
             material = of_property(scene, surface.property_id)
         else:
             material = plain_material(*_entry(scene, by, row))
-        if not len(item.data.materials):
-            item.data.materials.append(None)
-        _put_into_slot(item, material)
+        if not len(obj.data.materials):
+            obj.data.materials.append(None)
+        _put_into_slot(obj, material)
     bodies.follow_materials(scene)
     remove_unused()
 
@@ -71,15 +71,15 @@ def key(scene):
     number = collections.Counter()  # of the blocks so far, in each rock mass, the youngest first
     for row in reversed(group.results):
         number[row.rock] += 1
-        item = modes.body_of(scene, row)
-        if item is None or not stages.present(row) or modes.is_hidden(scene, row):
+        body = modes.body_of(scene, row)
+        if body is None or not stages.present(row) or modes.is_hidden(scene, row):
             continue
         if by == "PROPERTY":
             name, _ = materials.name_and_color(library, row.property_id)
-            material = item.material_slots[0].material if len(item.material_slots) else None
+            material = body.material_slots[0].material if len(body.material_slots) else None
             if material is not None and library_rows.find(scene, row.property_id) is None:
                 name = material.name  # as it was called when the block was built
-            color = shown_color(item)
+            color = shown_color(body)
         else:
             _, color = _entry(scene, by, row)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
@@ -106,8 +106,8 @@ def shade_viewports(by, before):
 
 def forget(scene):
     """Removes all such colors from a scene."""
-    for item in _colored(scene):
-        slot = item.material_slots[0]
+    for obj in _colored(scene):
+        slot = obj.material_slots[0]
         if slot.link == "OBJECT" and not _is_of_user(slot):
             slot.material = None
             slot.link = "DATA"
@@ -131,11 +131,11 @@ def shown_linear(item):
 def _colored(scene):
     items = [row.object for row in scene.realmodel.results]
     items += [surface.interface for _, surface in settings.interface_rows(scene)]
-    return [item for item in items if _can_take(item) and len(item.material_slots)]
+    return [obj for obj in items if _can_take(obj) and len(obj.material_slots)]
 
 
-def _can_take(item):
-    return item is not None and item.type == "MESH" and item.library is None and item.data.library is None
+def _can_take(obj):
+    return obj is not None and obj.type == "MESH" and obj.library is None and obj.data.library is None
 
 
 def _entry(scene, by, row):
@@ -181,16 +181,16 @@ def dark():
 
 def of_property(scene, property_id):
     """The material of a property, whether a block has it or not."""
-    known = library_rows.scene_materials(scene, property_id)
-    if known:
-        return known[0]
+    scene_materials = library_rows.scene_materials(scene, property_id)
+    if scene_materials:
+        return scene_materials[0]
     return plain_material(*materials.name_and_color(library_rows.library_of(scene), property_id))
 
 
-def _put_into_slot(item, material):
-    if not len(item.material_slots) or _is_of_user(item.material_slots[0]):
+def _put_into_slot(obj, material):
+    if not len(obj.material_slots) or _is_of_user(obj.material_slots[0]):
         return
-    slot = item.material_slots[0]
+    slot = obj.material_slots[0]
     if material is None:
         if slot.link == "OBJECT":
             slot.material = None
@@ -204,8 +204,8 @@ def _put_into_slot(item, material):
 
 def _is_of_user(slot):
     """Whether the user has given the object, not its mesh, a material."""
-    given = slot.material if slot.link == "OBJECT" else None
-    return given is not None and not {KEY, materials.KEY, shades.ATTRIBUTE} & set(given.keys())
+    material = slot.material if slot.link == "OBJECT" else None
+    return material is not None and not {KEY, materials.KEY, shades.ATTRIBUTE} & set(material.keys())
 
 
 def remove_unused():

@@ -45,13 +45,13 @@ def under_ray(scene, start, direction):
     for row in scene.realmodel.results:
         if not stages.present(row) or modes.is_hidden(scene, row):
             continue
-        item = modes.body_of(scene, row)
-        if item is None:
+        body = modes.body_of(scene, row)
+        if body is None:
             continue
-        matrix = np.array(exaggeration.world_matrix(item), np.float64)
+        matrix = np.array(exaggeration.world_matrix(body), np.float64)
         turn = np.linalg.pinv(matrix[:3, :3])
         begin, along = turn @ (start - matrix[:3, 3]), turn @ direction
-        for soup, shift in _pieces(scene, item):
+        for soup, shift in _pieces(scene, body):
             hits = _hits(soup, begin, along)
             if len(hits) and (nearest is None or hits[0] < nearest[0]):
                 place = begin + hits[0] * along - shift
@@ -63,12 +63,12 @@ def under_ray(scene, start, direction):
     return _place(scene, row, local, span or _span(row.object, local))
 
 
-def _pieces(scene, item):
+def _pieces(scene, body):
     """(triangles, by how much they were moved) of a body; compartments may have been moved apart."""
-    soup, apart = _soup(item.data), modes.apart_shown(scene)
+    soup, apart = _soup(body.data), modes.apart_shown(scene)
     if not apart:
         return [(soup, np.zeros(3))]
-    mesh = item.data
+    mesh = body.data
     number = np.empty(len(mesh.polygons), np.int32)
     mesh.attributes[meshes.FACE_COMPARTMENT].data.foreach_get("value", number)
     number = number[shapes.triangle_polygons(mesh)]
@@ -103,10 +103,10 @@ def _place(scene, row, local, span):
     )
 
 
-def _span(item, local):
+def _span(obj, local):
     """(lowest, highest) height of a block on the vertical through a point, of its intervals there the one
     that is nearest to the point; None where it is not there. Bodies and reverse faults leave several."""
-    soup = _soup(item.data)
+    soup = _soup(obj.data)
     start = np.array([local[0], local[1], float(soup[:, :, 2].min()) - 1.0])
     distances, leaves = _crossings(soup, start, np.array([0.0, 0.0, 1.0]))
     if not len(distances):
@@ -146,10 +146,10 @@ def _crossings(soup, start, direction):
     inside = ((weights >= 0.0).all(axis=0) | (weights <= 0.0).all(axis=0)) & (weights.sum(axis=0) != 0.0)
     weights, depths = weights[:, inside], corners[inside][:, :, 2].T
     total = weights.sum(axis=0)
-    found = (weights * depths).sum(axis=0) / total
-    ahead = np.flatnonzero(found >= 0.0)
-    ahead = ahead[np.argsort(found[ahead], kind="stable")]
-    return found[ahead] / length, total[ahead] > 0.0
+    distances = (weights * depths).sum(axis=0) / total
+    ahead = np.flatnonzero(distances >= 0.0)
+    ahead = ahead[np.argsort(distances[ahead], kind="stable")]
+    return distances[ahead] / length, total[ahead] > 0.0
 
 
 def _rounding(soup, point):

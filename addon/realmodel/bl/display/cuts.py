@@ -38,8 +38,8 @@ def is_shown(scene):
 
 def plane_of(scene):
     """The plane object, where it is still in the scene, or None."""
-    item = scene.realmodel.view.plane
-    return item if item is not None and scene in item.users_scene else None
+    plane = scene.realmodel.view.plane
+    return plane if plane is not None and scene in plane.users_scene else None
 
 
 def plane_in_model(scene, matrix=None):
@@ -73,15 +73,15 @@ def add_plane(scene):
     low, high = explosion.bounds(scene)
     middle, size = (low + high) / 2, 0.6 * float(np.linalg.norm(high - low))
     mesh = meshes.new_mesh("Section plane", _square(size))
-    item = bpy.data.objects.new("Section plane", mesh)
-    item[model_tree.TAG] = "view"
-    item[bodies.KIND] = bodies.PLANE
-    item.display_type = "WIRE"
-    item.hide_render = True
-    item.location = middle
-    item.rotation_euler = (np.pi / 2, 0.0, 0.0)  # its Z axis to the south, where the standard front is
-    bodies.view_collection(scene).objects.link(item)
-    return item
+    plane = bpy.data.objects.new("Section plane", mesh)
+    plane[model_tree.TAG] = "view"
+    plane[bodies.KIND] = bodies.PLANE
+    plane.display_type = "WIRE"
+    plane.hide_render = True
+    plane.location = middle
+    plane.rotation_euler = (np.pi / 2, 0.0, 0.0)  # its Z axis to the south, where the standard front is
+    bodies.view_collection(scene).objects.link(plane)
+    return plane
 
 
 def _square(size):
@@ -91,12 +91,12 @@ def _square(size):
 
 def remove_plane(scene):
     """Removes the plane if it was made for the cut; an object of the user stays."""
-    view, item = scene.realmodel.view, scene.realmodel.view.plane
+    view, plane = scene.realmodel.view, scene.realmodel.view.plane
     with settings.filling():
         view.plane, view.use_section = None, False
-    if item.get(bodies.KIND) == bodies.PLANE:
-        mesh = item.data
-        bpy.data.objects.remove(item)
+    if plane.get(bodies.KIND) == bodies.PLANE:
+        mesh = plane.data
+        bpy.data.objects.remove(plane)
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
     bodies.remove_collection_if_empty(scene)
@@ -131,7 +131,7 @@ def follow(scene, depsgraph):
     plane = plane_of(scene)
     matrix = plane.matrix_world if depsgraph is None else plane.evaluated_get(depsgraph).matrix_world
     cut = json.loads(scene.realmodel.view.cut or "[[], []]")
-    if [found.tolist() for found in plane_in_model(scene, matrix)] == cut[:2]:
+    if [vector.tolist() for vector in plane_in_model(scene, matrix)] == cut[:2]:
         return False
     if replacing.nobody_waits():
         cut_now(scene, cut[2] if len(cut) > 2 else None, matrix)

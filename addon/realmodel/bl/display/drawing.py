@@ -43,15 +43,15 @@ def draw_items(items, mode, layer):
     if mode == "POINTS":
         gpu.state.point_size_set(POINT_SIZE * bpy.context.preferences.system.pixel_size)
     shader.bind()
-    for item in items:
-        if item.name not in layer.objects:
+    for obj in items:
+        if obj.name not in layer.objects:
             continue
-        batch = _batch(item.data, mode)
+        batch = _batch(obj.data, mode)
         if batch is None:
             continue
         with gpu.matrix.push_pop():
-            gpu.matrix.multiply_matrix(exaggeration.world_matrix(item))
-            shader.uniform_float("color", (*colors.shown_color(item), 1.0))
+            gpu.matrix.multiply_matrix(exaggeration.world_matrix(obj))
+            shader.uniform_float("color", (*colors.shown_color(obj), 1.0))
             batch.draw(shader)
     gpu.state.depth_test_set("NONE")
     gpu.state.depth_mask_set(False)

@@ -34,16 +34,16 @@ def put(scene, found, samples, blocks, seed):
     (R, N) int16, the block of each cell in each realization, -1 for none."""
     remove(scene)
     rows = list(_rows(found))
-    kept = np.flatnonzero((blocks >= 0).any(axis=0))
-    places = offsets_from(project_settings.model_origin(scene), samples.corners[kept].reshape(-1, 3))
-    ends = np.arange(0, 4 * len(kept) + 1, 4, dtype=np.int32)
-    shape = PolygonMesh(places, ends, np.arange(4 * len(kept), dtype=np.int32))
-    item = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
-    stored_arrays.store(item, BLOCKS, {"blocks": blocks[:, kept]})
-    item.show_in_front = True  # it runs through the blocks
-    sections.stand(scene, item, samples.section.plane)
+    cells = np.flatnonzero((blocks >= 0).any(axis=0))
+    places = offsets_from(project_settings.model_origin(scene), samples.corners[cells].reshape(-1, 3))
+    ends = np.arange(0, 4 * len(cells) + 1, 4, dtype=np.int32)
+    shape = PolygonMesh(places, ends, np.arange(4 * len(cells), dtype=np.int32))
+    obj = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
+    stored_arrays.store(obj, BLOCKS, {"blocks": blocks[:, cells]})
+    obj.show_in_front = True  # it runs through the blocks
+    sections.stand(scene, obj, samples.section.plane)
     group = scene.realmodel.ensemble
-    group.object = item
+    group.object = obj
     group.table = json.dumps(
         {
             "stamp": scene.realmodel.built_stamp,
@@ -59,13 +59,13 @@ def put(scene, found, samples, blocks, seed):
     recolor(scene)
 
 
-def _rows(found):
-    percentiles, deviations = found.percentiles(), found.volume_deviations()
-    for number, block in enumerate(found.model.blocks):
-        drawn = found.volumes[:, number]
+def _rows(ensemble):
+    percentiles, deviations = ensemble.percentiles(), ensemble.volume_deviations()
+    for number, block in enumerate(ensemble.model.blocks):
+        drawn = ensemble.volumes[:, number]
         yield {
             "name": block.name,
-            "rock": found.model.project.rocks[block.rock].name,
+            "rock": ensemble.model.project.rocks[block.rock].name,
             "property": int(block.property),
             "interpolated": block.volume,
             "mean": float(drawn.mean()),
@@ -83,40 +83,40 @@ def table(scene):
 
 def is_outdated(scene):
     """Whether another model was built since."""
-    found = table(scene)
-    return found is not None and found["stamp"] != scene.realmodel.built_stamp
+    summary = table(scene)
+    return summary is not None and summary["stamp"] != scene.realmodel.built_stamp
 
 
 def item_of(scene):
     """The object of the section, or None."""
-    item = scene.realmodel.ensemble.object
-    there = item is not None and BLOCKS in item and item.type == "MESH" and scene in item.users_scene
-    return item if there else None
+    obj = scene.realmodel.ensemble.object
+    is_usable = obj is not None and BLOCKS in obj and obj.type == "MESH" and scene in obj.users_scene
+    return obj if is_usable else None
 
 
 def remove(scene):
     """Removes the ensemble from a scene."""
-    group, item = scene.realmodel.ensemble, item_of(scene)
+    group, obj = scene.realmodel.ensemble, item_of(scene)
     group.object, group.table = None, ""
-    if item is not None:
-        model_tree.remove_objects([item])
+    if obj is not None:
+        model_tree.remove_objects([obj])
         bodies.remove_collection_if_empty(scene)
         colors.remove_unused()
 
 
 def recolor(scene):
     """Sets the colors of the section. Raises InputRefused where the .blend is damaged."""
-    item = item_of(scene)
-    if item is None or item.mode != "OBJECT" or item.data.library is not None:
+    obj = item_of(scene)
+    if obj is None or obj.mode != "OBJECT" or obj.data.library is not None:
         return
-    blocks = StoredArrays(item, BLOCKS)["blocks"]
-    if blocks.shape[1] != len(item.data.polygons):
+    blocks = StoredArrays(obj, BLOCKS)["blocks"]
+    if blocks.shape[1] != len(obj.data.polygons):
         return  # its mesh was edited
     if scene.realmodel.ensemble.color_by == REALIZATION:
         materials, slots = _of_realization(scene, blocks)
     else:
         materials, slots = _of_scale(scene, blocks)
-    mesh = item.data
+    mesh = obj.data
     mesh.materials.clear()
     for material in materials:
         mesh.materials.append(material)
@@ -163,8 +163,8 @@ def _most(scene):
 
 def key(scene):
     """The core's ColorKey of the section, or None."""
-    group, item = scene.realmodel.ensemble, item_of(scene)
-    if item is None or group.color_by == REALIZATION or item.hide_viewport:
+    group, obj = scene.realmodel.ensemble, item_of(scene)
+    if obj is None or group.color_by == REALIZATION or obj.hide_viewport:
         return None
     title = f"Probability of {group.block}" if group.color_by == PROBABILITY else "Entropy (bits)"
     return ColorKey(title, limits=(0.0, _most(scene)), colors=_colors(_STEPS))

@@ -66,7 +66,7 @@ def bounds(scene):
     view = scene.realmodel.view
     if tuple(view.bounds_low) == tuple(view.bounds_high):  # it was built by another version, or in batch
         items = [row.object for row in scene.realmodel.results if _has_mesh(row)]
-        return block_shapes.bounds([meshes.mesh_coordinates(item.data) for item in items])
+        return block_shapes.bounds([meshes.mesh_coordinates(obj.data) for obj in items])
     return np.array(view.bounds_low, np.float64), np.array(view.bounds_high, np.float64)
 
 
@@ -74,8 +74,8 @@ def _has_mesh(row):
     return row.object is not None and row.object.type == "MESH"
 
 
-def _center(item):
-    found = meshes.mesh_coordinates(item.data) if item.type == "MESH" else ()
-    if not len(found):
+def _center(obj):
+    coordinates = meshes.mesh_coordinates(obj.data) if obj.type == "MESH" else ()
+    if not len(coordinates):
         return np.zeros(3)
-    return (found.min(axis=0).astype(np.float64) + found.max(axis=0)) / 2
+    return (coordinates.min(axis=0).astype(np.float64) + coordinates.max(axis=0)) / 2

@@ -66,8 +66,8 @@ def key(scene):
     if not high > low:
         return None
     names = json.loads(scene.realmodel.view.field_surfaces or "[]")
-    there = tuple((name, value) for name, value in names if low <= value <= high)
-    return ColorKey(f"Field of {shown_series(scene)}", limits=(low, high), colors=_colors(), names=there)
+    surfaces = tuple((name, value) for name, value in names if low <= value <= high)
+    return ColorKey(f"Field of {shown_series(scene)}", limits=(low, high), colors=_colors(), names=surfaces)
 
 
 def is_working(scene):
@@ -138,14 +138,14 @@ def _put(scene, kind, places, bands):
         return
     vertices, corners = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
     offsets = np.arange(0, 3 * len(places) + 1, 3, dtype=np.int32)
-    given = offsets_from(project_settings.model_origin(scene), vertices)
-    shape = PolygonMesh(given, offsets, corners.ravel().astype(np.int32))
-    item = bodies.add(scene, kind, f"{shown_series(scene)} {kind}", shape)
+    local = offsets_from(project_settings.model_origin(scene), vertices)
+    shape = PolygonMesh(local, offsets, corners.ravel().astype(np.int32))
+    body = bodies.add(scene, kind, f"{shown_series(scene)} {kind}", shape)
     codes = [hex_color(color) for color in _colors()[:, :3].tolist()]
     for code in codes:
-        item.data.materials.append(colors.plain_material(f"Scale {code}", code))
-    item.data.polygons.foreach_set("material_index", bands.astype(np.int32))
-    item.data.update()
+        body.data.materials.append(colors.plain_material(f"Scale {code}", code))
+    body.data.polygons.foreach_set("material_index", bands.astype(np.int32))
+    body.data.update()
 
 
 def _colors():

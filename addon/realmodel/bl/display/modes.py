@@ -60,8 +60,8 @@ def apply(scene, mode, stage, apart=0.0):
         halved = shown and cut and not (apart and part)
         want(scene, half, halved, rendered and halved)
         want(scene, part, here if mode == "POLYHEDRA" else shown, here if mode == "POLYHEDRA" else shown)
-        for item in (row.object, half, part):
-            _wires(item, mode == "AREAS")
+        for obj in (row.object, half, part):
+            _wires(obj, mode == "AREAS")
     shown = with_interfaces and mode not in DRAWN and view.surviving_of == ""
     _interfaces(scene, shown, mode == "AREAS", with_blocks)
     for _, surface in settings.interface_rows(scene):
@@ -93,17 +93,17 @@ def drawn(scene, mode=None):
     if mode not in DRAWN:
         return []
     with_blocks, with_interfaces = shown_kinds(mode, group.view.subject)
-    found = []
+    objects = []
     if with_blocks:
         halves = bodies.of_kind(scene, bodies.CUT) if cuts.is_shown(scene) else None
         halves = bodies.of_kind(scene, bodies.CELLS) or halves  # parts that were moved apart
         for row in group.results:
             if stages.present(row) and not is_hidden(scene, row):
-                found.append(row.object if halves is None else halves.get(row.object))
+                objects.append(row.object if halves is None else halves.get(row.object))
     if with_interfaces:
         rows = settings.interface_rows(scene)
-        found += [surface.interface for _, surface in rows if not surface.hide]
-    return [item for item in found if item is not None and item.type == "MESH"]
+        objects += [surface.interface for _, surface in rows if not surface.hide]
+    return [obj for obj in objects if obj is not None and obj.type == "MESH"]
 
 
 def apart_shown(scene):
@@ -122,18 +122,18 @@ def body_of(scene, row):
     return bodies.of_kind(scene, bodies.CUT).get(row.object) if cuts.is_shown(scene) else row.object
 
 
-def _see_through(item, wanted):
+def _see_through(obj, wanted):
     """Draws an interface as wires where blocks are visible, too: it coincides with their faces, and the two
     would flicker. One that the user does not display as solid is left unchanged."""
-    if item is None or item.library is not None:
+    if obj is None or obj.library is not None:
         return
-    if wanted and item.display_type == "TEXTURED":
-        item.display_type = "WIRE"
-        item[SEE_THROUGH] = True
-    elif not wanted and SEE_THROUGH in item:
-        if item.display_type == "WIRE":
-            item.display_type = "TEXTURED"
-        del item[SEE_THROUGH]
+    if wanted and obj.display_type == "TEXTURED":
+        obj.display_type = "WIRE"
+        obj[SEE_THROUGH] = True
+    elif not wanted and SEE_THROUGH in obj:
+        if obj.display_type == "WIRE":
+            obj.display_type = "TEXTURED"
+        del obj[SEE_THROUGH]
 
 
 def _interfaces(scene, shown, wires, beside_blocks):
@@ -147,15 +147,15 @@ def _interfaces(scene, shown, wires, beside_blocks):
         _see_through(row.interface, beside_blocks)
 
 
-def _wires(item, wanted):
-    if item is None or item.library is not None:
+def _wires(obj, wanted):
+    if obj is None or obj.library is not None:
         return
-    if wanted and not item.show_wire:
-        item.show_wire = item.show_all_edges = True
-        item[WIRE] = True
-    elif not wanted and WIRE in item:
-        item.show_wire = item.show_all_edges = False
-        del item[WIRE]
+    if wanted and not obj.show_wire:
+        obj.show_wire = obj.show_all_edges = True
+        obj[WIRE] = True
+    elif not wanted and WIRE in obj:
+        obj.show_wire = obj.show_all_edges = False
+        del obj[WIRE]
 
 
 def has_parts(scene, mode, apart):
@@ -202,11 +202,11 @@ def _make_surviving(scene, stage):
 def without_blocks(scene):
     """Shows the interfaces alone as ordinary objects, when the blocks were removed."""
     for _, surface in settings.interface_rows(scene):
-        item = surface.interface
-        if item is not None and item.library is None:
-            item.pop(WANTED, None)
-            want(scene, item, not surface.hide, not surface.hide)
-            let_go(item)
+        obj = surface.interface
+        if obj is not None and obj.library is None:
+            obj.pop(WANTED, None)
+            want(scene, obj, not surface.hide, not surface.hide)
+            let_go(obj)
 
 
 def let_go(item):

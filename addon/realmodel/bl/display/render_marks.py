@@ -18,14 +18,14 @@ def put(scene, mode):
         return
     pixel = _pixel_size(scene)
     shapes = []
-    for item in modes.drawn(scene, "LINES" if mode == "AREAS" else mode):
-        coordinates = meshes.mesh_coordinates(item.data)
+    for obj in modes.drawn(scene, "LINES" if mode == "AREAS" else mode):
+        coordinates = meshes.mesh_coordinates(obj.data)
         if mode == "POINTS":
             stretch = exaggeration.factor(scene)
-            shapes.append((item, marks.points(coordinates, POINT_RADIUS * pixel, stretch)))
+            shapes.append((obj, marks.points(coordinates, POINT_RADIUS * pixel, stretch)))
         else:
             shapes.append(
-                (item, marks.lines(coordinates, versions.edge_vertices(item.data), LINE_RADIUS * pixel))
+                (obj, marks.lines(coordinates, versions.edge_vertices(obj.data), LINE_RADIUS * pixel))
             )
     bodies.put(scene, bodies.MARKS, shapes, colors.dark() if mode == "AREAS" else None)
 

@@ -70,9 +70,9 @@ def remove(item):
         _remove(item)
 
 
-def _remove(item):
-    is_block = item.get(model_tree.TAG) == "block"
-    model_tree.remove_objects([item])
+def _remove(obj):
+    is_block = obj.get(model_tree.TAG) == "block"
+    model_tree.remove_objects([obj])
     if is_block:
         model_tree.remove_unused_materials()
 
@@ -82,9 +82,9 @@ def tidy():
     if _rendering:
         return
     for name in _left_objects:
-        item = bpy.data.objects.get(name)
-        if item is not None:
-            _remove(item)
+        obj = bpy.data.objects.get(name)
+        if obj is not None:
+            _remove(obj)
     for name in _left_meshes:
         mesh = bpy.data.meshes.get(name)
         if mesh is not None and not mesh.users:

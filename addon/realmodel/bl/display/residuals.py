@@ -30,29 +30,29 @@ def ahead(scene):
 def show(scene):
     """Shows the residuals of a scene's model, in place of those that are shown. Raises RealModelError."""
     hide(scene)
-    found = _of_model(shown_models.whole(scene, None))
+    results = _of_model(shown_models.whole(scene, None))
     scene.realmodel.view.residuals = json.dumps(
         [
             (
-                each.rock,
-                each.surface,
-                len(each.values),
-                each.mean,
-                each.root_mean_square,
-                each.largest,
-                each.outside,
+                residual.rock,
+                residual.surface,
+                len(residual.values),
+                residual.mean,
+                residual.root_mean_square,
+                residual.largest,
+                residual.outside,
             )
-            for each in found
+            for residual in results
         ]
     )
-    if not any(len(each.values) for each in found):
+    if not any(len(residual.values) for residual in results):
         return
-    points = np.concatenate([each.points for each in found]) - project_settings.model_origin(scene)
-    values = np.concatenate([each.values for each in found])
+    points = np.concatenate([residual.points for residual in results]) - project_settings.model_origin(scene)
+    values = np.concatenate([residual.values for residual in results])
     order = np.sort(np.argsort(-np.abs(values), kind="stable")[:_MOST])
     shape = _shape(scene, points[order])
-    item = bodies.add(scene, bodies.RESIDUALS, "Residuals", shape)
-    mesh, item[_STRETCH] = item.data, exaggeration.factor(scene)
+    body = bodies.add(scene, bodies.RESIDUALS, "Residuals", shape)
+    mesh, body[_STRETCH] = body.data, exaggeration.factor(scene)
     low, high = limits(scene)
     steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
@@ -70,14 +70,14 @@ def _shape(scene, points):
 def follow_exaggeration(scene):
     """Shapes the bodies for the vertical exaggeration of the scene."""
     stretch = exaggeration.factor(scene)
-    for item in bodies.listed(scene, bodies.RESIDUALS):
-        if item.get(_STRETCH) == stretch:
+    for body in bodies.listed(scene, bodies.RESIDUALS):
+        if body.get(_STRETCH) == stretch:
             continue
-        item[_STRETCH] = stretch
-        places = marks.places_of(meshes.mesh_coordinates(item.data).astype(np.float64))
+        body[_STRETCH] = stretch
+        places = marks.places_of(meshes.mesh_coordinates(body.data).astype(np.float64))
         coordinates = _shape(scene, places).coordinates
-        item.data.vertices.foreach_set("co", coordinates.ravel())
-        item.data.update()
+        body.data.vertices.foreach_set("co", coordinates.ravel())
+        body.data.update()
 
 
 def hide(scene):

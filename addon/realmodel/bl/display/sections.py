@@ -46,17 +46,17 @@ def through(scene, line):
     return _colored(scene, shown_models.at_stage(scene, scene.realmodel.stage).fence(line))
 
 
-def _colored(scene, found):
+def _colored(scene, section):
     """A section in the colors that the library has now."""
-    if not len(found):
+    if not len(section):
         raise InputRefused(
             "the section does not meet the model", advice="move it to where there are blocks, or turn it"
         )
-    for block, property_id in set(zip(found.block.tolist(), found.property.tolist(), strict=True)):
+    for block, property_id in set(zip(section.block.tolist(), section.property.tolist(), strict=True)):
         row = library_rows.find(scene, property_id)
         if row is not None and row.has_color:
-            found.block_colors[block] = tuple(row.color)
-    return found
+            section.block_colors[block] = tuple(row.color)
+    return section
 
 
 def add(scene, found, name, flat=False):
@@ -78,11 +78,11 @@ def add(scene, found, name, flat=False):
     attribute = mesh.attributes.new(BLOCK_ATTRIBUTE, "INT", "FACE")
     attribute.data.foreach_set("value", np.ascontiguousarray(found.block, np.int32))
     mesh.update()
-    item = bpy.data.objects.new(name, mesh)
+    obj = bpy.data.objects.new(name, mesh)
     if flat:
-        item[FLAT] = True
-    stand(scene, item, None if flat else found.plane)
-    return item
+        obj[FLAT] = True
+    stand(scene, obj, None if flat else found.plane)
+    return obj
 
 
 def stand(scene, item, plane):
@@ -99,14 +99,14 @@ def _size(scene):
     return float(np.linalg.norm(np.asarray(high) - low))
 
 
-def _beside(scene, found, origin):
+def _beside(scene, section, origin):
     """(V, 3) float32: the section unrolled to the south of the model, a map to the east of it."""
     low, high = (np.asarray(corner, np.float64) for corner in explosion.bounds(scene))
-    flat, size = flattened(found), _size(scene)
-    if not is_vertical(found) and np.ptp(found.vertices[:, 2]) == 0:
+    flat, size = flattened(section), _size(scene)
+    if not is_vertical(section) and np.ptp(section.vertices[:, 2]) == 0:
         shift = (high[0] - low[0] + _BESIDE * size, 0.0)
         return np.column_stack([flat - origin[:2] + shift, np.full(len(flat), low[2])]).astype(np.float32)
-    number = sum(FLAT in item for item in scene.objects)
-    upright = flat[:, 1] - origin[2] if is_vertical(found) else low[2] + flat[:, 1]
+    number = sum(FLAT in obj for obj in scene.objects)
+    upright = flat[:, 1] - origin[2] if is_vertical(section) else low[2] + flat[:, 1]
     south = np.full(len(flat), low[1] - (number + 1) * _BESIDE * size)
     return np.column_stack([low[0] + flat[:, 0], south, upright]).astype(np.float32)

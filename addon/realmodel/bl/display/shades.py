@@ -29,23 +29,23 @@ def apply(scene, by):
     them. by: one of IN_MESH; for any other value the colors are removed."""
     shown = list(_shown(scene))
     if by == COMPARTMENT:
-        for item, _ in shown:
-            if _takes(item):
-                _write_compartments(item.data)
+        for obj, _ in shown:
+            if _takes(obj):
+                _write_compartments(obj.data)
         return
     if by not in TITLES:
-        for item, _ in shown:
-            remove(item)
+        for obj, _ in shown:
+            remove(obj)
         return
     value = _value_of(scene, by)
-    found = [(item, value(pair, meshes.mesh_coordinates(item.data))) for item, pair in shown if _takes(item)]
-    known = [values[np.isfinite(values)] for _, values in found]
-    known = np.concatenate(known) if known else np.empty(0)
-    low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)
+    shaded = [(obj, value(pair, meshes.mesh_coordinates(obj.data))) for obj, pair in shown if _takes(obj)]
+    finite = [values[np.isfinite(values)] for _, values in shaded]
+    finite = np.concatenate(finite) if finite else np.empty(0)
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
     limits = (0.0 if by in _FROM_ZERO else low, high)
     scene.realmodel.view.shade_limits = limits
-    for item, values in found:
-        write(item.data, layer_values.colors(values, limits))
+    for obj, values in shaded:
+        write(obj.data, layer_values.colors(values, limits))
 
 
 def limits(scene):
@@ -61,22 +61,22 @@ def remove(item):
 
 def material():
     """The material that shows the attribute."""
-    known = next((m for m in bpy.data.materials if m.get(ATTRIBUTE) and m.library is None), None)
-    if known is not None:
-        return known
+    scale = next((m for m in bpy.data.materials if m.get(ATTRIBUTE) and m.library is None), None)
+    if scale is not None:
+        return scale
     made = materials.new_material("Color Scale", materials.NO_PROPERTY, materials.NEUTRAL_GRAY)
     del made[materials.KEY]
     made[ATTRIBUTE] = True
     nodes = made.node_tree.nodes
-    given = nodes.new("ShaderNodeAttribute")
-    given.attribute_name = ATTRIBUTE
+    attribute = nodes.new("ShaderNodeAttribute")
+    attribute.attribute_name = ATTRIBUTE
     shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
-    made.node_tree.links.new(given.outputs["Color"], shader.inputs["Base Color"])
+    made.node_tree.links.new(attribute.outputs["Color"], shader.inputs["Base Color"])
     return made
 
 
-def _takes(item):
-    return item.type == "MESH" and item.mode == "OBJECT" and item.data.library is None
+def _takes(obj):
+    return obj.type == "MESH" and obj.mode == "OBJECT" and obj.data.library is None
 
 
 def _shown(scene):
@@ -95,9 +95,9 @@ def _shown(scene):
     for place, row in settings.interface_rows(scene):
         rock = "" if isinstance(place[0], str) else scene.realmodel.rocks[place[0]].name
         yield from (
-            (item, (rock, row.name))
-            for item in (row.interface, surviving.get(row.interface))
-            if item is not None and item.type == "MESH"
+            (obj, (rock, row.name))
+            for obj in (row.interface, surviving.get(row.interface))
+            if obj is not None and obj.type == "MESH"
         )
 
 
@@ -144,12 +144,12 @@ def _write_compartments(mesh):
     """Colors by the face attribute of compartments; gray where a mesh has none, as a fault."""
     if not len(mesh.polygons):
         return
-    kept = mesh.attributes.get(meshes.FACE_COMPARTMENT)
-    if kept is None:
+    attribute = mesh.attributes.get(meshes.FACE_COMPARTMENT)
+    if attribute is None:
         colors = np.full((len(mesh.loops), 4), 0.7)
     else:
-        number = np.empty(len(kept.data), np.int32)
-        kept.data.foreach_get("value", number)
+        number = np.empty(len(attribute.data), np.int32)
+        attribute.data.foreach_get("value", number)
         table = np.array([(*compartment_color(n), 1.0) for n in range(int(number.max()) + 1)])
         starts = np.append(versions.polygon_starts(mesh), len(mesh.loops))
         colors = np.repeat(table[number], np.diff(starts), axis=0)

@@ -71,14 +71,14 @@ class StageRequest:
 
     def make_shapes(self):
         """{(rock mass, block): PolygonMesh} of the model's blocks."""
-        found = _shapes.get((self.stamp, self.stage))
-        if found is None:
+        named_shapes = _shapes.get((self.stamp, self.stage))
+        if named_shapes is None:
             model = self.make()
             made = polygon_mesh.of_blocks(
                 model, self.origin, threads(), compartments=self._compartments or None
             )
-            found = block_shapes.by_name(model, made)
-        return found
+            named_shapes = block_shapes.by_name(model, made)
+        return named_shapes
 
     def keep(self, shapes=None):
         """Caches the result."""

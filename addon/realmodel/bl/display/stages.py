@@ -30,17 +30,17 @@ def present(row):
 
 
 def _give_shape(scene, row, shape):
-    item = row.object
-    if item is not None and (item.type != "MESH" or item.library is not None or item.mode != "OBJECT"):
+    obj = row.object
+    if obj is not None and (obj.type != "MESH" or obj.library is not None or obj.mode != "OBJECT"):
         return
-    if item is None:
+    if obj is None:
         if shape is not None:
             _new(scene, row, shape)
-    elif shape is None and STAGE_ONLY in item:
+    elif shape is None and STAGE_ONLY in obj:
         row.object = None
-        replacing.remove(item)
-    elif not meshes.holds(item.data, shape or _EMPTY):
-        replacing.give_shape(item, shape or _EMPTY)
+        replacing.remove(obj)
+    elif not meshes.holds(obj.data, shape or _EMPTY):
+        replacing.give_shape(obj, shape or _EMPTY)
 
 
 def _new(scene, row, shape):
@@ -48,10 +48,10 @@ def _new(scene, row, shape):
     rock = next((rock for rock in scene.realmodel.rocks if rock.name == row.rock), None)
     if rock is None or rock.blocks is None:
         return
-    item = bpy.data.objects.new(row.name, meshes.new_mesh(row.name, shape))
-    item.data.materials.append(library_rows.material_of(scene, row.property_id))
-    item[model_tree.TAG], item[model_tree.ROCK], item[model_tree.SURFACE] = "block", row.rock, row.surface
-    item[model_tree.BLOCK], item[model_tree.PROPERTY] = row.name, row.property_id
-    item[STAGE_ONLY] = True
-    rock.blocks.objects.link(item)
-    row.object = item
+    obj = bpy.data.objects.new(row.name, meshes.new_mesh(row.name, shape))
+    obj.data.materials.append(library_rows.material_of(scene, row.property_id))
+    obj[model_tree.TAG], obj[model_tree.ROCK], obj[model_tree.SURFACE] = "block", row.rock, row.surface
+    obj[model_tree.BLOCK], obj[model_tree.PROPERTY] = row.name, row.property_id
+    obj[STAGE_ONLY] = True
+    rock.blocks.objects.link(obj)
+    row.object = obj

@@ -54,39 +54,39 @@ class _View:
 
 def turn(context, direction):
     """Looks at the whole model along an axis, in orthographic view. direction: a key of DIRECTIONS."""
-    found = viewports.spaces(context)
-    _remember(found[0])
-    for space in found:
+    spaces = viewports.spaces(context)
+    _remember(spaces[0])
+    for space in spaces:
         view = space.region_3d
         view.view_perspective = "ORTHO"
         view.view_rotation = DIRECTIONS[direction]
         _frame(context.scene, space)
-    _remember(found[0])
+    _remember(spaces[0])
     viewports.redraw()
 
 
 def frame(context):
     """Zooms to the whole model. Raises InputRefused where there is none."""
-    found = viewports.spaces(context)
+    spaces = viewports.spaces(context)
     if len(model_points(context.scene)) == 0:
         raise InputRefused("there is no model to be seen", advice="build one first")
-    _remember(found[0])
-    for space in found:
+    _remember(spaces[0])
+    for space in spaces:
         _frame(context.scene, space)
-    _remember(found[0])
+    _remember(spaces[0])
     viewports.redraw()
 
 
 def step(context, by):
     """Goes back (-1) or forth (+1) in the history of views. Raises InputRefused at the ends."""
     global _at
-    found = viewports.spaces(context)
-    _remember(found[0])
+    spaces = viewports.spaces(context)
+    _remember(spaces[0])
     if not 0 <= _at + by < len(_history):
         which = "an earlier" if by < 0 else "a later"
         raise InputRefused(f"there is not {which} view", advice="turn the view first")
     _at += by
-    for space in found:
+    for space in spaces:
         _history[_at].show(space)
     viewports.redraw()
 
@@ -113,18 +113,18 @@ def model_points(scene, cut=False):
         items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
         items = items or filled_beds.of_scene(scene)
     items += list(bodies.of_kind(scene, bodies.SECTION).values())
-    found = []
-    for item in items:
-        if item is None or item.type != "MESH" or not len(item.data.vertices):
+    corners = []
+    for obj in items:
+        if obj is None or obj.type != "MESH" or not len(obj.data.vertices):
             continue
-        coordinates = meshes.mesh_coordinates(item.data).astype(np.float64)
+        coordinates = meshes.mesh_coordinates(obj.data).astype(np.float64)
         low, high = coordinates.min(axis=0), coordinates.max(axis=0)
         box = np.array(
             [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
         )
-        matrix = np.array(exaggeration.world_matrix(item), np.float64)
-        found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
-    return np.concatenate(found) if found else np.empty((0, 3))
+        matrix = np.array(exaggeration.world_matrix(obj), np.float64)
+        corners.append(box @ matrix[:3, :3].T + matrix[:3, 3])
+    return np.concatenate(corners) if corners else np.empty((0, 3))
 
 
 def camera_sees(scene):

@@ -32,21 +32,21 @@ def show(scene):
     bodies.remove(scene, BOREHOLES)
     tubes = list(_by_column(scene) if column(scene) else _by_block(scene))
     begin, end = (np.array([tube[side] for tube in tubes], np.float64).reshape(-1, 3) for side in (1, 2))
-    kept = np.flatnonzero((begin != end).any(axis=1))
+    indices = np.flatnonzero((begin != end).any(axis=1))
     if is_on_cut(scene):
         on_plane, begin, end = near_plane(
-            begin[kept], end[kept], cuts.plane_in_model(scene), scene.realmodel.view.hole_width
+            begin[indices], end[indices], cuts.plane_in_model(scene), scene.realmodel.view.hole_width
         )
-        kept = kept[on_plane]
+        indices = indices[on_plane]
     else:
-        begin, end = begin[kept], end[kept]
-    if not len(kept):
+        begin, end = begin[indices], end[indices]
+    if not len(indices):
         return
     places = np.stack([begin, end], axis=1).reshape(-1, 3) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _RADIUS * heights.extent(scene), _SIDES)
     mesh = bodies.add(scene, BOREHOLES, "Boreholes", shape).data
-    bodies.give_materials(mesh, [tubes[number][0] for number in kept.tolist()], _SIDES)
+    bodies.give_materials(mesh, [tubes[number][0] for number in indices.tolist()], _SIDES)
 
 
 def is_on_cut(scene):
@@ -62,8 +62,8 @@ def column(scene):
 
 def columns(scene):
     """The columns of the tables of intervals that there are."""
-    found = (interval_values.of_rock(rock) for rock in scene.realmodel.rocks)
-    return list(dict.fromkeys(name for values in found if values is not None for name in values.columns))
+    tables = (interval_values.of_rock(rock) for rock in scene.realmodel.rocks)
+    return list(dict.fromkeys(name for values in tables if values is not None for name in values.columns))
 
 
 def key(scene):
@@ -85,15 +85,15 @@ def labels(scene):
     if not scene.realmodel.view.show_hole_names:
         return []
     near = cuts.plane_in_model(scene) if is_on_cut(scene) else None
-    found = []
+    named_places = []
     for rock in scene.realmodel.rocks:
         for name, line in borehole_picks.named_paths(rock).items():
             line = np.array(line)
             if near is not None and len(line) > 1:
                 _, line, _ = near_plane(line[:-1], line[1:], near, scene.realmodel.view.hole_width)
             if len(line):
-                found.append((name, tuple(line[0].tolist())))
-    return found
+                named_places.append((name, tuple(line[0].tolist())))
+    return named_places
 
 
 def _by_block(scene):
@@ -113,8 +113,8 @@ def _by_column(scene):
         if values is None or name not in values.columns:
             continue
         values = values.some(values.has(name))
-        given = values.columns[name]
-        codes = _hues(given, words) if limits is None else _shades(given, limits)
+        column_values = values.columns[name]
+        codes = _hues(column_values, words) if limits is None else _shades(column_values, limits)
         materials = {code: colors.plain_material(f"{name} {code}", code) for code in sorted(set(codes))}
         for code, begin, end in zip(codes, values.begins.tolist(), values.ends.tolist(), strict=True):
             yield materials[code], begin, end
@@ -123,10 +123,10 @@ def _by_column(scene):
 def _scale(scene, name):
     """The range (low, high) of a column of numbers and no words; or None, and the words of another, the most
     frequent first."""
-    known = name, *(rock.interval_values.digest for rock in scene.realmodel.rocks)
-    if known not in _scales:
-        _scales[known] = _scale_of(scene, name)
-    return _scales[known]
+    scale_key = name, *(rock.interval_values.digest for rock in scene.realmodel.rocks)
+    if scale_key not in _scales:
+        _scales[scale_key] = _scale_of(scene, name)
+    return _scales[scale_key]
 
 
 def _scale_of(scene, name):
@@ -136,9 +136,9 @@ def _scale_of(scene, name):
         if values is not None and name in values.columns:
             parts.append(values.columns[name])
     if all(part.dtype.kind == "f" for part in parts):
-        known = np.concatenate(parts)
-        known = known[np.isfinite(known)]
-        return ((float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)), []
+        numbers = np.concatenate(parts)
+        numbers = numbers[np.isfinite(numbers)]
+        return ((float(numbers.min()), float(numbers.max())) if len(numbers) else (0.0, 0.0)), []
     words, counts = np.unique(np.concatenate([part.astype(str) for part in parts]), return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return None, [word for word in words[order].tolist() if word][:_MOST_WORDS]

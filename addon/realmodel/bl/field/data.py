@@ -20,8 +20,8 @@ DIPS = (DIP, ROCK_DIP, SERIES_DIP)
 KINDS = (POINT, *DIPS, PLACE, INTERVAL)
 
 
-def _bytes_of(found):
-    return sum(3 * group.places.nbytes for group in found or ())
+def _bytes_of(group_list):
+    return sum(3 * group.places.nbytes for group in group_list or ())
 
 
 _groups = caches.new(most=256 << 20, size_of=_bytes_of)  # lists of Groups, by what they are made from
@@ -84,25 +84,25 @@ class Group(NamedTuple):
             return None
         same = ((self.places == datum.place) | (np.isnan(self.places) & np.isnan(datum.place))).all(axis=1)
         same &= (self.names == datum.name) & (self.holes == datum.hole)
-        found = np.flatnonzero(same)
-        return int(found[0]) if len(found) else None
+        numbers = np.flatnonzero(same)
+        return int(numbers[0]) if len(numbers) else None
 
 
 def groups(scene, kinds=KINDS):
     """All Groups of a scene of these kinds. Data that cannot be read are in none: a build reports why."""
-    found = []
+    group_list = []
     for rock in scene.realmodel.rocks:
         if POINT in kinds:
-            found += _all_points(scene, rock)
+            group_list += _all_points(scene, rock)
         if DIP in kinds:
-            found += [group for row in rock.surfaces for group in _known(_dips, rock, row, row.dips)]
+            group_list += [group for row in rock.surfaces for group in _known(_dips, rock, row, row.dips)]
         if ROCK_DIP in kinds:
-            found += _known(_dips, rock, rock, rock.dips)
+            group_list += _known(_dips, rock, rock, rock.dips)
         if SERIES_DIP in kinds:
-            found += [group for row in rock.series for group in _known(_dips, rock, row, row.dips)]
+            group_list += [group for row in rock.series for group in _known(_dips, rock, row, row.dips)]
         if PLACE in kinds or INTERVAL in kinds:
-            found += _known(_observed, rock, rock, rock.observations)
-    return [group for group in found if group.kind in kinds and len(group.places)]
+            group_list += _known(_observed, rock, rock, rock.observations)
+    return [group for group in group_list if group.kind in kinds and len(group.places)]
 
 
 def _known(make, rock, row, arrays):
@@ -230,11 +230,11 @@ def _observed(_rock, row):
         return []
     rows = interval_rows(observations)
     is_interval = rows[:, 1] > rows[:, 0]
-    found = []
+    group_list = []
     for kind, chosen in ((INTERVAL, rows[is_interval]), (PLACE, rows[~is_interval])):
         first, last = chosen.T
         names, holes = observations.blocks[first], observations.holes[first]
         places, ends = observations.places[first], observations.places[last]
         used = observations.in_use[first]
-        found.append(Group(kind, row.name, names, places, holes, used, first, ends))
-    return found
+        group_list.append(Group(kind, row.name, names, places, holes, used, first, ends))
+    return group_list

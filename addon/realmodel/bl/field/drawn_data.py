@@ -17,9 +17,9 @@ from . import placed_images
 def plane(context):
     """(point, normal) in model coordinates of what is drawn on: the active object if it is a placed image,
     else the section plane. Raises InputRefused."""
-    item = context.active_object
-    if item is not None and settings.IMAGE in item:
-        return placed_images.plane_of(context.scene, item)
+    obj = context.active_object
+    if obj is not None and settings.IMAGE in obj:
+        return placed_images.plane_of(context.scene, obj)
     if cuts.plane_of(context.scene) is not None:
         return cuts.plane_in_model(context.scene)
     raise InputRefused(
@@ -35,7 +35,7 @@ def on_plane(scene, ray, plane):
     start = np.linalg.solve(stretched, np.append(np.array(ray[0], np.float64), 1.0))[:3]
     along = np.linalg.solve(stretched[:3, :3], np.array(ray[1], np.float64))
     start = start + project_settings.model_origin(scene)
-    point, normal = (np.asarray(each, np.float64) for each in plane)
+    point, normal = (np.asarray(vector, np.float64) for vector in plane)
     towards = along @ normal
     if abs(towards) < 1e-6 * np.linalg.norm(along):
         return None
@@ -48,14 +48,14 @@ def add_contacts(scene, row, points):
     if row.source == "POINTS_OBJECT" and row.object is not None:
         _add_to_mesh(scene, row.object, points, np.empty((0, 2), np.int32))
     else:
-        own = borehole_points.own_points(scene, row)
-        if own is None:
+        existing = borehole_points.own_points(scene, row)
+        if existing is None:
             raise InputRefused(
                 f"'{row.name}' is made of an object or a mesh, and takes no points",
                 advice="make a surface from points the active one",
             )
         with settings.filling():
-            borehole_points.keep_points(row, np.concatenate([own, points]))
+            borehole_points.keep_points(row, np.concatenate([existing, points]))
         scene.realmodel.show_data = True
     data_objects.update(scene)
     live.touch(scene)
@@ -66,15 +66,15 @@ def add_sticks(scene, row, lines):
     which are an object from now on. Raises InputRefused where the fault is made of something else."""
     if any(len(points) < 2 for points in lines):
         raise InputRefused("a stick needs two points", advice="draw a line along the fault")
-    known = _sticks(scene, row)
-    if known is not None:
-        item = bpy.data.objects.new(f"{row.name} sticks", bpy.data.meshes.new(f"{row.name} sticks"))
-        item.show_in_front = True  # they run through the blocks
-        scene.collection.objects.link(item)
-        for stick in known:
-            _add_to_mesh(scene, item, stick, _along(len(stick)))
+    sticks = _sticks(scene, row)
+    if sticks is not None:
+        obj = bpy.data.objects.new(f"{row.name} sticks", bpy.data.meshes.new(f"{row.name} sticks"))
+        obj.show_in_front = True  # they run through the blocks
+        scene.collection.objects.link(obj)
+        for stick in sticks:
+            _add_to_mesh(scene, obj, stick, _along(len(stick)))
         with settings.filling():
-            row.source, row.object, row.filepath = "STICKS_OBJECT", item, ""
+            row.source, row.object, row.filepath = "STICKS_OBJECT", obj, ""
             method_settings.fill_reading(row)
             row.stick, row.interface_digest = "", ""
             project_settings.forget_shape(row)
@@ -93,12 +93,12 @@ def _sticks(scene, row):
         return None
     path = project_settings.absolute(row.filepath)
     if row.source == "POINTS_FILE" and path is not None:
-        given, column = method_settings.point_file(row, path), method_settings.value(row, "stick", FAULT)
-        found, _ = read_fault_points(given, column, scene.realmodel.units)
-        if isinstance(found, np.ndarray):
+        point_file, column = method_settings.point_file(row, path), method_settings.value(row, "stick", FAULT)
+        sticks, _ = read_fault_points(point_file, column, scene.realmodel.units)
+        if isinstance(sticks, np.ndarray):
             what = f"'{row.name}' is made of scattered points, which no stick can join"
             raise InputRefused(what, advice="draw into a new fault (+)")
-        return found
+        return sticks
     if row.object is not None or path is not None or project_settings.stored_shape(row):
         what = f"the surface of '{row.name}' is there already"
         raise InputRefused(what, advice="draw into a new fault (+)")
@@ -110,15 +110,15 @@ def _along(count):
     return np.column_stack([first, first + 1])
 
 
-def _add_to_mesh(scene, item, points, edges):
+def _add_to_mesh(scene, obj, points, edges):
     """Adds vertices at places in model coordinates to a mesh object, and edges between them."""
-    if item.mode == "EDIT" or item.library is not None:
-        raise InputRefused(f"'{item.name}' is being edited, or linked", advice="leave Edit Mode first")
-    item.data = item.data if item.data.users == 1 else item.data.copy()
-    matrix = np.linalg.inv(exaggeration.true_matrix(item))
+    if obj.mode == "EDIT" or obj.library is not None:
+        raise InputRefused(f"'{obj.name}' is being edited, or linked", advice="leave Edit Mode first")
+    obj.data = obj.data if obj.data.users == 1 else obj.data.copy()
+    matrix = np.linalg.inv(exaggeration.true_matrix(obj))
     offsets = points - project_settings.model_origin(scene)
     local = offsets @ matrix[:3, :3].T + matrix[:3, 3]
-    mesh = item.data
+    mesh = obj.data
     first, edge = len(mesh.vertices), len(mesh.edges)
     mesh.vertices.add(len(local))
     for number, place in enumerate(local.tolist(), first):

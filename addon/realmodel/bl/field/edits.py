@@ -135,13 +135,13 @@ def _with_end_moved(observations, first, place):
     new = np.array([np.interp(at, along, line[:, axis]) for axis in range(3)])
     depth = float(np.interp(at, along, depths)) if np.isfinite(depths).all() else float("nan")
     places, all_depths = observations.places.copy(), observations.depths.copy()
-    kept = np.ones(len(places), bool)
+    is_kept = np.ones(len(places), bool)
     for row in range(start, last + 1):
         if row in (first, first - 1 if meets else first):
             places[row], all_depths[row] = new, depth
         elif start < row < last:  # between the ends of an inclined interval
-            kept[row] = along[row - start] < at if row < first else along[row - start] > at
-    return replace(observations, places=places, depths=all_depths).some(kept), new
+            is_kept[row] = along[row - start] < at if row < first else along[row - start] > at
+    return replace(observations, places=places, depths=all_depths).some(is_kept), new
 
 
 def _nearest(line, along, place):

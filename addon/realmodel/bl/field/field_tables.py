@@ -75,7 +75,7 @@ class Found:
 
     def give_dips_to_sheets(self):
         """All dips are those of a series of sheets, whose surfaces and blocks they may name."""
-        parts = [each for each in (self.dips, self.rock_dips) if each is not None]
+        parts = [part for part in (self.dips, self.rock_dips) if part is not None]
         self.series_dips = Dips.joined(parts) if parts else None
         self.dips = self.rock_dips = None
 
@@ -85,20 +85,20 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
     keys of MapFile beside its file, for all maps. of_holes: what else Boreholes have; tables given there are
     added to those of `paths`. Raises InputRefused, and OptionRefused."""
     check_column_names(columns, ALL_COLUMNS)
-    tables = {kind: given for kind in _ONE_OF_EACH if (given := of_holes.pop(kind, None)) is not None}
-    found, assays = FieldTables(), []
+    tables = {kind: file for kind in _ONE_OF_EACH if (file := of_holes.pop(kind, None)) is not None}
+    sorted_tables, assays = FieldTables(), []
     for path in paths:
         if path in tables.values():
             continue
         if is_map(path):
-            found.maps.append(_map_file(path, of_maps or {}, units))
+            sorted_tables.maps.append(_map_file(path, of_maps or {}, units))
             continue
         kind = "picks" if is_object_file(path) else table_kind(path, columns)
         if kind == "observations":
-            found.observations.append(ObservationFile(path, _of(columns, OF_PLACES), units=units))
+            sorted_tables.observations.append(ObservationFile(path, _of(columns, OF_PLACES), units=units))
         elif kind == "dips":
-            given = DipFile(path, _of(columns, OF_DIPS), units=units)
-            (found.rock_dips if names_units(given) else found.dips).append(given)
+            file = DipFile(path, _of(columns, OF_DIPS), units=units)
+            (sorted_tables.rock_dips if names_units(file) else sorted_tables.dips).append(file)
         elif kind == "assays":
             assays.append(path)
         elif kind in tables:
@@ -108,12 +108,12 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
             tables[kind] = path
     of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
     if tables and not (assays and tables.keys() <= {"collars", "survey"}):
-        found.boreholes = Boreholes(**tables, **of_holes)
-        found.boreholes.check()
+        sorted_tables.boreholes = Boreholes(**tables, **of_holes)
+        sorted_tables.boreholes.check()
     for path in assays:
-        found.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
-        found.assays[-1].check()
-    return found
+        sorted_tables.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
+        sorted_tables.assays[-1].check()
+    return sorted_tables
 
 
 def is_map(path):
@@ -124,19 +124,19 @@ def is_map(path):
 def block_attribute(names):
     """The attribute of the features of a map that has a usual name for blocks, or the only one; None where it
     is not clear."""
-    known = {plain_name(str(name)): name for name in names}
-    usual = (known[name] for name in OBSERVED["block"] if name in known)
+    by_plain_name = {plain_name(str(name)): name for name in names}
+    usual = (by_plain_name[name] for name in OBSERVED["block"] if name in by_plain_name)
     return next(usual, names[0] if len(names) == 1 else None)
 
 
-def _map_file(path, given, units):
-    map_file = MapFile(path, units=units, **given)
+def _map_file(path, keys, units):
+    map_file = MapFile(path, units=units, **keys)
     map_file.check()
     return map_file
 
 
-def _of(columns, known):
-    return {name: column for name, column in columns.items() if name in known}
+def _of(columns, names):
+    return {name: column for name, column in columns.items() if name in names}
 
 
 def read(scene, rock, tables, names, add_surfaces):
@@ -144,18 +144,18 @@ def read(scene, rock, tables, names, add_surfaces):
     called in it, as of a project file. add_surfaces: units that nothing is called become surfaces. Raises
     InputRefused."""
     units = observed_blocks.units_of(scene, rock, names)
-    found = _read(scene, rock, tables, units)
-    new = found.new
-    own = [name for name in found.picks.points if name not in (*units.surfaces, *new)]
+    result = _read(scene, rock, tables, units)
+    new = result.new
+    picked = [name for name in result.picks.points if name not in (*units.surfaces, *new)]
     if not add_surfaces:
-        found.new = []
-    elif new or (own and tables.rock_dips):
+        result.new = []
+    elif new or (picked and tables.rock_dips):
         units = UnitNames(
-            (*units.surfaces, *own, *new), (*units.blocks, *own, *new), units.bodies, units.names
+            (*units.surfaces, *picked, *new), (*units.blocks, *picked, *new), units.bodies, units.names
         )
-        found = _read(scene, rock, tables, units)
-        found.new = new
-    return found
+        result = _read(scene, rock, tables, units)
+        result.new = new
+    return result
 
 
 def _read(scene, rock, tables, units):
@@ -185,8 +185,8 @@ def _read(scene, rock, tables, units):
         of_rock.append(named)
         left_out += not_used
     of_series = [read_space_dips(file, unit) for file in tables.series_dips]
-    known = {*units.surfaces, *units.blocks, *units.bodies}
-    codes = [each.block for each in left_out if each.kind == "unknown_block"]
+    known_names = {*units.surfaces, *units.blocks, *units.bodies}
+    codes = [entry.block for entry in left_out if entry.kind == "unknown_block"]
     meant = {}
     for name in map(units.meaning, codes):
         meant.setdefault(joined(name), name)  # of names that are written in several ways the first
@@ -197,8 +197,8 @@ def _read(scene, rock, tables, units):
         Dips.joined(of_rock) if of_rock else None,
         SpaceDips.joined(of_series) if of_series else None,
         left_out,
-        [name for name in meant.values() if name not in known],
-        [read_interval_values(each, unit) for each in logged],
+        [name for name in meant.values() if name not in known_names],
+        [read_interval_values(boreholes, unit) for boreholes in logged],
         maps,
         warnings,
     )

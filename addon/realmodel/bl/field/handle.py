@@ -34,31 +34,31 @@ def activate(context, datum, jumps=False):
     InputRefused where the datum is not there any more."""
     scene = context.scene
     edits.find(scene, datum)
-    item = item_of(scene)
-    if item is None:
-        item = bpy.data.objects.new("Datum", None)
-        item[bodies.KIND], item[model_tree.TAG] = KIND, "view"
-        item.empty_display_type = "SPHERE"
-        item.show_in_front, item.hide_render = True, True
-        bodies.view_collection(scene).objects.link(item)
+    empty = item_of(scene)
+    if empty is None:
+        empty = bpy.data.objects.new("Datum", None)
+        empty[bodies.KIND], empty[model_tree.TAG] = KIND, "view"
+        empty.empty_display_type = "SPHERE"
+        empty.show_in_front, empty.hide_render = True, True
+        bodies.view_collection(scene).objects.link(empty)
     scene.realmodel.view.datum = datum.text()
-    item.name = datum.hole or datum.name
-    item.empty_display_size = _SIZE * heights.extent(scene)
-    _stand(scene, item, datum)
+    empty.name = datum.hole or datum.name
+    empty.empty_display_size = _SIZE * heights.extent(scene)
+    _stand(scene, empty, datum)
     if context.mode == "OBJECT":
         context.view_layer.update()
-        visible.select_alone(context, item)
+        visible.select_alone(context, empty)
     if jumps:
         show(context)
 
 
 def show(context):
     """Turns the viewport to the active datum."""
-    item = item_of(context.scene)
-    if item is None:
+    empty = item_of(context.scene)
+    if empty is None:
         return
     context.view_layer.update()
-    _look_at(context, exaggeration.world_matrix(item).translation)
+    _look_at(context, exaggeration.world_matrix(empty).translation)
 
 
 def _look_at(context, place):
@@ -92,16 +92,16 @@ def text_of(scene, datum):
 def clear(scene):
     """No datum is active any more."""
     scene.realmodel.view.datum = ""
-    item = item_of(scene)
-    if item is not None:
-        bpy.data.objects.remove(item)
+    empty = item_of(scene)
+    if empty is not None:
+        bpy.data.objects.remove(empty)
         bodies.remove_collection_if_empty(scene)
 
 
 def follow(scene):
     """The object stands where its datum is, after the datum was changed elsewhere; without one it is gone."""
-    datum, item = active(scene), item_of(scene)
-    if datum is None or item is None:
+    datum, empty = active(scene), item_of(scene)
+    if datum is None or empty is None:
         return
     try:
         group, number = edits.find(scene, datum)
@@ -109,21 +109,21 @@ def follow(scene):
         clear(scene)
         return
     scene.realmodel.view.datum = group.datum(number).text()
-    _stand(scene, item, group.datum(number))
+    _stand(scene, empty, group.datum(number))
 
 
 def changed(scene, names):
     """What has these names, as of `display.evaluated`, was changed: where the object was moved, its datum is
     too."""
-    item = item_of(scene) if scene.realmodel.view.datum else None
-    if item is not None and (True, item.name_full) in names:
+    empty = item_of(scene) if scene.realmodel.view.datum else None
+    if empty is not None and (True, empty.name_full) in names:
         take_place(scene)
 
 
 def take_place(scene):
     """Moves the active datum to its object, where that stands elsewhere."""
-    item, datum = item_of(scene), active(scene)
-    now = exaggeration.true_matrix(item)[:3, 3]
+    empty, datum = item_of(scene), active(scene)
+    now = exaggeration.true_matrix(empty)[:3, 3]
     if np.array_equal(np.float32(now), np.float32(_offset(scene, datum))):
         return
     try:
@@ -140,8 +140,8 @@ def stop():
     _work.stop()
 
 
-def _stand(scene, item, datum):
-    item.location = _offset(scene, datum)
+def _stand(scene, empty, datum):
+    empty.location = _offset(scene, datum)
 
 
 def _offset(scene, datum):

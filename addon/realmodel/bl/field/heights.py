@@ -15,9 +15,9 @@ def of_dips(scene, rock, names, places):
     those of the surface as it is built, or else the mean height of its points."""
     z = np.array(places, np.float64)[:, 2]
     for name in dict.fromkeys(np.asarray(names)[np.isnan(z)].tolist()):
-        own = np.isnan(z) & (names == name)
-        known = _built(scene, rock, name, places[own])
-        z[own] = np.where(np.isnan(known), _mean(scene, rock, name), known)
+        mask = np.isnan(z) & (names == name)
+        built = _built(scene, rock, name, places[mask])
+        z[mask] = np.where(np.isnan(built), _mean(scene, rock, name), built)
     return z
 
 
@@ -51,9 +51,9 @@ def _built(scene, rock, surface, places):
 
 def _mean(scene, rock, surface):
     """Of the points of a surface; where it has none, of all."""
-    there = [each for each in data.groups(scene) if each.kind not in data.DIPS and each.rock == rock]
-    own = [group.places[group.names == surface, 2] for group in there]
-    for heights in (np.concatenate(own), *(group.places[:, 2] for group in there)) if there else ():
+    groups = [group for group in data.groups(scene) if group.kind not in data.DIPS and group.rock == rock]
+    parts = [group.places[group.names == surface, 2] for group in groups]
+    for heights in (np.concatenate(parts), *(group.places[:, 2] for group in groups)) if groups else ():
         if len(heights):
             return float(heights.mean())
     return 0.0

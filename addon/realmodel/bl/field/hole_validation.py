@@ -33,27 +33,27 @@ class HoleValidationJob(ThreadJob):
         with job.part(shown_models.BUILT, 1.0):
             return validated_holes(job, model, self._folds)
 
-    def _put(self, found):
+    def _put(self, validation):
         scene = self._request.scene()
         self._request.keep()
-        _fill(scene.realmodel, found)
-        return found
+        _fill(scene.realmodel, validation)
+        return validation
 
 
-def _fill(group, found):
+def _fill(group, validation):
     """The table: the holes that the others tell least of come first."""
     with settings.filling():
         group.left_out_holes.clear()
         group.active_left_out_hole = -1
-        group.hole_validation = json.dumps({"stamp": group.built_stamp, "summary": found.summary()})
-        for each in sorted(found.holes, key=_goodness):
+        group.hole_validation = json.dumps({"stamp": group.built_stamp, "summary": validation.summary()})
+        for result in sorted(validation.holes, key=_goodness):
             row = group.left_out_holes.add()
-            row.name, row.rock, row.refused = each.hole, each.rock, each.refused
-            row.share = "" if each.share is None else f"{100.0 * each.share:.0f}"
-            errors = np.abs(each.errors)
+            row.name, row.rock, row.refused = result.hole, result.rock, result.refused
+            row.share = "" if result.share is None else f"{100.0 * result.share:.0f}"
+            errors = np.abs(result.errors)
             row.error = f"{float(errors.max()):.3g}" if len(errors) else ""
-            contacts = [(one.surface, one.depth, one.error) for one in each.contacts]
-            row.detail = json.dumps({"length": each.length, "contacts": contacts})
+            contacts = [(one.surface, one.depth, one.error) for one in result.contacts]
+            row.detail = json.dumps({"length": result.length, "contacts": contacts})
 
 
 def _goodness(hole):

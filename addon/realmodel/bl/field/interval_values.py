@@ -15,12 +15,12 @@ _COLUMN = "column"  # and its number: names of properties are short
 
 def add(row, values):
     """Adds IntervalValues to those of a rock mass, in place of those of the same holes and columns."""
-    known = of_rock(row)
-    if known is not None:
-        again = np.isin(known.holes, values.holes)
-        for name in known.columns.keys() - values.columns.keys():  # else it is of another table
-            again &= ~known.has(name)
-        values = IntervalValues.joined([known.some(~again), values])
+    earlier = of_rock(row)
+    if earlier is not None:
+        again = np.isin(earlier.holes, values.holes)
+        for name in earlier.columns.keys() - values.columns.keys():  # else it is of another table
+            again &= ~earlier.has(name)
+        values = IntervalValues.joined([earlier.some(~again), values])
     row.interval_values = {
         "holes": values.holes.astype(str),
         **{name: getattr(values, name) for name in _PLACES},

@@ -43,7 +43,7 @@ def keep_of_project(scene, project):
 def take_ground(row, given):
     """The file of the ground of a MapFile is the ground of the row of a rock mass. Returns the name of the
     surface that is made from it: the youngest, where it is made from nothing else; or None."""
-    if not given.ground or given.ground in [each.name for each in row.surfaces]:
+    if not given.ground or given.ground in [surface.name for surface in row.surfaces]:
         return None
     row.ground = str(given.ground)
     row.ground_is_raster = Path(given.ground).suffix.lower() in endings(RASTER)
@@ -84,14 +84,14 @@ def of_rock(row):
     return _known[digest]
 
 
-def _begun(scene, row, given):
+def _begun(scene, row, map_file):
     """The Project and the Rock of a row, as far as reading a map needs them: its region, by default all of
     the map, its edge length, and the surface that is the ground."""
     unit = scene.realmodel.units
     depsgraph = viewports.updated_layer(scene).depsgraph
     rock = Rock("rock mass" if row is None else row.name, [])
-    names = [] if row is None else [each.name for each in row.surfaces]
-    ground = given.ground or (row.ground if row is not None else "") or (names[-1] if names else "")
+    names = [] if row is None else [surface_row.name for surface_row in row.surfaces]
+    ground = map_file.ground or (row.ground if row is not None else "") or (names[-1] if names else "")
     if ground in names:
         surface = row.surfaces[ground]
         points = data_objects.row_points(scene, surface, depsgraph)
@@ -103,15 +103,15 @@ def _begun(scene, row, given):
         raise InputRefused("the ground of the map is not known", advice="choose a file of it as Ground")
     else:
         rock.surfaces = [Surface("ground", points=np.zeros((1, 3)))]
-        given = replace(given, ground=ground)
-    rock.map = given
+        map_file = replace(map_file, ground=ground)
+    rock.map = map_file
     if row is not None:
         origin = project_settings.model_origin(scene)
         rings = project_settings.region_rings(row, depsgraph, origin)
         rock.region = rings if rings else None
         rock.edge_length = row.edge_length if row.edge_length > 0.0 else None
     if rock.region is None:
-        polygons, _, _ = read_unit_polygons(given, unit)
+        polygons, _, _ = read_unit_polygons(map_file, unit)
         corners = np.concatenate([ring for polygon in polygons for ring in polygon.rings])
         (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
         rock.region = np.array([(west, south), (east, south), (east, north), (west, north)])

@@ -37,22 +37,22 @@ def fill(scene):
     """Fills the list anew, or empties it where it is not wanted."""
     group = scene.realmodel
     try:
-        found = shown(scene) if group.view.show_misfits else []
+        misfit_list = shown(scene) if group.view.show_misfits else []
     except RealModelError as error:
-        group.view.message, found = str(error), []
+        group.view.message, misfit_list = str(error), []
     with settings.filling():
         group.misfits.clear()
         group.active_misfit = -1
-        group.view.misfit_count = len(found)
-        for each in _largest(found):
+        group.view.misfit_count = len(misfit_list)
+        for misfit in _largest(misfit_list):
             row = group.misfits.add()
-            row.kind, row.rock, row.name = each.kind, each.rock, each.name
-            row.source = _source(scene, each)
-            row.depth = "" if each.depth is None else f"{round(each.depth, 2):g}"
-            row.says, row.has = each.says, each.has
-            row.by = "" if each.by is None else f"{each.by:.3g}{'°' if each.kind == 'dip' else ''}"
-            row.place = {} if each.place is None else {"values": each.place}
-            row.hole = each.hole
+            row.kind, row.rock, row.name = misfit.kind, misfit.rock, misfit.name
+            row.source = _source(scene, misfit)
+            row.depth = "" if misfit.depth is None else f"{round(misfit.depth, 2):g}"
+            row.says, row.has = misfit.says, misfit.has
+            row.by = "" if misfit.by is None else f"{misfit.by:.3g}{'°' if misfit.kind == 'dip' else ''}"
+            row.place = {} if misfit.place is None else {"values": misfit.place}
+            row.hole = misfit.hole
 
 
 def datum_of(scene, row):
@@ -69,19 +69,19 @@ def datum_of(scene, row):
         axes = 2 if group.kind in data.DIPS else 3
         starts = (group.places[:, :axes] == place[:axes]).all(axis=1)
         ends = starts | (group.ends == place).all(axis=1) if group.ends is not None else starts
-        for there, rank in ((starts & (group.names == row.name), 0), (starts, 1), (ends, 2)):
-            number = next(iter(np.flatnonzero(there).tolist()), None)
+        for matches, rank in ((starts & (group.names == row.name), 0), (starts, 1), (ends, 2)):
+            number = next(iter(np.flatnonzero(matches).tolist()), None)
             if number is not None and (best is None or rank < best[0]):
                 best = rank, group.datum(number)
     return None if best is None else best[1]
 
 
-def _largest(found):
+def _largest(all_misfits):
     """At most MOST, with some of each kind."""
-    if len(found) <= MOST:
-        return found
-    kinds = list(dict.fromkeys(each.kind for each in found))
-    return [e for kind in kinds for e in [e for e in found if e.kind == kind][: MOST // len(kinds)]]
+    if len(all_misfits) <= MOST:
+        return all_misfits
+    kinds = list(dict.fromkeys(misfit.kind for misfit in all_misfits))
+    return [e for kind in kinds for e in [e for e in all_misfits if e.kind == kind][: MOST // len(kinds)]]
 
 
 def _source(scene, misfit):

@@ -72,12 +72,12 @@ def place(scene, path, placing):
         bpy.data.images.remove(image)
         raise
     image.pack()
-    item = bpy.data.objects.new(path.stem, None)
-    item.empty_display_type, item.data = "IMAGE", image
-    item.empty_display_size, item.empty_image_offset = 1.0, (0.0, 0.0)
-    item.use_empty_image_alpha, item.color = True, (1.0, 1.0, 1.0, 0.6)
-    item.empty_image_depth = "FRONT"  # it runs through the blocks; what is drawn on it shows through it
-    item[settings.IMAGE] = True
+    empty = bpy.data.objects.new(path.stem, None)
+    empty.empty_display_type, empty.data = "IMAGE", image
+    empty.empty_display_size, empty.empty_image_offset = 1.0, (0.0, 0.0)
+    empty.use_empty_image_alpha, empty.color = True, (1.0, 1.0, 1.0, 0.6)
+    empty.empty_image_depth = "FRONT"  # it runs through the blocks; what is drawn on it shows through it
+    empty[settings.IMAGE] = True
     longest = max(size)  # is as long as the display size
     normal = np.cross(right, up)
     columns = (
@@ -88,9 +88,9 @@ def place(scene, path, placing):
     )
     matrix = np.eye(4)
     matrix[:3] = np.column_stack(columns)
-    item.matrix_basis = Matrix(matrix)
-    scene.collection.objects.link(item)
-    return item
+    empty.matrix_basis = Matrix(matrix)
+    scene.collection.objects.link(empty)
+    return empty
 
 
 def plane_of(scene, item):

@@ -58,8 +58,8 @@ def _show(scene, *kinds):
                 shown(scene)
             except RealModelError as error:
                 scene.realmodel.view.message = str(error)
-        for item in bodies.listed(scene, kind):
-            item[_STRETCH] = exaggeration.factor(scene)
+        for body in bodies.listed(scene, kind):
+            body[_STRETCH] = exaggeration.factor(scene)
 
 
 def _show_near_cut(scene):
@@ -76,8 +76,8 @@ def _show_near_cut(scene):
 
 def follow_exaggeration(scene):
     """Shapes the bodies for the vertical exaggeration of the scene."""
-    shown = [item for kind in KINDS for item in bodies.listed(scene, kind)]
-    if any(item.get(_STRETCH) != exaggeration.factor(scene) for item in shown):
+    shown = [body for kind in KINDS for body in bodies.listed(scene, kind)]
+    if any(body.get(_STRETCH) != exaggeration.factor(scene) for body in shown):
         show(scene)
 
 
@@ -101,8 +101,8 @@ def _near_cut(scene, places):
     if not (boreholes.is_on_cut(scene) and len(places)):
         return np.arange(len(places)), places
     view = scene.realmodel.view
-    kept, on_plane, _ = near_plane(places, places, cuts.plane_in_model(scene), view.hole_width)
-    return kept, on_plane
+    indices, on_plane, _ = near_plane(places, places, cuts.plane_in_model(scene), view.hole_width)
+    return indices, on_plane
 
 
 def _contacts(scene):
@@ -114,8 +114,8 @@ def _contacts(scene):
             continue
         places.append(group.places[:_MOST])
         materials += map(material_of, group.names[:_MOST].tolist(), group.used[:_MOST].tolist())
-    kept, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
-    _add_points(scene, CONTACTS, "Contacts", places, [materials[n] for n in kept.tolist()], _LARGER)
+    indices, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
+    _add_points(scene, CONTACTS, "Contacts", places, [materials[n] for n in indices.tolist()], _LARGER)
 
 
 def _materials(scene):
@@ -144,9 +144,9 @@ def _add_points(scene, kind, name, places, materials, larger=1.0):
     shape = marks.spaced_points(
         places - project_settings.model_origin(scene), larger * heights.extent(scene), stretch
     )
-    item = bodies.add(scene, kind, name, shape)
-    bodies.give_materials(item.data, materials, len(shape.offsets) // len(places))
-    return item
+    body = bodies.add(scene, kind, name, shape)
+    bodies.give_materials(body.data, materials, len(shape.offsets) // len(places))
+    return body
 
 
 def _dips(scene):
@@ -160,15 +160,15 @@ def _dips(scene):
         places.append(at)
         normals.append(group.normals[:_MOST])
         materials += map(material_of, names.tolist(), group.used[:_MOST].tolist())
-    kept, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
-    if not len(kept):
+    indices, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
+    if not len(indices):
         return
     places = places - project_settings.model_origin(scene)
     radius = _DISC * heights.extent(scene)
-    shape = marks.discs(places, np.concatenate(normals)[kept], radius, exaggeration.factor(scene))
-    item = bodies.add(scene, DIPS, "Dips", shape)
+    shape = marks.discs(places, np.concatenate(normals)[indices], radius, exaggeration.factor(scene))
+    body = bodies.add(scene, DIPS, "Dips", shape)
     edges = [colors.dark()] * (marks.DISC_FACES - 1)
-    bodies.give_materials(item.data, [part for n in kept.tolist() for part in (materials[n], *edges)], 1)
+    bodies.give_materials(body.data, [part for n in indices.tolist() for part in (materials[n], *edges)], 1)
 
 
 def _maps(scene):
@@ -184,28 +184,28 @@ def _maps(scene):
         corners = draped.triangles.ravel().astype(np.int32)
         offsets = np.arange(0, len(corners) + 1, 3, dtype=np.int32)
         shape = PolygonMesh(places.astype(np.float32), offsets, corners)
-        item = bodies.add(scene, MAP, f"{rock.name} map", shape)
-        own = [
+        body = bodies.add(scene, MAP, f"{rock.name} map", shape)
+        unit_materials = [
             colors.of_property(scene, of_block[name]) if name in of_block else colors.plain_material(*_OFF)
             for name in draped.names
         ]
-        bodies.give_materials(item.data, [own[unit] for unit in draped.unit.tolist()], 1)
+        bodies.give_materials(body.data, [unit_materials[unit] for unit in draped.unit.tolist()], 1)
 
 
 def _misfits(scene):
-    found = misfits.shown(scene)
-    places = np.array([each.place for each in found if each.place is not None][:_MOST]).reshape(-1, 3)
+    shown = misfits.shown(scene)
+    places = np.array([misfit.place for misfit in shown if misfit.place is not None][:_MOST]).reshape(-1, 3)
     places = np.unique(places, axis=0)  # several may speak of one place
     red = colors.plain_material(*_RED)
-    item = _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
-    if item is not None:
-        item.show_in_front = True  # also where blocks are in front of it
-    ends = [end for each in found if each.end is not None for end in (each.place, each.end)]
+    body = _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
+    if body is not None:
+        body.show_in_front = True  # also where blocks are in front of it
+    ends = [end for misfit in shown if misfit.end is not None for end in (misfit.place, misfit.end)]
     if not ends:
         return
     places = np.array(ends) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _TUBE * heights.extent(scene), _SIDES)
-    item = bodies.add(scene, MISFITS, "Misfits of Intervals", shape)
-    item.show_in_front = True
-    item.data.materials.append(red)
+    body = bodies.add(scene, MISFITS, "Misfits of Intervals", shape)
+    body.show_in_front = True
+    body.data.materials.append(red)

@@ -35,11 +35,11 @@ def new(kind=dict, most=None, size_of=lambda _: 1):
 def of_model(function):
     """A function of a model, and of what else it takes, whose results stay as long as the model does: the
     thread of a build may call it first."""
-    known = new(weakref.WeakKeyDictionary)
+    model_answers = new(weakref.WeakKeyDictionary)
 
     @functools.wraps(function)
     def asked(model, *others):
-        results = known.setdefault(model, _Bounded(_MOST_ANSWERS, lambda _: 1))
+        results = model_answers.setdefault(model, _Bounded(_MOST_ANSWERS, lambda _: 1))
         if others not in results:
             results[others] = function(model, *others)
         return results[others]

@@ -41,8 +41,8 @@ class DebouncedJob:
 
     def forget_changes(self, name=None):
         """Discards the changes that wait: of a scene, or of all."""
-        for each in list(self._changed_at) if name is None else [name]:
-            self._changed_at.pop(each, None)
+        for scene_name in list(self._changed_at) if name is None else [name]:
+            self._changed_at.pop(scene_name, None)
 
     def postpone_jobs(self):
         """Stops the running jobs: they begin anew after a pause, once jobs may begin."""

@@ -74,6 +74,6 @@ def _agrees(records, kind, collection, names):
     record: property}."""
     apart = collection[1].as_pointer() - collection[0].as_pointer()
     return apart == kind.itemsize and all(
-        np.array_equal(records[field], np.array([getattr(item, name) for item in collection]))
+        np.array_equal(records[field], np.array([getattr(element, name) for element in collection]))
         for field, name in names.items()
     )

@@ -61,10 +61,10 @@ class Nodes:
         return self.math("MULTIPLY", self.math("SUBTRACT", value, 0.5), strength)
 
     def total(self, values):
-        found = values[0] if values else 0.0
+        total = values[0] if values else 0.0
         for value in values[1:]:
-            found = self.math("ADD", found, value)
-        return found
+            total = self.math("ADD", total, value)
+        return total
 
     def part(self, vector, axis):
         apart = self.new("ShaderNodeSeparateXYZ")
@@ -75,8 +75,8 @@ class Nodes:
         """A smooth step."""
         node = self.new("ShaderNodeMapRange")
         node.interpolation_type = "SMOOTHSTEP"
-        for socket, given in zip(node.inputs[:5], (value, low, high, at_low, at_high), strict=True):
-            self.link(given, socket)
+        for socket, source in zip(node.inputs[:5], (value, low, high, at_low, at_high), strict=True):
+            self.link(source, socket)
         return node.outputs[0]
 
     def noise(self, place, scale, detail, dimensions="3D"):

@@ -64,14 +64,14 @@ def read(kept):
 def in_panel_words(text):
     """A message with the labels of the panel in the place of the keys of project files, and files by name."""
     text = _BODY.sub("add it as a body", _GIVEN.sub(_setting, text))
-    text = _QUOTED.sub(lambda found: found[0] if found[1] else _LABELS[found[2]], text)
-    text = _PLAIN.sub(lambda found: _LABELS[found[1]], text)
-    return _PATH.sub(lambda found: Path(found[0]).name, text)
+    text = _QUOTED.sub(lambda match: match[0] if match[1] else _LABELS[match[2]], text)
+    text = _PLAIN.sub(lambda match: _LABELS[match[1]], text)
+    return _PATH.sub(lambda match: Path(match[0]).name, text)
 
 
-def _setting(found):
-    values = [_value(found[1], value) for value in found.groups()[1:] if value]
-    return f"set {_LABELS[found[1]]} to {' or '.join(values)}"
+def _setting(match):
+    values = [_value(match[1], value) for value in match.groups()[1:] if value]
+    return f"set {_LABELS[match[1]]} to {' or '.join(values)}"
 
 
 def _value(key, value):

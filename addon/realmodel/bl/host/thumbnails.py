@@ -30,8 +30,8 @@ def icon(name, number):
         _icons = bpy.utils.previews.new()
     key = f"{name} {number}"
     if key not in _icons:
-        for each, shown in enumerate(pictures(name)):
-            preview = _icons.new(f"{name} {each}")
+        for index, shown in enumerate(pictures(name)):
+            preview = _icons.new(f"{name} {index}")
             preview.image_size = shown.shape[1], shown.shape[0]
             preview.image_pixels_float.foreach_set(shown.ravel())
     return _icons[key].icon_id

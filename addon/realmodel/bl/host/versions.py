@@ -81,33 +81,33 @@ def corner_vertices(mesh):
     """(C,) int32: the vertex of each corner of a mesh's polygons, as the mesh keeps them."""
     if mesh_memory.is_known():
         return np.array(mesh_memory.corners(mesh)["vertex"])
-    found = np.empty(len(mesh.loops), np.int32)
+    vertices = np.empty(len(mesh.loops), np.int32)
     if ".corner_vert" in mesh.attributes:  # neither before 3.6 nor in edit mode
-        mesh.attributes[".corner_vert"].data.foreach_get("value", found)
+        mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
     else:
-        mesh.loops.foreach_get("vertex_index", found)
-    return found
+        mesh.loops.foreach_get("vertex_index", vertices)
+    return vertices
 
 
 def edge_vertices(mesh):
     """(E, 2) int32 edges of a mesh."""
     if mesh_memory.is_known():
         return np.array(mesh_memory.edges(mesh)["vertices"])
-    found = np.empty(2 * len(mesh.edges), np.int32)
+    vertices = np.empty(2 * len(mesh.edges), np.int32)
     if ".edge_verts" in mesh.attributes:
-        mesh.attributes[".edge_verts"].data.foreach_get("value", found)
+        mesh.attributes[".edge_verts"].data.foreach_get("value", vertices)
     else:
-        mesh.edges.foreach_get("vertices", found)
-    return found.reshape(-1, 2)
+        mesh.edges.foreach_get("vertices", vertices)
+    return vertices.reshape(-1, 2)
 
 
 def polygon_starts(mesh):
     """(F,) int32: where the corners of each polygon of a mesh begin."""
     if mesh_memory.is_known():
         return np.array(mesh_memory.polygons(mesh)["start"])
-    found = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_start", found)
-    return found
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return starts
 
 
 def marks():
@@ -188,12 +188,12 @@ def _group_key(modifier, name):
 
 def add_asset_library(name, folder):
     """Adds a folder to the asset libraries of the preferences."""
-    known = bpy.context.preferences.filepaths.asset_libraries
-    if hasattr(known, "new"):
-        known.new(name=name, directory=folder)
+    libraries = bpy.context.preferences.filepaths.asset_libraries
+    if hasattr(libraries, "new"):
+        libraries.new(name=name, directory=folder)
     else:
         bpy.ops.preferences.asset_library_add(directory=folder)
-        known[-1].name = name
+        libraries[-1].name = name
 
 
 def leave_sky_to_bounces(world):
@@ -246,22 +246,22 @@ GREASE_PENCIL = ("GPENCIL", "GREASEPENCIL")  # types of objects; since Blender 4
 def strokes(item):
     """The strokes of a grease pencil object that are seen at the present frame, each (N, 3) float64 in the
     coordinates of the object."""
-    found = []
+    lines = []
     for layer in item.data.layers:
         if layer.hide:
             continue
         if item.type == "GPENCIL":
             frame, matrix, key = layer.active_frame, layer.matrix_layer, "co"
-            given = [] if frame is None else frame.strokes
+            frame_strokes = [] if frame is None else frame.strokes
         else:
             frame, matrix, key = layer.current_frame(), layer.matrix_local, "position"
-            given = [] if frame is None else frame.drawing.strokes
+            frame_strokes = [] if frame is None else frame.drawing.strokes
         turn = np.array(matrix, np.float64)
-        for stroke in given:
+        for stroke in frame_strokes:
             places = np.array([tuple(getattr(point, key)) for point in stroke.points], np.float64)
             if len(places):
-                found.append(places @ turn[:3, :3].T + turn[:3, 3])
-    return found
+                lines.append(places @ turn[:3, :3].T + turn[:3, 3])
+    return lines
 
 
 def curves(datablock):
@@ -272,8 +272,8 @@ def curves(datablock):
     if bpy.app.version < (4, 4, 0):
         return animated.action.fcurves
     strips = [strip for layer in animated.action.layers for strip in layer.strips]
-    found = [strip.channelbag(animated.action_slot) for strip in strips] if animated.action_slot else []
-    return next((bag.fcurves for bag in found if bag is not None), None)
+    bags = [strip.channelbag(animated.action_slot) for strip in strips] if animated.action_slot else []
+    return next((bag.fcurves for bag in bags if bag is not None), None)
 
 
 def text_size(font, size):

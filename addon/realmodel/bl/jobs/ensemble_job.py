@@ -58,13 +58,13 @@ class EnsembleJob(ThreadJob):
             blocks = []
 
             def each(sums):
-                there = sums.counts.any(axis=1)
-                blocks.append(np.where(there, sums.counts.argmax(axis=1), -1).astype(np.int16))
+                has_counts = sums.counts.any(axis=1)
+                blocks.append(np.where(has_counts, sums.counts.argmax(axis=1), -1).astype(np.int16))
                 self._done += 1
 
             realizer = realizer_of(model, self._request.stamp, self._seed)
-            found = realized(job, realizer, self._count, samples.places, each)
-        return found, samples, np.stack(blocks)
+            ensemble = realized(job, realizer, self._count, samples.places, each)
+        return ensemble, samples, np.stack(blocks)
 
     def _put(self, made):
         scene = self._request.scene()

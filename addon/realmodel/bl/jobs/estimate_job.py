@@ -24,13 +24,13 @@ class EstimateJob(ThreadJob):
 
     def _put(self, made):
         limit = preferences.build_memory() or made.available
-        kept = {"scene": self._scene_name, "rows": made.rows(), "fits": made.memory <= limit}
-        bpy.context.window_manager.realmodel.estimate = json.dumps(kept)
+        table = {"scene": self._scene_name, "rows": made.rows(), "fits": made.memory <= limit}
+        bpy.context.window_manager.realmodel.estimate = json.dumps(table)
         return made
 
 
 def found(scene):
     """(rows, fits) of the estimate of a scene's model as it is now: (name, value) each, and whether a build
     may take so much memory; None where it is not known."""
-    kept = json.loads(bpy.context.window_manager.realmodel.estimate or "{}")
-    return (kept["rows"], kept["fits"]) if kept.get("scene") == scene.name else None
+    table = json.loads(bpy.context.window_manager.realmodel.estimate or "{}")
+    return (table["rows"], table["fits"]) if table.get("scene") == scene.name else None

@@ -53,8 +53,8 @@ class FilledShape:
             if not len(mesh.polygons):
                 raise InputRefused("it has no faces", item=item.name, advice="choose another object")
             local = meshes.mesh_coordinates(mesh)
-            given = shapes.offsets(item, mesh)
-            return cls(item.name, local, matrix, given, shapes.mesh_triangles(mesh))
+            offsets = shapes.offsets(item, mesh)
+            return cls(item.name, local, matrix, offsets, shapes.mesh_triangles(mesh))
 
     @property
     def is_mirrored(self):
@@ -77,11 +77,11 @@ class FilledShape:
         """(N, 3) float64: places in the world in the coordinates of the object, without any change of its own
         vertices."""
         inverse = np.linalg.inv(self.matrix)
-        found = places @ inverse[:3, :3].T + inverse[:3, 3]
+        local = places @ inverse[:3, :3].T + inverse[:3, 3]
         same = welded(np.concatenate([self.vertices, places]))[len(self.vertices) :]
-        own = same < len(self.vertices)
-        found[own] = self.local[same[own]]
-        return found
+        is_vertex = same < len(self.vertices)
+        local[is_vertex] = self.local[same[is_vertex]]
+        return local
 
 
 class named:
@@ -122,44 +122,44 @@ class FillJob(ThreadJob):
             model, places = fill_within(job, self._mesh, beds, self._strata)
         with job.phase(_SHARE, 1.0, "making meshes"):
             local = self._shape.to_local(places)
-            found = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
-            found = [
-                None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in found
+            solids = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
+            solids = [
+                None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in solids
             ]
-        return model, found, beds.numbers(self._shape.vertices)
+        return model, solids, beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 
     def _put(self, made):
-        model, found, masks = made
+        model, solids, masks = made
         scene = bpy.data.scenes.get(self._scene)
-        item = None if scene is None else scene.objects.get(self._shape.name)
-        if item is None or item.type != "MESH":
+        obj = None if scene is None else scene.objects.get(self._shape.name)
+        if obj is None or obj.type != "MESH":
             raise BuildFailed(f"object '{self._shape.name}' is gone; nothing was changed")
-        where = item.users_collection[0] if item.users_collection else scene.collection
-        collection = bpy.data.collections.new(f"{item.name} Strata")
+        where = obj.users_collection[0] if obj.users_collection else scene.collection
+        collection = bpy.data.collections.new(f"{obj.name} Strata")
         where.children.link(collection)
         self.warnings = [warning.text for warning in model.warnings]
         rocks = {}
-        beds = [pair for pair in zip(model.blocks, found, strict=True) if pair[0].property]  # without gaps
+        beds = [pair for pair in zip(model.blocks, solids, strict=True) if pair[0].property]  # without gaps
         digits = len(str(len(beds)))
         for number, (block, shape) in enumerate(beds, 1):
             if shape is None:
                 continue
             if block.property not in rocks:
                 rocks[block.property] = self._material(model.project.library.get(block.property))
-            name = f"{item.name} Bed {number:0{digits}}"
+            name = f"{obj.name} Bed {number:0{digits}}"
             bed = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
             if self._shape.is_mirrored:
                 bed.data.flip_normals()
             bed.data.materials.append(rocks[block.property])
             bed[BED], bed[VOLUME] = number, block.volume
-            placing.stand_at(bed, item)
+            placing.stand_at(bed, obj)
             collection.objects.link(bed)
         beds = list(collection.objects)
         if self._has_masks:
-            self._add_masks(collection, item, masks)
-        placing.hide(item)
+            self._add_masks(collection, obj, masks)
+        placing.hide(obj)
         placing.select(beds)
         return collection
 
@@ -172,18 +172,18 @@ class FillJob(ThreadJob):
             looks.apply(made, look_of(rock.name), 1.0, self._strata.seed + rock.id, diagonal)
         return made
 
-    def _add_masks(self, collection, item, numbers):
+    def _add_masks(self, collection, obj, numbers):
         """A hidden copy of the object whose vertices have the number of their bed, and a mask of each bed."""
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        mesh = bpy.data.meshes.new_from_object(item.evaluated_get(depsgraph))
-        mesh.name = f"{item.name} Bed Masks"
+        mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph))
+        mesh.name = f"{obj.name} Bed Masks"
         mesh.attributes.new(BED, "INT", "POINT").data.foreach_set("value", numbers + 1)
         digits = len(str(self._strata.beds))
         for number in range(self._strata.beds):
             mask = mesh.attributes.new(f"Bed {number + 1:0{digits}}", "FLOAT", "POINT")
             mask.data.foreach_set("value", (numbers == number).astype(np.float32))
         copy = bpy.data.objects.new(mesh.name, mesh)
-        placing.stand_at(copy, item)
+        placing.stand_at(copy, obj)
         collection.objects.link(copy)
         bpy.context.view_layer.update()  # or it would not know the copy
         placing.hide(copy)

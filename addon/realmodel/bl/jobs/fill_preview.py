@@ -79,9 +79,9 @@ class FillPreview:
             bpy.data.meshes.remove(mesh)
             for material in made:
                 bpy.data.materials.remove(material)
-        item = bpy.data.objects.get(self._item)
-        if item is not None and item.name in bpy.context.view_layer.objects:
-            item.hide_set(False)
-            item.select_set(self._was_selected)
-            bpy.context.view_layer.objects.active = item
+        obj = bpy.data.objects.get(self._item)
+        if obj is not None and obj.name in bpy.context.view_layer.objects:
+            obj.hide_set(False)
+            obj.select_set(self._was_selected)
+            bpy.context.view_layer.objects.active = obj
         viewports.redraw()

@@ -19,12 +19,12 @@ class PlannedJob(ThreadJob):
 
     def __init__(self, scene):
         """Raises InputRefused, UsageError."""
-        found = ensembles.table(scene)
-        if found is None or ensembles.is_outdated(scene):
+        table = ensembles.table(scene)
+        if table is None or ensembles.is_outdated(scene):
             raise InputRefused("the model has no ensemble", advice="make one first (Ensemble)")
         row = planned_holes.active(scene)
         self._scene, self._name = scene.name, row.name
-        self._count, self._seed = found["count"], found["seed"]
+        self._count, self._seed = table["count"], table["seed"]
         self._axis = planned_holes.axis_of(row)
         self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
 

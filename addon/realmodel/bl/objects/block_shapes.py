@@ -16,9 +16,9 @@ def by_name(model, shapes):
 
 def bounds(coordinates):
     """(3,) float64 twice: the lowest and highest of coordinates, arrays (V, 3); zeros if there are none."""
-    found = [part for part in coordinates if len(part)]
-    if not found:
+    parts = [part for part in coordinates if len(part)]
+    if not parts:
         return np.zeros(3), np.zeros(3)
-    low = [min(float(part[:, axis].min()) for part in found) for axis in range(3)]
-    high = [max(float(part[:, axis].max()) for part in found) for axis in range(3)]
+    low = [min(float(part[:, axis].min()) for part in parts) for axis in range(3)]
+    high = [max(float(part[:, axis].max()) for part in parts) for axis in range(3)]
     return np.array(low), np.array(high)

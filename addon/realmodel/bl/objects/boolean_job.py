@@ -66,7 +66,7 @@ class BooleanJob(ThreadJob):
         if operation != DIVIDE and not keep:
             _require_own(first)
         self._matrix = np.array(first.matrix_world, np.float64)
-        read = [_read(item, depsgraph) for item in (first, second)]
+        read = [_read(obj, depsgraph) for obj in (first, second)]
         self._local = read[0][2]
         self._operands = tuple(entry[0] for entry in read)
         self._layers = tuple(entry[1] for entry in read)
@@ -76,11 +76,11 @@ class BooleanJob(ThreadJob):
     def _work(self, job):
         try:
             surfaces = [(operand.vertices, operand.triangles) for operand in self._operands]
-            found = intersect_within(job, *surfaces, _SHARE)
+            intersection = intersect_within(job, *surfaces, _SHARE)
             with job.phase(_SHARE, 1.0, "taking over materials and attributes"):
                 if self._operation == DIVIDE:
-                    return self._divided(found, job)
-                return self._solid(found)
+                    return self._divided(intersection, job)
+                return self._solid(intersection)
         except InputRefused as error:
             if error.item not in SURFACES:
                 raise
@@ -89,13 +89,13 @@ class BooleanJob(ThreadJob):
                 error.what, item=name, advice=error.advice, triangles=error.triangles, place=error.place
             ) from error
 
-    def _solid(self, found):
-        rows, is_turned = found.boundary(_BOUNDARIES[self._operation])
+    def _solid(self, intersection):
+        rows, is_turned = intersection.boundary(_BOUNDARIES[self._operation])
         if not len(rows):
             raise InputRefused(
                 f"nothing is left: {self._nothing()}", advice="move the objects, or choose another operation"
             )
-        return self._mesh(found, rows, is_turned)
+        return self._mesh(intersection, rows, is_turned)
 
     def _nothing(self):
         first, second = self._names
@@ -103,60 +103,62 @@ class BooleanJob(ThreadJob):
             return f"{first} and {second} have no volume in common"
         return f"{first} lies inside of {second}"
 
-    def _mesh(self, found, rows, is_turned):
+    def _mesh(self, intersection, rows, is_turned):
         mirror = np.linalg.det(self._matrix[:3, :3]) < 0
-        return mesh_of_parts(found, rows, is_turned, self._operands, mirror)
+        return mesh_of_parts(intersection, rows, is_turned, self._operands, mirror)
 
-    def _divided(self, found, job):
-        count = len(found.sub_surfaces) + len(found.sub_blocks) + len(found.loops)
+    def _divided(self, intersection, job):
+        count = len(intersection.sub_surfaces) + len(intersection.sub_blocks) + len(intersection.loops)
         if count > _MOST_PARTS:
             raise InputRefused(
                 f"the objects divide one another into {count} parts, and {_MOST_PARTS} objects are the most",
                 advice="use simpler meshes",
             )
         made = []
-        for number, part in enumerate(found.sub_surfaces):
-            name = self._surface_name(found, part)
-            made.append(_Part(name, "sub_surface", self._mesh(found, part.triangles, _none(part.triangles))))
+        for number, part in enumerate(intersection.sub_surfaces):
+            name = self._surface_name(intersection, part)
+            made.append(
+                _Part(name, "sub_surface", self._mesh(intersection, part.triangles, _none(part.triangles)))
+            )
             job.step(number / count)
-        for number, block in enumerate(found.sub_blocks):
-            parts = self._mesh(found, *found.rows_of(number))
-            made.append(_Part(self._block_name(found, block), "sub_block", parts, block.volume))
+        for number, block in enumerate(intersection.sub_blocks):
+            parts = self._mesh(intersection, *intersection.rows_of(number))
+            made.append(_Part(self._block_name(intersection, block), "sub_block", parts, block.volume))
             job.step(len(made) / count)
-        for loop in found.loops:
+        for loop in intersection.loops:
             name = f"Loop, {loop.kind.replace('_', ' ').title()}"
             rows, is_closed = loop.vertices, loop.kind == "hard_closed"
             if not is_closed and rows[0] == rows[-1]:
                 rows, is_closed = rows[:-1], True
-            made.append(_Loop(name, found.vertices[rows], is_closed))
+            made.append(_Loop(name, intersection.vertices[rows], is_closed))
         return made
 
-    def _surface_name(self, found, part):
-        own, other = self._names[part.source], self._names[1 - part.source]
-        if not found.is_closed[1 - part.source]:
-            return f"Part of {own}"
-        below, above = found.sides(part, 1 - part.source)
+    def _surface_name(self, intersection, part):
+        name, other = self._names[part.source], self._names[1 - part.source]
+        if not intersection.is_closed[1 - part.source]:
+            return f"Part of {name}"
+        below, above = intersection.sides(part, 1 - part.source)
         where = "on" if below != above else "inside" if below else "outside"
-        return f"{own} {where} {other}"
+        return f"{name} {where} {other}"
 
-    def _block_name(self, found, block):
+    def _block_name(self, intersection, block):
         first, second = self._names
         if block.in_a and block.in_b:
             return f"{first} and {second}"
         if not (block.in_a or block.in_b):
             return f"Enclosed by {first} and {second}"
-        own, other = (first, second) if block.in_a else (second, first)
-        return f"{own} without {other}" if all(found.is_closed) else f"Part of {own}"
+        name, other = (first, second) if block.in_a else (second, first)
+        return f"{name} without {other}" if all(intersection.is_closed) else f"Part of {name}"
 
     # -- in the main thread
 
     def _put(self, made):
         scene = bpy.data.scenes.get(self._scene)
         items = [None if scene is None else scene.objects.get(name) for name in self._names]
-        for name, item in zip(self._names, items, strict=True):
-            if item is None or item.type != "MESH":
+        for name, obj in zip(self._names, items, strict=True):
+            if obj is None or obj.type != "MESH":
                 raise BuildFailed(f"object '{name}' is gone; nothing was changed")
-            if item.mode != "OBJECT":
+            if obj.mode != "OBJECT":
                 raise BuildFailed(f"object '{name}' is being edited; nothing was changed")
         if self._operation == DIVIDE:
             return self._put_divided(scene, made, *items)
@@ -191,7 +193,7 @@ class BooleanJob(ThreadJob):
         for kind, name in (("sub_surface", "Sub-Surfaces"), ("sub_block", "Sub-Blocks"), ("loop", "Loops")):
             kinds[kind] = bpy.data.collections.new(name)
             top.children.link(kinds[kind])
-        templates = [_template(item) for item in (first, second)]
+        templates = [_template(obj) for obj in (first, second)]
         for entry in made:
             if isinstance(entry, _Loop):
                 kind, mesh = "loop", _loop_mesh(entry, self._matrix)
@@ -201,22 +203,22 @@ class BooleanJob(ThreadJob):
                 mesh, lost = self._new_mesh(template, entry.parts)
                 mesh.name = entry.name
                 left_out += [name for name in lost if name not in left_out]
-            item = bpy.data.objects.new(entry.name, mesh)
-            item[model_tree.TAG] = kind
-            placing.stand_at(item, first)
-            kinds[kind].objects.link(item)
+            obj = bpy.data.objects.new(entry.name, mesh)
+            obj[model_tree.TAG] = kind
+            placing.stand_at(obj, first)
+            kinds[kind].objects.link(obj)
             if kind != "loop":
-                mesh_data.write_groups(item, entry.parts, self._layers)
+                mesh_data.write_groups(obj, entry.parts, self._layers)
             if kind == "sub_block":
-                item[VOLUME] = entry.volume
+                obj[VOLUME] = entry.volume
         for template in templates:
             bpy.data.meshes.remove(template)
         for collection in kinds.values():
             if not len(collection.objects):
                 bpy.data.collections.remove(collection)
         if not self._keep:
-            for item in (first, second):
-                placing.hide(item)
+            for obj in (first, second):
+                placing.hide(obj)
         placing.select(top.all_objects)
         return top, left_out
 
@@ -232,17 +234,17 @@ class BooleanJob(ThreadJob):
     def _coordinates(self, parts):
         """(V, 3) float32 in the coordinates of the first object; its own vertices are copied, not
         recomputed."""
-        found = _to_local(parts.vertices, self._matrix)
-        own = parts.sources[0]
-        there = own.vertex_weights.max(axis=1) == 1.0
-        nearest = own.vertex_of[there, own.vertex_weights[there].argmax(axis=1)]
-        found[own.vertices[there]] = self._local[nearest]
-        return found
+        coordinates = _to_local(parts.vertices, self._matrix)
+        source = parts.sources[0]
+        is_vertex = source.vertex_weights.max(axis=1) == 1.0
+        nearest = source.vertex_of[is_vertex, source.vertex_weights[is_vertex].argmax(axis=1)]
+        coordinates[source.vertices[is_vertex]] = self._local[nearest]
+        return coordinates
 
 
-def _template(item):
+def _template(obj):
     """A mesh without contents that has the settings of an object's mesh."""
-    mesh = item.data.copy()
+    mesh = obj.data.copy()
     if mesh.shape_keys is not None:  # only an object can take them away
         holder = bpy.data.objects.new("", mesh)
         holder.shape_key_clear()
@@ -252,13 +254,13 @@ def _template(item):
     return mesh
 
 
-def _replace_mesh(item, mesh):
+def _replace_mesh(obj, mesh):
     """An object has another mesh. It has the result of the modifiers, so these go."""
-    old, name = item.data, item.data.name
-    slots = [(slot.link, slot.material) for slot in item.material_slots]
-    item.data = mesh
-    item.modifiers.clear()
-    for slot, (link, material) in zip(item.material_slots, slots, strict=False):
+    old, name = obj.data, obj.data.name
+    slots = [(slot.link, slot.material) for slot in obj.material_slots]
+    obj.data = mesh
+    obj.modifiers.clear()
+    for slot, (link, material) in zip(obj.material_slots, slots, strict=False):
         if link == "OBJECT":
             slot.link, slot.material = link, material
     if not old.users and old.library is None:
@@ -270,15 +272,15 @@ def _none(rows):
     return np.zeros(len(rows), bool)
 
 
-def _read(item, depsgraph):
+def _read(obj, depsgraph):
     """Reads an object: its Operand, mesh_data.Layers, and local coordinates (V, 3) float32."""
-    matrix = np.array(item.matrix_world, np.float64)
+    matrix = np.array(obj.matrix_world, np.float64)
     determinant = np.linalg.det(matrix[:3, :3])
     if determinant == 0 or not np.isfinite(determinant):
-        raise InputRefused("its scale is zero along an axis", item=item.name, advice="give it another scale")
-    with shapes.evaluated_mesh(item, depsgraph, all_layers=True) as mesh:
+        raise InputRefused("its scale is zero along an axis", item=obj.name, advice="give it another scale")
+    with shapes.evaluated_mesh(obj, depsgraph, all_layers=True) as mesh:
         if not len(mesh.polygons):
-            raise InputRefused("it has no faces", item=item.name, advice="choose another object")
+            raise InputRefused("it has no faces", item=obj.name, advice="choose another object")
         local = meshes.mesh_coordinates(mesh)
         starts = versions.polygon_starts(mesh)
         mesh.calc_loop_triangles()
@@ -295,7 +297,7 @@ def _read(item, depsgraph):
             triangle_polygons=shapes.triangle_polygons(mesh),
             is_mirrored=bool(determinant < 0),
         )
-        return operand, mesh_data.read(mesh, item), local
+        return operand, mesh_data.read(mesh, obj), local
 
 
 def _to_local(places, matrix):
@@ -311,11 +313,11 @@ def _loop_mesh(loop, matrix):
     return meshes.line_mesh(loop.name, places, edges)
 
 
-def _require_own(item):
+def _require_own(obj):
     """Refuses an object of a model, whose mesh the next build would replace. Raises InputRefused."""
-    if item.get(model_tree.TAG) in model_tree.OBJECT_KINDS:
+    if obj.get(model_tree.TAG) in model_tree.OBJECT_KINDS:
         raise InputRefused(
             "it is an object of the model, which a build makes anew",
-            item=item.name,
+            item=obj.name,
             advice="choose Keep Operands, so that the result is an object of its own",
         )

@@ -34,17 +34,17 @@ def apply(scene, items, base):
         scene.collection.objects.link(empty)
     if empty is None:
         return
-    roots = {_root(item, empty) for item in items if item is not None and item.library is None}
-    for item in [child for child in empty.children if child not in roots]:
-        item.parent = None
+    roots = {_root(obj, empty) for obj in items if obj is not None and obj.library is None}
+    for obj in [child for child in empty.children if child not in roots]:
+        obj.parent = None
     if not roots:
         bpy.data.objects.remove(empty)
         return
     empty.scale.z, empty.location.z = wanted, base * (1.0 - wanted)
-    for item in roots:
-        if item.parent != empty:
-            item.parent = empty
-            item.matrix_parent_inverse = Matrix.Identity(4)
+    for obj in roots:
+        if obj.parent != empty:
+            obj.parent = empty
+            obj.matrix_parent_inverse = Matrix.Identity(4)
 
 
 def release(item):
@@ -74,11 +74,11 @@ def true_matrix(item):
     return np.linalg.inv(np.array(top.matrix_basis, np.float64)) @ np.array(item.matrix_world, np.float64)
 
 
-def _root(item, empty):
-    while item.parent is not None and item.parent != empty:
-        item = item.parent
-    return item
+def _root(obj, empty):
+    while obj.parent is not None and obj.parent != empty:
+        obj = obj.parent
+    return obj
 
 
 def _empty(scene):
-    return next((item for item in scene.objects if KEY in item), None)
+    return next((obj for obj in scene.objects if KEY in obj), None)

@@ -15,7 +15,7 @@ _LEVEL = 0.6  # least upward part of the normal of a face that is ground
 
 def of_scene(scene):
     """The beds that the scene shows."""
-    return [item for item in scene.objects if item.type == "MESH" and BED in item and VOLUME in item]
+    return [obj for obj in scene.objects if obj.type == "MESH" and BED in obj and VOLUME in obj]
 
 
 def exposed(shape, matrix):
@@ -38,6 +38,6 @@ def exposed(shape, matrix):
 def size(item):
     """The length of the diagonal of the filled mesh that a bed is of, in the object's own coordinates."""
     together = [item] if not item.users_collection else item.users_collection[0].objects
-    found = [meshes.mesh_coordinates(bed.data) for bed in together if BED in bed and bed.type == "MESH"]
-    places = np.concatenate([[places.min(axis=0), places.max(axis=0)] for places in found if len(places)])
+    vertices = [meshes.mesh_coordinates(bed.data) for bed in together if BED in bed and bed.type == "MESH"]
+    places = np.concatenate([[places.min(axis=0), places.max(axis=0)] for places in vertices if len(places)])
     return float(np.linalg.norm(np.ptp(places, axis=0))) or 1.0

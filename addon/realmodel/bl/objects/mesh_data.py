@@ -64,9 +64,9 @@ def read(mesh, item):
             layers.attributes[name] = (domain, attribute.data_type, _values(attribute))
     for domain, names in versions.marks().items():
         for name, dtype in names.items():
-            found = _numbers(getattr(mesh, _DOMAINS[domain]), name, dtype)
-            if found.any():
-                layers.marks[domain, name] = found
+            values = _numbers(getattr(mesh, _DOMAINS[domain]), name, dtype)
+            if values.any():
+                layers.marks[domain, name] = values
     layers.active = _active(mesh)
     return layers
 
@@ -84,34 +84,34 @@ def write(mesh, parts, given):
         if uv_map is None:  # there may be eight
             left_out.append(name)
             continue
-        kept = [layers.uv_maps.get(name) for layers in given]
-        uv_map.data.foreach_set("uv", _together(mesh, "CORNER", parts, kept).ravel())
+        layer_values = [layers.uv_maps.get(name) for layers in given]
+        uv_map.data.foreach_set("uv", _together(mesh, "CORNER", parts, layer_values).ravel())
     for name in _names(given, "attributes"):
         kinds = [layers.attributes[name][:2] if name in layers.attributes else None for layers in given]
         kind = kinds[0] or kinds[1]
         if kinds[1] not in (None, kind):
             left_out.append(name)
         domain, data_type = kind
-        kept = [
-            layers.attributes[name][2] if own == kind else None
-            for layers, own in zip(given, kinds, strict=True)
+        layer_values = [
+            layers.attributes[name][2] if layer_kind == kind else None
+            for layers, layer_kind in zip(given, kinds, strict=True)
         ]
         made = mesh.attributes.new(name, data_type, domain)
-        _set_values(made, _together(mesh, domain, parts, kept))
+        _set_values(made, _together(mesh, domain, parts, layer_values))
     for domain, names in versions.marks().items():
         for name in names:
-            kept = [layers.marks.get((domain, name)) for layers in given]
-            if any(values is not None for values in kept):
-                values = _together(mesh, domain, parts, kept)
+            layer_values = [layers.marks.get((domain, name)) for layers in given]
+            if any(values is not None for values in layer_values):
+                values = _together(mesh, domain, parts, layer_values)
                 getattr(mesh, _DOMAINS[domain]).foreach_set(name, values)
     _mark_meeting(mesh, parts, given)
     _write_active(mesh, given)
     return left_out
 
 
-def _mark_meeting(mesh, parts, given):
+def _mark_meeting(mesh, parts, operand_layers):
     """Marks the edges where smooth surfaces meet as sharp."""
-    if len(parts.meeting) and any(("FACE", "use_smooth") in layers.marks for layers in given):
+    if len(parts.meeting) and any(("FACE", "use_smooth") in layers.marks for layers in operand_layers):
         sharp = _numbers(mesh.edges, "use_edge_sharp", bool)
         sharp[parts.meeting] = True
         mesh.edges.foreach_set("use_edge_sharp", sharp)
@@ -122,10 +122,10 @@ def write_groups(item, parts, given):
     item.vertex_groups.clear()
     given = _of_parts(parts, given)
     for name in _names(given, "groups"):
-        kept = [layers.groups.get(name, (None, None)) for layers in given]
-        weights = _together(item.data, "POINT", parts, [weights for weights, _ in kept])
+        group_values = [layers.groups.get(name, (None, None)) for layers in given]
+        weights = _together(item.data, "POINT", parts, [weights for weights, _ in group_values])
         is_member = np.zeros(len(weights), bool)
-        for source, (_, members) in zip(parts.sources, kept, strict=True):
+        for source, (_, members) in zip(parts.sources, group_values, strict=True):
             if members is not None:  # one of the vertices that it is between is enough
                 near = members[source.vertex_of] & (source.vertex_weights > 0.0)
                 is_member[source.vertices] |= near.any(axis=1)
@@ -135,43 +135,43 @@ def write_groups(item, parts, given):
             group.add(members[weights[members] == weight].tolist(), weight, "REPLACE")
 
 
-def _of_parts(parts, given):
+def _of_parts(parts, operand_layers):
     """The layers of those of which there are parts; nothing of the others."""
     return [
         layers if len(source.polygons) else Layers()
-        for source, layers in zip(parts.sources, given, strict=True)
+        for source, layers in zip(parts.sources, operand_layers, strict=True)
     ]
 
 
-def _together(mesh, domain, parts, kept):
+def _together(mesh, domain, parts, operand_values):
     """(N, ...) values of a new mesh: of each operand those that it keeps, which may be None."""
-    example = next(values for values in kept if values is not None)
+    example = next(values for values in operand_values if values is not None)
     shape = (len(getattr(mesh, _DOMAINS[domain])), *example.shape[1:])
     nothing = type(example[0])() if example.dtype == object else 0  # text is str or bytes, by version
-    found = np.full(shape, nothing, example.dtype)
-    for source, values in reversed(list(zip(parts.sources, kept, strict=True))):
+    result = np.full(shape, nothing, example.dtype)
+    for source, values in reversed(list(zip(parts.sources, operand_values, strict=True))):
         if values is None:
             continue
         if domain == "POINT":
-            found[source.vertices] = interpolated(values, source.vertex_of, source.vertex_weights)
+            result[source.vertices] = interpolated(values, source.vertex_of, source.vertex_weights)
         elif domain == "CORNER":
-            found[source.corners] = interpolated(values, source.corner_of, source.corner_weights)
+            result[source.corners] = interpolated(values, source.corner_of, source.corner_weights)
         elif domain == "EDGE":
-            found[source.edges] = values[source.edge_of]
+            result[source.edges] = values[source.edge_of]
         else:
-            found[source.polygons] = values[source.polygon_of]
-    return found
+            result[source.polygons] = values[source.polygon_of]
+    return result
 
 
-def _names(given, kind):
+def _names(operand_layers, kind):
     """The names of both, those of the first before the others."""
-    return list(dict.fromkeys(name for layers in given for name in getattr(layers, kind)))
+    return list(dict.fromkeys(name for layers in operand_layers for name in getattr(layers, kind)))
 
 
 def _numbers(data, name, dtype, columns=1):
-    found = np.empty(len(data) * columns, dtype)
-    data.foreach_get(name, found)
-    return found if columns == 1 else found.reshape(-1, columns)
+    numbers = np.empty(len(data) * columns, dtype)
+    data.foreach_get(name, numbers)
+    return numbers if columns == 1 else numbers.reshape(-1, columns)
 
 
 def _values(attribute):
@@ -190,67 +190,69 @@ def _set_values(attribute, values):
     attribute.data.foreach_set(name, values.ravel())
 
 
-def _groups(mesh, item):
-    names = [group.name for group in item.vertex_groups]
-    found = {
+def _groups(mesh, obj):
+    names = [group.name for group in obj.vertex_groups]
+    groups = {
         name: (np.zeros(len(mesh.vertices), np.float32), np.zeros(len(mesh.vertices), bool)) for name in names
     }
     if names:
         for number, vertex in enumerate(mesh.vertices):
             for entry in vertex.groups:
                 if entry.group < len(names):
-                    weights, is_member = found[names[entry.group]]
+                    weights, is_member = groups[names[entry.group]]
                     weights[number], is_member[number] = entry.weight, True
-    return found
+    return groups
 
 
-def _materials(mesh, item):
+def _materials(mesh, obj):
     """The materials of the object's slots; where geometry nodes added slots, those of the mesh."""
-    found = list(mesh.materials)
-    for number, slot in enumerate(item.material_slots):
-        if slot.link == "OBJECT" and number < len(found):
-            found[number] = slot.material
-    found = [material.original if material is not None else None for material in found]
-    return [None if m is None else (m.name, m.library.filepath if m.library else None) for m in found]
+    slot_materials = list(mesh.materials)
+    for number, slot in enumerate(obj.material_slots):
+        if slot.link == "OBJECT" and number < len(slot_materials):
+            slot_materials[number] = slot.material
+    slot_materials = [material.original if material is not None else None for material in slot_materials]
+    return [
+        None if m is None else (m.name, m.library.filepath if m.library else None) for m in slot_materials
+    ]
 
 
-def _write_materials(mesh, parts, given):
+def _write_materials(mesh, parts, operand_layers):
     """Writes the material of each face. Faces of the second mesh without one take the slot of their number,
     as in Blender's own Boolean; those of the first without one keep none."""
-    first, second = (list(layers.materials) for layers in given)
+    first, second = (list(layers.materials) for layers in operand_layers)
     are_both = all(len(source.polygons) for source in parts.sources)
     if are_both and any(second):
         slots = first or [None]
-        slots += [kept for kept in dict.fromkeys(second) if kept is not None and kept not in slots]
-        second = [slots.index(kept) if kept else min(n, len(slots) - 1) for n, kept in enumerate(second)]
+        slots += [key for key in dict.fromkeys(second) if key is not None and key not in slots]
+        second = [slots.index(key) if key else min(n, len(slots) - 1) for n, key in enumerate(second)]
     else:
         slots = first or ([] if are_both else second)
         second = [min(n, max(len(slots) - 1, 0)) for n in range(max(len(second), 1))]
-    for kept in slots:
-        mesh.materials.append(None if kept is None else bpy.data.materials.get(kept))
+    for key in slots:
+        mesh.materials.append(None if key is None else bpy.data.materials.get(key))
     index = np.zeros(len(mesh.polygons), np.int32)
     numbers = (np.arange(max(len(first), 1)), np.array(second))
-    for source, layers, new in zip(parts.sources, given, numbers, strict=True):
+    for source, layers, new in zip(parts.sources, operand_layers, numbers, strict=True):
         if len(source.polygons):
-            own = layers.material_index[source.polygon_of]
-            index[source.polygons] = new[np.clip(own, 0, len(new) - 1)]
+            indices = layers.material_index[source.polygon_of]
+            index[source.polygons] = new[np.clip(indices, 0, len(new) - 1)]
     if index.any():
         mesh.polygons.foreach_set("material_index", index)
 
 
 def _active(mesh):
     """The names of the maps that are active, and that are rendered."""
-    found = {"uv": mesh.uv_layers.active, "color": mesh.color_attributes.active_color}
-    found = {key: entry.name for key, entry in found.items() if entry is not None}
+    active = {"uv": mesh.uv_layers.active, "color": mesh.color_attributes.active_color}
+    active = {key: entry.name for key, entry in active.items() if entry is not None}
     shown = [uv_map.name for uv_map in mesh.uv_layers if uv_map.active_render]
     colors, number = mesh.color_attributes, mesh.color_attributes.render_color_index
     if 0 <= number < len(colors):
-        found["color_render"] = colors[number].name
-    return found | ({"uv_render": shown[0]} if shown else {})
+        active["color_render"] = colors[number].name
+    return active | ({"uv_render": shown[0]} if shown else {})
 
 
-def _write_active(mesh, given):
-    wanted = given[1].active | given[0].active
+def _write_active(mesh, operand_layers):
+    wanted = operand_layers[1].active | operand_layers[0].active
     for uv_map in mesh.uv_layers:
         if uv_map.name == wanted.get("uv"):
             uv_map.active = True

@@ -52,37 +52,37 @@ def model_objects(scene, kind=None):
     if project is None:
         return []
     kinds = OBJECT_KINDS if kind is None else (kind,)
-    found = []
+    objects = []
     for collection in project.children_recursive:
-        found += [o for o in collection.objects if o.get(TAG) in kinds]
-    return found
+        objects += [o for o in collection.objects if o.get(TAG) in kinds]
+    return objects
 
 
 def sections(scene):
     """The objects of sections and fences in a scene."""
-    return [item for item in scene.objects if item.get(TAG) == "section"]
+    return [obj for obj in scene.objects if obj.get(TAG) == "section"]
 
 
 def remove_objects(objects):
     """Remove objects with their meshes; those of other files stay. One that is being edited stays as an
     object of the user: undo steps of edit mode that do not find theirs end Blender."""
-    for item in objects:
-        if item.mode != "OBJECT":
-            for key in list(item.keys()):
+    for obj in objects:
+        if obj.mode != "OBJECT":
+            for key in list(obj.keys()):
                 if key.startswith(TAG):
-                    del item[key]
-        elif item.library is None:
-            mesh = item.data
-            bpy.data.objects.remove(item)
+                    del obj[key]
+        elif obj.library is None:
+            mesh = obj.data
+            bpy.data.objects.remove(obj)
             if not mesh.users:
                 bpy.data.meshes.remove(mesh)
 
 
 def remove_unused_materials(besides=()):
     """Remove the unused materials of properties, except for some."""
-    kept = set(besides)
+    excepted = set(besides)
     for material in list(bpy.data.materials):
-        if materials.KEY in material and not (material.users or material.library or material in kept):
+        if materials.KEY in material and not (material.users or material.library or material in excepted):
             bpy.data.materials.remove(material)
 
 

@@ -26,10 +26,10 @@ def hide(item):
 def select(items):
     layer = bpy.context.view_layer
     layer.update()  # or it would not know new objects
-    items = [item for item in items if item.name in layer.objects]
-    for item in layer.objects:
-        item.select_set(False)
-    for item in items:
-        item.select_set(True)
+    items = [obj for obj in items if obj.name in layer.objects]
+    for obj in layer.objects:
+        obj.select_set(False)
+    for obj in items:
+        obj.select_set(True)
     if items:
         layer.objects.active = items[0]

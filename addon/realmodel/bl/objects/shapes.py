@@ -98,10 +98,10 @@ def points(item, depsgraph):
 def digest(given, triangles):
     """The digest by which changes of a mesh are detected: of its offsets, rounded to float32 as in Blender,
     and its triangles."""
-    found = hashlib.blake2b(digest_size=16)
-    found.update(np.ascontiguousarray(given, np.float32).tobytes())
-    found.update(np.ascontiguousarray(triangles, np.int32).tobytes())
-    return found.hexdigest()
+    hasher = hashlib.blake2b(digest_size=16)
+    hasher.update(np.ascontiguousarray(given, np.float32).tobytes())
+    hasher.update(np.ascontiguousarray(triangles, np.int32).tobytes())
+    return hasher.hexdigest()
 
 
 def with_full_digits(given, triangles, model_origin, stored_vertices, stored_triangles):
@@ -152,9 +152,9 @@ def new_outline(scene, name, corners, z):
     spline.points.add(len(corners) - 1)
     spline.points.foreach_set("co", np.array([(x, y, z, 1.0) for x, y in corners], np.float32).ravel())
     spline.use_cyclic_u = True
-    item = bpy.data.objects.new(name, curve)
-    scene.collection.objects.link(item)
-    return item
+    obj = bpy.data.objects.new(name, curve)
+    scene.collection.objects.link(obj)
+    return obj
 
 
 def plan_lines(item, depsgraph):
@@ -164,22 +164,22 @@ def plan_lines(item, depsgraph):
         plan = offsets(item, mesh)[:, :2]
         edges = versions.edge_vertices(mesh)
     loose = np.setdiff1d(np.arange(len(plan)), edges)
-    found = [line for line in plan[edges] if (line[0] != line[1]).any()]
-    found += list(plan[loose][:, None])
-    if not found:
+    segments = [line for line in plan[edges] if (line[0] != line[1]).any()]
+    segments += list(plan[loose][:, None])
+    if not segments:
         raise InputRefused(
             "it has no edges and no vertices", item=f"object '{item.name}'", advice="choose another object"
         )
-    return found
+    return segments
 
 
 def polyline(item, depsgraph):
     """The one line of a curve or mesh object seen from above, (N, 2) float64 offsets from the origin, as it
     was drawn; a closed one ends where it begins. Raises InputRefused where it is no line."""
-    found, what = lines(item, depsgraph), f"object '{item.name}'"
-    if len(found) > 1:
+    all_lines, what = lines(item, depsgraph), f"object '{item.name}'"
+    if len(all_lines) > 1:
         raise InputRefused("it is not one line", item=what, advice="leave one line without branches")
-    line = found[0][:, :2]
+    line = all_lines[0][:, :2]
     line = line[begins_run(line)]
     if len(line) < 2:
         raise InputRefused("it is a point seen from above", item=what, advice="draw a line")
@@ -191,26 +191,26 @@ def strokes(item):
     by the hundred: those nearer to the one before than a hundredth of the stroke's length are left out, but
     for its ends. Raises InputRefused where there are none."""
     matrix = exaggeration.true_matrix(item)
-    found = [thinned(line @ matrix[:3, :3].T + matrix[:3, 3]) for line in versions.strokes(item)]
-    if not found:
+    stroke_lines = [thinned(line @ matrix[:3, :3].T + matrix[:3, 3]) for line in versions.strokes(item)]
+    if not stroke_lines:
         advice = "draw on a layer that is shown, at the present frame"
         raise InputRefused("it has no strokes", item=f"object '{item.name}'", advice=advice)
-    return found
+    return stroke_lines
 
 
 def thinned(line):
     """A line (N, 3) without points that are nearer to the one before than a hundredth of its length."""
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
-    kept = [0]
+    indices = [0]
     for number in range(1, len(line) - 1):
-        if along[number] - along[kept[-1]] >= _THIN * along[-1]:
-            kept.append(number)
+        if along[number] - along[indices[-1]] >= _THIN * along[-1]:
+            indices.append(number)
     if len(line) > 1 and along[-1] > 0.0:
-        if len(kept) > 1 and along[-1] - along[kept[-1]] < _THIN * along[-1]:
-            kept.pop()
-        kept.append(len(line) - 1)
-    return line[kept]
+        if len(indices) > 1 and along[-1] - along[indices[-1]] < _THIN * along[-1]:
+            indices.pop()
+        indices.append(len(line) - 1)
+    return line[indices]
 
 
 def lines(item, depsgraph):
@@ -240,7 +240,7 @@ def _chains(edges, degree):
     for a, b in edges.tolist():
         onward[a].append(b)
         onward[b].append(a)
-    left, found = degree > 0, []
+    left, chains = degree > 0, []
     for start in [*np.flatnonzero(degree == 1).tolist(), *np.flatnonzero(degree == 2).tolist()]:
         if not left[start]:
             continue
@@ -251,8 +251,8 @@ def _chains(edges, degree):
             if following == start:
                 break
         left[chain] = False
-        found.append(chain)
-    return found
+        chains.append(chain)
+    return chains
 
 
 def has_edges(item, depsgraph):

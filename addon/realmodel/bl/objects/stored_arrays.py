@@ -79,8 +79,8 @@ class ArraysProperty:
 def store(owner, key, arrays):
     """Stores arrays by name, in place of those that an owner has under a key; None where they are none."""
     digest, parts = hashlib.blake2b(digest_size=16), {}
-    for name, given in arrays.items():
-        array = np.asarray(given)
+    for name, content in arrays.items():
+        array = np.asarray(content)
         values, kind, shape = _values(array), array.dtype.str, list(array.shape)
         digest.update(repr((name, kind, shape)).encode())
         digest.update(values.encode() if isinstance(values, str) else values)
@@ -124,7 +124,7 @@ def _refusing():
 def file_stamp(path):
     """The path, time and size of a file, by which changes of it are detected; "" where it does not exist."""
     try:
-        found = Path(path).stat()
+        stat = Path(path).stat()
     except (OSError, ValueError):
         return ""
-    return f"{path}|{found.st_mtime_ns}|{found.st_size}"
+    return f"{path}|{stat.st_mtime_ns}|{stat.st_size}"

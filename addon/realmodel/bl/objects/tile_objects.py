@@ -30,22 +30,22 @@ def add_whole(scene, tiled, size, step):
     origin = _origin(scene, tiled)
     for number, tile in enumerate(tiled.tiles):
         step(number / len(tiled.tiles))
-        for found, shape in zip(parts, polygon_mesh.of_blocks(tile.model(), origin), strict=True):
+        for coarse_parts, shape in zip(parts, polygon_mesh.of_blocks(tile.model(), origin), strict=True):
             coarse = None if shape is None else coarse_meshes.coarsened(shape, size)
             if coarse is not None:
-                found.append(coarse)
-    shapes = [coarse_meshes.joined(found) if found else None for found in parts]
+                coarse_parts.append(coarse)
+    shapes = [coarse_meshes.joined(coarse_parts) if coarse_parts else None for coarse_parts in parts]
     return _put(scene, tiled, origin, [("", shapes)])
 
 
 def add_tiles(scene, tiled, tiles, step):
     """The blocks of some tiles as they are, a collection for each tile. Otherwise as add_whole."""
     origin = _origin(scene, tiled)
-    found = []
+    shapes_of_tiles = []
     for number, tile in enumerate(tiles):
         step(number / len(tiles))
-        found.append((tile.name, polygon_mesh.of_blocks(tile.model(), origin)))
-    return _put(scene, tiled, origin, found)
+        shapes_of_tiles.append((tile.name, polygon_mesh.of_blocks(tile.model(), origin)))
+    return _put(scene, tiled, origin, shapes_of_tiles)
 
 
 def _origin(scene, tiled):
@@ -64,15 +64,15 @@ def _origin(scene, tiled):
     return origin
 
 
-def _put(scene, tiled, origin, found):
-    """Adds the objects. found: (name of a tile or "", a PolygonMesh or None for each block)."""
+def _put(scene, tiled, origin, shapes_of_tiles):
+    """Adds the objects. shapes_of_tiles: (name of a tile or "", a PolygonMesh or None for each block)."""
     created, palette = [], {}
     try:
         top = bpy.data.collections.new(f"{tiled.name} tiles")
         created.append(top)
         top[model_tree.TAG] = TILES
         objects = []
-        for tile, shapes in found:
+        for tile, shapes in shapes_of_tiles:
             collection = top
             if tile:
                 collection = bpy.data.collections.new(tile)
@@ -85,14 +85,14 @@ def _put(scene, tiled, origin, found):
                 mesh = meshes.new_mesh(name, shape)
                 created.append(mesh)
                 mesh.materials.append(_material(palette, tiled.project.library, block.property, created))
-                item = bpy.data.objects.new(name, mesh)
-                created.append(item)
-                item[model_tree.TAG] = TILE
-                item[model_tree.ROCK] = tiled.project.rocks[block.rock].name
-                item[model_tree.BLOCK] = block.name
-                item[model_tree.PROPERTY] = block.property
-                collection.objects.link(item)
-                objects.append(item)
+                obj = bpy.data.objects.new(name, mesh)
+                created.append(obj)
+                obj[model_tree.TAG] = TILE
+                obj[model_tree.ROCK] = tiled.project.rocks[block.rock].name
+                obj[model_tree.BLOCK] = block.name
+                obj[model_tree.PROPERTY] = block.property
+                collection.objects.link(obj)
+                objects.append(obj)
     except BaseException:
         bpy.data.batch_remove(created)
         raise

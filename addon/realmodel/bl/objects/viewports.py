@@ -50,8 +50,8 @@ def spaces(context):
         return [space]
     if bpy.app.background or context.window is None:
         return [area.spaces.active for area in areas()] or all_spaces()
-    there = [area for area in context.window.screen.areas if area.type == "VIEW_3D"]
-    return [area.spaces.active for area in sorted(there, key=lambda a: a.width * a.height)[-1:]]
+    view_areas = [area for area in context.window.screen.areas if area.type == "VIEW_3D"]
+    return [area.spaces.active for area in sorted(view_areas, key=lambda a: a.width * a.height)[-1:]]
 
 
 def all_spaces():
@@ -88,8 +88,8 @@ def frame(scene, shown):
 
 def corners(items):
     """(8 N, 3) the corners of the boxes around N objects, where they stand."""
-    found = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
-    return np.array(found).reshape(-1, 3)
+    places = [obj.matrix_world @ Vector(corner) for obj in items for corner in obj.bound_box]
+    return np.array(places).reshape(-1, 3)
 
 
 def frame_items(items, shown):
@@ -143,9 +143,9 @@ def under_mouse(context, event):
         if area.type != "VIEW_3D":
             continue
         x, y = event.mouse_x, event.mouse_y
-        there = [r for r in area.regions if r.x <= x < r.x + r.width and r.y <= y < r.y + r.height]
-        if there and all(region.type == "WINDOW" for region in there):
-            return area, (x - there[0].x, y - there[0].y)
+        regions = [r for r in area.regions if r.x <= x < r.x + r.width and r.y <= y < r.y + r.height]
+        if regions and all(region.type == "WINDOW" for region in regions):
+            return area, (x - regions[0].x, y - regions[0].y)
     return None
 
 
@@ -165,10 +165,10 @@ def pixels(area, places):
     behind the eye is infinitely far."""
     region = next(r for r in area.regions if r.type == "WINDOW")
     matrix = np.array(area.spaces.active.region_3d.perspective_matrix)
-    found = np.column_stack([places, np.ones(len(places))]) @ matrix.T
+    projected = np.column_stack([places, np.ones(len(places))]) @ matrix.T
     with np.errstate(divide="ignore", invalid="ignore"):
-        seen = (found[:, :2] / found[:, 3:] + 1.0) / 2.0 * (region.width, region.height)
-    return np.where(found[:, 3:] > 0.0, seen, np.inf)
+        seen = (projected[:, :2] / projected[:, 3:] + 1.0) / 2.0 * (region.width, region.height)
+    return np.where(projected[:, 3:] > 0.0, seen, np.inf)
 
 
 def show_status():

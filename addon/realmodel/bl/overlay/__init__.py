@@ -80,10 +80,10 @@ def _keys(scene):
     if not scene.realmodel.view.show_legend:
         return ()
     of_model = (colors.key, residuals.key, ensembles.key, fields.key) if len(scene.realmodel.results) else ()
-    found = [key(scene) for key in of_model]
+    color_keys = [key(scene) for key in of_model]
     if scene.realmodel.is_outdated:
-        found = [key and replace(key, title=f"{key.title}, out of date") for key in found]
-    return tuple(key for key in (*found, boreholes.key(scene)) if key is not None)
+        color_keys = [key and replace(key, title=f"{key.title}, out of date") for key in color_keys]
+    return tuple(key for key in (*color_keys, boreholes.key(scene)) if key is not None)
 
 
 def legend_shares(scene, size):

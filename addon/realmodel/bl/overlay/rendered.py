@@ -30,21 +30,21 @@ def put(scene, draw=drawing_for, depsgraph=None):
     scale = max(size) / WIDTH
     view = np.linalg.inv(np.array(matrix.normalized(), np.float64))
     seen = View(projection, view, camera.data.type == "PERSP", (size[0] / scale, size[1] / scale))
-    found = draw(scene, seen)
-    if found is None:
+    drawing = draw(scene, seen)
+    if drawing is None:
         remove(scene)
         return
-    pixels = rasterize(found, scale, None)[::-1]
-    item = _plane(scene)
-    image = item.data.materials[0].node_tree.nodes[KEY].image
+    pixels = rasterize(drawing, scale, None)[::-1]
+    plane = _plane(scene)
+    image = plane.data.materials[0].node_tree.nodes[KEY].image
     if tuple(image.size) != (pixels.shape[1], pixels.shape[0]):
         image.scale(pixels.shape[1], pixels.shape[0])
     image.pixels.foreach_set(np.ascontiguousarray(pixels).ravel())
     image.update()
-    item.parent = camera
+    plane.parent = camera
     depth = max(1.01 * camera.data.clip_start, _NEAR * float(np.linalg.norm(view[:3, 3])))
-    item.data.vertices.foreach_set("co", _at_depth(projection, depth).astype(np.float32).ravel())
-    item.data.update()
+    plane.data.vertices.foreach_set("co", _at_depth(projection, depth).astype(np.float32).ravel())
+    plane.data.update()
 
 
 def _pixels(scene):
@@ -55,16 +55,16 @@ def _pixels(scene):
 
 def _at_depth(projection, depth):
     """(4, 3): the corners of the picture so far before the camera, in its axes."""
-    there = projection @ (0.0, 0.0, -depth, 1.0)
-    corners = np.column_stack([_CORNERS, np.full(4, there[2] / there[3]), np.ones(4)])
-    found = corners @ np.linalg.inv(projection).T
-    return found[:, :3] / found[:, 3:]
+    clip = projection @ (0.0, 0.0, -depth, 1.0)
+    corners = np.column_stack([_CORNERS, np.full(4, clip[2] / clip[3]), np.ones(4)])
+    homogeneous = corners @ np.linalg.inv(projection).T
+    return homogeneous[:, :3] / homogeneous[:, 3:]
 
 
 def _plane(scene):
-    item = next((item for item in scene.objects if KEY in item), None)
-    if item is not None:
-        return item
+    plane = next((obj for obj in scene.objects if KEY in obj), None)
+    if plane is not None:
+        return plane
     mesh = meshes.triangle_mesh("RealModel Overlay", np.zeros((4, 3)), np.array([[0, 1, 2], [0, 2, 3]]))
     layer = mesh.uv_layers.new(name=KEY)
     layer.data.foreach_set("uv", (_CORNERS[[0, 1, 2, 0, 2, 3]].ravel() + 1.0) / 2.0)
@@ -72,13 +72,13 @@ def _plane(scene):
     image[KEY] = True
     image.alpha_mode = "STRAIGHT"
     mesh.materials.append(_material(image))
-    item = bpy.data.objects.new(mesh.name, mesh)
-    item[KEY] = True
-    item.hide_viewport = True
+    plane = bpy.data.objects.new(mesh.name, mesh)
+    plane[KEY] = True
+    plane.hide_viewport = True
     for rays in ("diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
-        setattr(item, f"visible_{rays}", False)  # it lights nothing
-    scene.collection.objects.link(item)
-    return item
+        setattr(plane, f"visible_{rays}", False)  # it lights nothing
+    scene.collection.objects.link(plane)
+    return plane
 
 
 def _material(image):
@@ -103,10 +103,10 @@ def _material(image):
 
 def remove(scene):
     """Removes the overlay from the camera, with all data made for it."""
-    for item in [item for item in scene.objects if KEY in item]:
-        mesh, material = item.data, item.data.materials[0]
+    for plane in [obj for obj in scene.objects if KEY in obj]:
+        mesh, material = plane.data, plane.data.materials[0]
         image = material.node_tree.nodes[KEY].image
-        bpy.data.objects.remove(item)
+        bpy.data.objects.remove(plane)
         bpy.data.meshes.remove(mesh)
         bpy.data.materials.remove(material)
         bpy.data.images.remove(image)

@@ -38,9 +38,9 @@ def draw_for(scene, size, view, scale, margins=(0.0, 0.0, 0.0), projection=None)
     projection = view.window_matrix if projection is None else projection
     points = size[0] / scale, size[1] / scale
     picture = View(projection, view.view_matrix, view.is_perspective, points)
-    found = drawing_for(scene, picture, margins)
-    if found is not None:
-        draw_items(found, scale)
+    drawing = drawing_for(scene, picture, margins)
+    if drawing is not None:
+        draw_items(drawing, scale)
 
 
 def draw_items(drawing, scale):
@@ -48,26 +48,26 @@ def draw_items(drawing, scale):
     import gpu  # not there in Blender's background mode before 4.0
 
     if not _batches or _batches[-1][:2] != (drawing, scale):
-        kept = next((entry for entry in _batches if entry[:2] == (drawing, scale)), None)
-        _batches.append(kept or (drawing, scale, list(_prepared(drawing, scale))))
+        prepared = next((entry for entry in _batches if entry[:2] == (drawing, scale)), None)
+        _batches.append(prepared or (drawing, scale, list(_prepared(drawing, scale))))
         del _batches[:-_MOST_KEPT]
     shader = versions.colored_shader()
     gpu.state.blend_set("ALPHA")
-    for item in _batches[-1][2]:
-        if isinstance(item, Text):
-            _text(item, scale)
+    for element in _batches[-1][2]:
+        if isinstance(element, Text):
+            _text(element, scale)
         else:
-            item.draw(shader)
+            element.draw(shader)
     gpu.state.blend_set("NONE")
 
 
 def _prepared(drawing, scale):
     """Texts, and batches of the shapes between them."""
-    for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
+    for is_text, items in groupby(drawing.items, key=lambda element: isinstance(element, Text)):
         if is_text:
             yield from items
         else:
-            yield _batch([shape for item in items for shape in item_shapes(item)], scale)
+            yield _batch([shape for element in items for shape in item_shapes(element)], scale)
 
 
 def _batch(shapes, scale):
@@ -85,25 +85,25 @@ def _batch(shapes, scale):
     return batch_for_shader(shader, "TRIS", {"pos": places, "color": colors}, indices=indices)
 
 
-def _text(item, scale):
-    versions.text_size(_FONT, item.size * scale)
-    blf.color(_FONT, *(*item.color, 1.0)[:4])
-    left = item.x * scale - ANCHORS[item.anchor] * blf.dimensions(_FONT, item.text)[0]
-    blf.position(_FONT, left, item.y * scale, 0.0)
-    blf.draw(_FONT, item.text)
+def _text(text, scale):
+    versions.text_size(_FONT, text.size * scale)
+    blf.color(_FONT, *(*text.color, 1.0)[:4])
+    left = text.x * scale - ANCHORS[text.anchor] * blf.dimensions(_FONT, text.text)[0]
+    blf.position(_FONT, left, text.y * scale, 0.0)
+    blf.draw(_FONT, text.text)
 
 
 def _margins(area, scale):
     """What the toolbar at the left, the sidebar at the right, and the panel of the last operator in the lower
     left corner cover, in points."""
-    there = {region.type: region for region in area.regions if min(region.width, region.height) > 1}
-    low = there["HUD"].y + there["HUD"].height - there["WINDOW"].y if "HUD" in there else 0
+    regions = {region.type: region for region in area.regions if min(region.width, region.height) > 1}
+    low = regions["HUD"].y + regions["HUD"].height - regions["WINDOW"].y if "HUD" in regions else 0
     low = max(low, 0)  # it may have been moved out of the window
     if 2 * low > area.height:  # unfolded: a legend above it would have no room
         low = 0
     if not bpy.context.preferences.system.use_region_overlap:
         return 0.0, 0.0, low / scale
-    left, right = (there[kind].width if kind in there else 0 for kind in ("TOOLS", "UI"))
+    left, right = (regions[kind].width if kind in regions else 0 for kind in ("TOOLS", "UI"))
     return left / scale, right / scale, low / scale
 
 

@@ -62,14 +62,14 @@ def without_chatter():
     Its errors are raised as RuntimeError, too.
     """
     sys.stdout.flush()
-    kept = os.dup(1)
+    saved_stdout = os.dup(1)
     try:
         with open(os.devnull, "wb") as sink:
             os.dup2(sink.fileno(), 1)
             yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+        os.dup2(saved_stdout, 1)
+        os.close(saved_stdout)
 
 
 def _failed(path, error):
@@ -80,10 +80,10 @@ def _failed(path, error):
 
 def _remove_startup_objects(scene, project):
     """Remove every object and collection of the scene that does not belong to the model."""
-    keep = {item.name for item in project.all_objects}
-    for item in list(bpy.data.objects):
-        if item.name not in keep:
-            bpy.data.objects.remove(item)
+    keep = {obj.name for obj in project.all_objects}
+    for obj in list(bpy.data.objects):
+        if obj.name not in keep:
+            bpy.data.objects.remove(obj)
     for collection in list(scene.collection.children):
         if collection != project:
             bpy.data.collections.remove(collection)

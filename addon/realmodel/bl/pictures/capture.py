@@ -43,10 +43,10 @@ def _draw(context, path, size):
     """Draws the viewport into an offscreen picture."""
     import gpu
 
-    found = viewport(context)
-    if found is None:
+    viewport_parts = viewport(context)
+    if viewport_parts is None:
         raise OutputFailed(f"{path}: there is no 3D viewport to capture; open one")
-    _, region, space = found
+    _, region, space = viewport_parts
     view = space.region_3d
     view.update()  # its matrices may be of the last time it was drawn
     looking, frame = view.view_matrix.copy(), _window_matrix(region, view, size)
@@ -108,8 +108,8 @@ def _render(context, path, size):
     spaces = viewports.spaces(context)
     try:
         with picture.throw_away(scene.copy()) as stage:
-            for item in [item for item in stage.collection.objects if picture.KEY in item]:
-                stage.collection.objects.unlink(item)
+            for obj in [obj for obj in stage.collection.objects if picture.KEY in obj]:
+                stage.collection.objects.unlink(obj)
             stage.world = None
             picture.set_up(stage, points, size, spaces[0] if spaces else None, sun=None)
             picture.set_renderer(stage, path, size, _SAMPLES, picture.TIME_LIMIT)

@@ -22,13 +22,15 @@ _STARTUP_ENGINE = "BLENDER_EEVEE"  # how its name begins in each version
 
 def is_free(scene):
     """Whether no camera, lamp, world or renderer of a scene is of the user's making."""
-    own = [item for item in scene.objects if picture.KEY in item]
-    others = [item for item in scene.objects if item.type in ("CAMERA", "LIGHT") and item not in own]
+    picture_objects = [obj for obj in scene.objects if picture.KEY in obj]
+    others = [obj for obj in scene.objects if obj.type in ("CAMERA", "LIGHT") and obj not in picture_objects]
     if not all(map(_is_of_startup, others)):
         return False
-    if own:
+    if picture_objects:
         camera = scene.camera
-        return camera in own and _same(camera.get(picture.UNASKED, ()), _numbers(scene, own))
+        return camera in picture_objects and _same(
+            camera.get(picture.UNASKED, ()), _numbers(scene, picture_objects)
+        )
     world = scene.world
     is_startup_sky = world is None or (world.name == _STARTUP_WORLD and _same(_sky(world), _STARTUP_SKY))
     return is_startup_sky and scene.render.engine.startswith(_STARTUP_ENGINE)
@@ -37,23 +39,23 @@ def is_free(scene):
 def keep(scene):
     """Remembers how light and camera were set up, and leaves the startup file's lamp and cube out of
     pictures: on a small model the lamp is brighter than the sun."""
-    own = [item for item in scene.objects if picture.KEY in item]
-    scene.camera[picture.UNASKED] = _numbers(scene, own)
-    for item in scene.objects:
-        if item not in own and (item.type == "LIGHT" or _is_startup_cube(item)):
-            item.hide_render = True
+    picture_objects = [obj for obj in scene.objects if picture.KEY in obj]
+    scene.camera[picture.UNASKED] = _numbers(scene, picture_objects)
+    for obj in scene.objects:
+        if obj not in picture_objects and (obj.type == "LIGHT" or _is_startup_cube(obj)):
+            obj.hide_render = True
 
 
-def _is_of_startup(item):
-    name, location, rotation = _STARTUP[item.type]
-    is_plain = item.name == name and item.parent is None and item.animation_data is None
-    return is_plain and _same(item.location, location) and _same(item.rotation_euler, rotation)
+def _is_of_startup(obj):
+    name, location, rotation = _STARTUP[obj.type]
+    is_plain = obj.name == name and obj.parent is None and obj.animation_data is None
+    return is_plain and _same(obj.location, location) and _same(obj.rotation_euler, rotation)
 
 
-def _is_startup_cube(item):
-    if item.type != "MESH" or not _is_of_startup(item) or len(item.modifiers) or len(item.data.vertices) != 8:
+def _is_startup_cube(obj):
+    if obj.type != "MESH" or not _is_of_startup(obj) or len(obj.modifiers) or len(obj.data.vertices) != 8:
         return False
-    return _same(np.abs(meshes.mesh_coordinates(item.data)).ravel(), np.ones(24))
+    return _same(np.abs(meshes.mesh_coordinates(obj.data)).ravel(), np.ones(24))
 
 
 def _sky(world):
@@ -65,16 +67,16 @@ def _sky(world):
     return (*sky.inputs["Color"].default_value, sky.inputs["Strength"].default_value)
 
 
-def _numbers(scene, own):
+def _numbers(scene, picture_objects):
     """What users change of light and camera."""
-    found = [*(() if scene.world is None else _sky(scene.world)), float(scene.render.engine == "CYCLES")]
-    for item in own:
-        found += np.ravel(item.matrix_basis).tolist()
-        if item.type == "LIGHT":
-            found += [item.data.energy, *item.data.color]
-        elif item.type == "CAMERA":
-            found += [item.data.lens, float(item.data.type == "PERSP")]
-    return found
+    numbers = [*(() if scene.world is None else _sky(scene.world)), float(scene.render.engine == "CYCLES")]
+    for obj in picture_objects:
+        numbers += np.ravel(obj.matrix_basis).tolist()
+        if obj.type == "LIGHT":
+            numbers += [obj.data.energy, *obj.data.color]
+        elif obj.type == "CAMERA":
+            numbers += [obj.data.lens, float(obj.data.type == "PERSP")]
+    return numbers
 
 
 def _same(one, other):

@@ -88,7 +88,7 @@ def set_up(scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH,
 
 def turntable_of(scene):
     """The empty that is the parent of the camera of a scene's turntable, or None."""
-    return next((item for item in scene.objects if item.get(KEY) == TURNTABLE), None)
+    return next((obj for obj in scene.objects if obj.get(KEY) == TURNTABLE), None)
 
 
 def _remove_turntable(scene):
@@ -103,13 +103,13 @@ def _remove_turntable(scene):
 
 def _own(scene, kind, data):
     """The object of a kind that belongs to the picture of a scene; made if it does not exist."""
-    item = next((item for item in scene.objects if item.get(KEY) == kind), None)
-    if item is None:
+    obj = next((obj for obj in scene.objects if obj.get(KEY) == kind), None)
+    if obj is None:
         made = data()
-        item = bpy.data.objects.new(made.name, made)
-        item[KEY] = kind
-        scene.collection.objects.link(item)
-    return item
+        obj = bpy.data.objects.new(made.name, made)
+        obj[KEY] = kind
+        scene.collection.objects.link(obj)
+    return obj
 
 
 def _look_as(camera, space, reach):
@@ -176,8 +176,8 @@ def throw_away(scene):
         yield scene
     finally:
         bpy.data.scenes.remove(scene)
-        for store, known in zip(stores, before, strict=True):
-            for datablock in [datablock for datablock in store if datablock not in known]:
+        for store, earlier in zip(stores, before, strict=True):
+            for datablock in [datablock for datablock in store if datablock not in earlier]:
                 if isinstance(datablock, bpy.types.Image):
                     datablock.user_clear()  # Blender counts itself as a user of a render's result
                 store.remove(datablock)
@@ -234,13 +234,13 @@ def _opened(model):
     of_faces = np.minimum.reduceat(reach[model.face_vertices], model.face_offsets[:-1])
     for side in range(2):
         np.minimum.at(nearest, model.face_blocks[:, side], of_faces)
-    found = []
+    planes = []
     for share in _OPENED:
         offset = reach.max() - share * np.ptp(reach)
         areas = model.section(offset * ahead, ahead).area_by_block()
         met = areas[areas > _SEEN * areas.sum()]
-        found.append((np.count_nonzero(nearest[:-1] < offset), len(met), met.min(initial=np.inf), offset))
-    return model.cut_by_plane(max(found)[-1] * ahead, ahead).below
+        planes.append((np.count_nonzero(nearest[:-1] < offset), len(met), met.min(initial=np.inf), offset))
+    return model.cut_by_plane(max(planes)[-1] * ahead, ahead).below
 
 
 def camera_matrix(points, size, left=0.0, rotation=None):

@@ -29,10 +29,10 @@ def rename(row, old, new):
 def move(row, old, new):
     """Moves the picks at a place, (x, y, z) in model coordinates, to another."""
     picks = of_rock(row)
-    there = [pick for _, met in picks.values() for pick in met if tuple(pick[1]) == tuple(old)]
-    for pick in there:
+    picks_at_place = [pick for _, met in picks.values() for pick in met if tuple(pick[1]) == tuple(old)]
+    for pick in picks_at_place:
         pick[1] = [float(value) for value in new]
-    if there:
+    if picks_at_place:
         for _, met in picks.values():
             met.sort(key=lambda pick: -pick[1][2])
         store(row, picks)
@@ -42,9 +42,9 @@ def remove_at(row, places):
     """Removes the picks at some places (N, 3), and holes that have no others."""
     removed = {tuple(place) for place in places.tolist()}
     left = {
-        hole: [collar, kept]
+        hole: [collar, remaining]
         for hole, (collar, met) in of_rock(row).items()
-        if (kept := [pick for pick in met if tuple(pick[1]) not in removed])
+        if (remaining := [pick for pick in met if tuple(pick[1]) not in removed])
     }
     store(row, left)
 
@@ -66,22 +66,22 @@ def named_paths(row):
 def _paths_of(row):
     logs, _ = observed_blocks.shown(row)
     picked, ends = of_rock(row), ends_of(row)
-    found = {}
+    lines = {}
     for hole in dict.fromkeys((*picked, *logs)):
         collar, picks = picked.get(hole, (None, []))
         places = logs[hole].places.tolist() if hole in logs else [place for _, place in picks]
-        given = [*([] if collar is None else [collar]), *places, *([ends[hole]] if hole in ends else [])]
-        line = [place for n, place in enumerate(given) if n == 0 or place != given[n - 1]]
+        vertices = [*([] if collar is None else [collar]), *places, *([ends[hole]] if hole in ends else [])]
+        line = [place for n, place in enumerate(vertices) if n == 0 or place != vertices[n - 1]]
         if line:
-            found[hole] = line
-    return found
+            lines[hole] = line
+    return lines
 
 
 def keep_ends(row, ends):
     """Adds the ends of holes, as realmodel.core's Picks.ends, to those that a rock mass has."""
     if ends:
-        known = ends_of(row) | ends
-        row.hole_ends = {"holes": list(known), "places": np.array(list(known.values()), np.float64)}
+        all_ends = ends_of(row) | ends
+        row.hole_ends = {"holes": list(all_ends), "places": np.array(list(all_ends.values()), np.float64)}
 
 
 def ends_of(row):
@@ -94,13 +94,13 @@ def of_rock(row):
     """{hole: [collar or None, [[surface, place], ...]]} in model coordinates, the highest pick first."""
     if not row.hole_picks:
         return {}
-    found = {}
+    holes = {}
     for hole, surface, place in zip(*(row.hole_picks[name].tolist() for name in _ARRAYS), strict=True):
         if surface:
-            found[hole][1].append([surface, place])
+            holes[hole][1].append([surface, place])
         else:
-            found[hole] = [None if np.isnan(place).any() else place, []]
-    return found
+            holes[hole] = [None if np.isnan(place).any() else place, []]
+    return holes
 
 
 def store(row, holes):

@@ -27,7 +27,7 @@ def surfaces_of_rock(row, _context, _text):
 
 def series(row, _context, _text):
     """The series of the rock mass of a surface."""
-    return [each.name for each in settings.rock_of(row).series]
+    return [series_row.name for series_row in settings.rock_of(row).series]
 
 
 def all_surfaces(row, _context, _text):
@@ -47,7 +47,7 @@ def directions(_row, _context, _text):
 def faults(row, _context, _text):
     """The other faults, but for those at which this one ends already."""
     fault = row.id_data.path_resolve(row.path_from_id().rpartition(".ends_at[")[0])
-    taken = {fault.name, *(each.name for each in fault.ends_at if each != row)}
+    taken = {fault.name, *(end.name for end in fault.ends_at if end != row)}
     return [other.name for other in row.id_data.realmodel.faults if other.name not in taken]
 
 
@@ -60,8 +60,8 @@ def columns(row, _context, _text):
 
 def values(row, _context, _text):
     surface = settings.surface_of(row)
-    found = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)[:_MOST_VALUES]
-    return [reading_text.value_text(reading_text.value(value)) for value in found]
+    texts = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)[:_MOST_VALUES]
+    return [reading_text.value_text(reading_text.value(value)) for value in texts]
 
 
 def layers(row, _context, _text):
@@ -76,7 +76,7 @@ def _of_file(surface, ask, *arguments):
         return []
     if key not in _found:
         try:
-            _found[key] = ask(path, *(given or None for given in arguments))
+            _found[key] = ask(path, *(argument or None for argument in arguments))
         except RealModelError:
             return []
     return _found[key]

@@ -17,20 +17,25 @@ def of_model(model):
     if not model.structures.is_divided:
         return ""
     count = len(model.compartment_names)
-    kept = {
+    table = {
         "names": model.compartment_names,
         "volumes": {
-            block.name: np.bincount(model.cell_compartment[own], model.cell_volumes[own], count).tolist()
+            block.name: np.bincount(model.cell_compartment[rows], model.cell_volumes[rows], count).tolist()
             for number, block in enumerate(model.blocks)
-            if (own := np.flatnonzero(model.cell_block == number)).size
+            if (rows := np.flatnonzero(model.cell_block == number)).size
         },
         "centers": [_center(model, number) for number in range(count)],
         "faults": [
-            [each.fault, each.surface, each.mean_throw if each.is_found else None, each.mean_heave]
-            for each in displacements(model)
+            [
+                displacement.fault,
+                displacement.surface,
+                displacement.mean_throw if displacement.is_found else None,
+                displacement.mean_heave,
+            ]
+            for displacement in displacements(model)
         ],
     }
-    return json.dumps(kept)
+    return json.dumps(table)
 
 
 def _center(model, compartment):
@@ -57,5 +62,5 @@ def shifts(scene, amount):
 
 def names(scene):
     """The names of the compartments of a scene's model, in the order of their numbers."""
-    found = read(scene)
-    return [] if found is None else found["names"]
+    table = read(scene)
+    return [] if table is None else table["names"]

@@ -61,8 +61,12 @@ def next_color(scene):
 def for_surface(scene, name):
     """The ID of the property called so, for a surface of that name; one is added where there is none."""
     same = (row.id for row in scene.realmodel.library if row.name.casefold() == name.casefold())
-    found = next(same, None)
-    return add(scene, Property(free_id(scene), name, color=next_color(scene))).id if found is None else found
+    property_id = next(same, None)
+    return (
+        add(scene, Property(free_id(scene), name, color=next_color(scene))).id
+        if property_id is None
+        else property_id
+    )
 
 
 def remove_made(scene, surface):
@@ -109,9 +113,9 @@ def take_id(row):
         for block in scene.realmodel.results:
             if block.property_id == old:
                 block.property_id = row.id
-    for item in scene.objects:
-        if item.get(materials.KEY) == old:
-            item[materials.KEY] = row.id
+    for obj in scene.objects:
+        if obj.get(materials.KEY) == old:
+            obj[materials.KEY] = row.id
     return True
 
 
@@ -132,22 +136,22 @@ def update_materials(scene):
 def material_of(scene, property_id):
     """The material of a property: that of the scene's model, else one that nothing uses, else a new one.
     Raises InputRefused for a library that is not valid."""
-    known = scene_materials(scene, property_id) or [
+    candidates = scene_materials(scene, property_id) or [
         m for m in bpy.data.materials if m.get(materials.KEY) == property_id and not (m.users or m.library)
     ]
-    if known:
-        return known[0]
+    if candidates:
+        return candidates[0]
     name, color = materials.name_and_color(library_of(scene), property_id)
     return materials.new_material(name, property_id, color)
 
 
 def scene_materials(scene, property_id):
     """The materials of a property that the model's blocks and sections use."""
-    found = {}
-    for item in [*(block.object for block in scene.realmodel.results), *model_tree.sections(scene)]:
-        if item is None or item.type != "MESH":
+    materials_by_name = {}
+    for obj in [*(block.object for block in scene.realmodel.results), *model_tree.sections(scene)]:
+        if obj is None or obj.type != "MESH":
             continue
-        for material in item.data.materials:
+        for material in obj.data.materials:
             if material is not None and material.get(materials.KEY) == property_id:
-                found[material.name_full] = material
-    return list(found.values())
+                materials_by_name[material.name_full] = material
+    return list(materials_by_name.values())

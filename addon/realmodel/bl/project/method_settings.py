@@ -39,14 +39,14 @@ def value(row, key, settings):
         parts = {part: content for part, content in parts.items() if content is not None}
         return texts.columns(parts) if setting.kind == "columns" else parts or None
     if setting.kind in NUMBERS:
-        given = number(row, name)
+        entry = number(row, name)
     else:
         read = texts.READ.get(setting.kind)
-        given = getattr(row, name) if read is None else read(getattr(row, name))
+        entry = getattr(row, name) if read is None else read(getattr(row, name))
     is_none = (
-        given == "" or (given == "NONE" and "" in setting.words) or (setting.zero_is_none and given == 0)
+        entry == "" or (entry == "NONE" and "" in setting.words) or (setting.zero_is_none and entry == 0)
     )
-    return None if is_none and setting.kind != "name" else given
+    return None if is_none and setting.kind != "name" else entry
 
 
 def values(row, entry, shape=None):
@@ -119,12 +119,12 @@ def dips_unused(row):
 
 def options_of(row):
     """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
-    known = METHODS[row.method].options
-    options = {key: given for key, given in _other_options(row.other_options) if key in known}
-    for key, setting in known.items():
-        given = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
-        if key not in options and given is not None and given != setting.default:
-            options[key] = given
+    declared = METHODS[row.method].options
+    options = {key: option for key, option in _other_options(row.other_options) if key in declared}
+    for key, setting in declared.items():
+        option = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
+        if key not in options and option is not None and option != setting.default:
+            options[key] = option
     return options
 
 
@@ -136,12 +136,12 @@ def set_options(row, method, options):
         for key in DEFAULT_OPTIONS.keys() & METHODS[method].options.keys():  # of a row without a method
             set_value(row, key, OPTIONS, METHODS[method].options[key].default)
     others = {}
-    for key, given in options.items():
-        if key == "variogram" and given is not None:
-            set_variogram(row, given)
-        elif OPTIONS[key].kind != "surface" or given is None or np.isscalar(given):
-            set_value(row, key, OPTIONS, given)
-        elif isinstance(heights := surface(key, given), tuple):
+    for key, option in options.items():
+        if key == "variogram" and option is not None:
+            set_variogram(row, option)
+        elif OPTIONS[key].kind != "surface" or option is None or np.isscalar(option):
+            set_value(row, key, OPTIONS, option)
+        elif isinstance(heights := surface(key, option), tuple):
             others[f"{key} vertices"], others[f"{key} triangles"] = heights
         else:
             others[key] = heights
@@ -160,14 +160,14 @@ def _variogram(row):
     """The variogram as in a project file; None where it is to be fitted."""
     if row.fit_variogram:
         return None
-    found = value(row, "variogram", OPTIONS)
+    variogram = value(row, "variogram", OPTIONS)
     if not len(row.structures):
-        return found
+        return variogram
     structures = [{key: value(part, key, STRUCTURE) for key in STRUCTURE} for part in row.structures]
     for part in structures:
         if part["anisotropy"] is None:
             del part["anisotropy"]
-    return {"nugget": found["nugget"], "structures": structures}
+    return {"nugget": variogram["nugget"], "structures": structures}
 
 
 def set_variogram(row, given):

@@ -24,21 +24,21 @@ def keep(row, observations):
 def add(row, observations):
     """Adds Observations to those that a rock mass has. Those of a hole, or of a place, take the place of the
     ones that it had. Surfaces whose points are still to be chosen are taken from the observations."""
-    known = of_rock(row)
+    earlier = of_rock(row)
     with settings.filling():
         for surface in row.surfaces:
             if surface.source == "POINTS_FILE" and not (surface.filepath or surface.stored):
                 surface.source = "NONE"
-    if known is None:
+    if earlier is None:
         keep(row, observations)
         return
     places = {tuple(place) for place in observations.places.tolist()}
     again = np.where(
-        known.holes == "",
-        [tuple(place) in places for place in known.places.tolist()],
-        np.isin(known.holes, observations.holes),
+        earlier.holes == "",
+        [tuple(place) in places for place in earlier.places.tolist()],
+        np.isin(earlier.holes, observations.holes),
     )
-    keep(row, Observations.joined([known.some(~again), observations]))
+    keep(row, Observations.joined([earlier.some(~again), observations]))
 
 
 def of_rock(row):
@@ -48,18 +48,18 @@ def of_rock(row):
 
 def rename(row, old, new):
     """Gives the blocks beneath a surface, or a body, its new name."""
-    found = of_rock(row)
-    if found is None:
+    observations = of_rock(row)
+    if observations is None:
         return
-    blocks, on = (np.where(names == old, new, names) for names in (found.blocks, found.on))
-    if (blocks != found.blocks).any() or (on != found.on).any():
-        keep(row, replace(found, blocks=blocks, on=on))
+    blocks, on = (np.where(names == old, new, names) for names in (observations.blocks, observations.on))
+    if (blocks != observations.blocks).any() or (on != observations.on).any():
+        keep(row, replace(observations, blocks=blocks, on=on))
 
 
 def places_of(row):
     """(N, 3) all places that are observed in a rock mass, in model coordinates. Raises InputRefused."""
-    found = of_rock(row)
-    return np.empty((0, 3)) if found is None else found.places
+    observations = of_rock(row)
+    return np.empty((0, 3)) if observations is None else observations.places
 
 
 def shown(row):
@@ -68,27 +68,29 @@ def shown(row):
     digest = row.observations.digest
     if digest not in _shown:
         try:
-            found = of_rock(row)
+            observations = of_rock(row)
         except RealModelError:
-            found = None
-        _shown[digest] = _divided(Observations.joined([]) if found is None else found)
+            observations = None
+        _shown[digest] = _divided(Observations.joined([]) if observations is None else observations)
     return _shown[digest]
 
 
 def _divided(observations):
-    found = observations.along_holes()
-    starts = np.flatnonzero(np.r_[True, found.holes[1:] != found.holes[:-1]]) if len(found) else []
-    logs, others = {}, np.ones(len(found), bool)
-    for begin, end in pairwise([*starts, len(found)]):
-        if end - begin > 1 and found.holes[begin]:
-            logs[str(found.holes[begin])] = found.some(np.arange(begin, end))
+    ordered = observations.along_holes()
+    starts = np.flatnonzero(np.r_[True, ordered.holes[1:] != ordered.holes[:-1]]) if len(ordered) else []
+    logs, others = {}, np.ones(len(ordered), bool)
+    for begin, end in pairwise([*starts, len(ordered)]):
+        if end - begin > 1 and ordered.holes[begin]:
+            logs[str(ordered.holes[begin])] = ordered.some(np.arange(begin, end))
             others[begin:end] = False
-    return logs, found.places[others]
+    return logs, ordered.places[others]
 
 
 def units_of(scene, row, names=None):
     """UnitNames of a rock mass, or of one that is not there yet. names: {name in tables: its name here}."""
-    surfaces = [] if row is None else [Surface(each.name, block=each.block or None) for each in row.surfaces]
+    surfaces = (
+        [] if row is None else [Surface(entry.name, block=entry.block or None) for entry in row.surfaces]
+    )
     bodies = [body.name for body in scene.realmodel.bodies]
     blocks = Rock("", surfaces).block_names()
-    return UnitNames([each.name for each in surfaces], blocks, bodies, names or {})
+    return UnitNames([surface.name for surface in surfaces], blocks, bodies, names or {})

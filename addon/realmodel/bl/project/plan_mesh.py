@@ -84,11 +84,11 @@ def _sizes(entry, depsgraph, origin):
 
 
 def _constraints(row, depsgraph, origin):
-    found = list(row.constraints_stored.values())
+    constraints = list(row.constraints_stored.values())
     for entry in row.constraints:
         if entry.object is not None:
-            found += [line + origin[:2] for line in shapes.plan_lines(entry.object, depsgraph)]
-    return found
+            constraints += [line + origin[:2] for line in shapes.plan_lines(entry.object, depsgraph)]
+    return constraints
 
 
 def fill(row, rock):
@@ -111,8 +111,8 @@ def _fill_size(row, entry):
 
 def add_constraints(row, lines):
     """Stores further lines (N, 2) and points (1, 2), in model coordinates."""
-    kept = [*row.constraints_stored.values(), *(np.asarray(line, np.float64) for line in lines)]
-    row.constraints_stored = {f"constraint{n}": line for n, line in enumerate(kept)}
+    constraints = [*row.constraints_stored.values(), *(np.asarray(line, np.float64) for line in lines)]
+    row.constraints_stored = {f"constraint{n}": line for n, line in enumerate(constraints)}
 
 
 def stored_constraints(row):
@@ -123,6 +123,6 @@ def stored_constraints(row):
 
 def objects(row):
     """The objects of the scene that the mesh depends on."""
-    found = [entry.object for entry in row.constraints]
-    found += [entry.object for entry in row.sizes if entry.at == "OBJECT"]
-    return [item for item in found if item is not None]
+    candidates = [entry.object for entry in row.constraints]
+    candidates += [entry.object for entry in row.sizes if entry.at == "OBJECT"]
+    return [obj for obj in candidates if obj is not None]

@@ -85,10 +85,10 @@ def in_world(scene, places):
 
 def user_objects(scene):
     """The objects of the user that a model is made from: where they stand fixes its origin."""
-    found = [row.region for row in scene.realmodel.rocks]
-    found += [item for row in scene.realmodel.rocks for item in plan_mesh.objects(row)]
-    found += [row.object for _, row in settings.interface_rows(scene) if row.source in settings.OF_OBJECTS]
-    return [item for item in found if item is not None]
+    objects = [row.region for row in scene.realmodel.rocks]
+    objects += [obj for row in scene.realmodel.rocks for obj in plan_mesh.objects(row)]
+    objects += [row.object for _, row in settings.interface_rows(scene) if row.source in settings.OF_OBJECTS]
+    return [obj for obj in objects if obj is not None]
 
 
 def absolute(path):
@@ -154,15 +154,15 @@ def files(scene):
     return [path for path in map(absolute, paths) if path is not None]
 
 
-def _is_to_be_read(source, composed, place, entry, named, path, kept):
+def _is_to_be_read(source, composed, place, entry, named, path, stored_stamp):
     """Whether the file of an entry is to be read, or the data are used that the .blend has stored of it.
-    named: the entry as its settings name the file. kept: the stamp of the file that the stored data are of;
-    None where there are none."""
+    named: the entry as its settings name the file. stored_stamp: the stamp of the file that the
+    stored data are of; None where there are none."""
     now = stored_arrays.file_stamp(path)
-    is_read = kept is None or (source.whole and bool(now) and now != kept)
+    is_read = stored_stamp is None or (source.whole and bool(now) and now != stored_stamp)
     if is_read:
         composed.read[place] = now
-    composed.files[id(entry)] = named, now if is_read else kept
+    composed.files[id(entry)] = named, now if is_read else stored_stamp
     return is_read
 
 
@@ -210,8 +210,8 @@ def _stored_rings(source, composed, number, rock, row):
     if path is not None:
         named = copy.copy(rock)
         named.region = path
-        kept = row.region_stamp if row.region_stored else None
-        if _is_to_be_read(source, composed, (number, None), rock, named, path, kept):
+        stored_stamp = row.region_stamp if row.region_stored else None
+        if _is_to_be_read(source, composed, (number, None), rock, named, path, stored_stamp):
             rock.region = path
             return None
     if not row.region_stored:
@@ -271,8 +271,8 @@ def _shape(source, composed, place, surface, row):
         _from_object(source, composed, place, surface, row)
         return
     if row.interface_digest and in_use(row.interface):
-        given, triangles = shapes.triangulation(row.interface, source.depsgraph)
-        if shapes.digest(given, triangles) != row.interface_digest:
+        vertices, triangles = shapes.triangulation(row.interface, source.depsgraph)
+        if shapes.digest(vertices, triangles) != row.interface_digest:
             if isinstance(surface, Surface) and series_settings.is_level_set(row):
                 what = f"its interface was edited, but it is a level set of series '{row.series}'"
                 raise InputRefused(
@@ -283,7 +283,7 @@ def _shape(source, composed, place, surface, row):
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
                 _as_ready(surface)
             base = _made_of(source.scene, place, row)
-            _take_mesh(composed, surface, row.interface, given, triangles, base)
+            _take_mesh(composed, surface, row.interface, vertices, triangles, base)
             structure_settings.clear_extension(surface)
             return
     if of_ground:
@@ -296,8 +296,8 @@ def _shape(source, composed, place, surface, row):
     if path is not None:
         named = copy.copy(surface)
         name_file(named, row, path)
-        kept = row.stored_stamp if stored else None
-        is_read = _is_to_be_read(source, composed, place, surface, named, path, kept)
+        stored_stamp = row.stored_stamp if stored else None
+        is_read = _is_to_be_read(source, composed, place, surface, named, path, stored_stamp)
     if is_read:
         name_file(surface, row, path)
     elif stored:
@@ -377,9 +377,9 @@ def _from_object(source, composed, place, surface, row):
         return
     if settings.kind_of(row) == "surface" and not row.object.modifiers:
         shapes.require_open(row.object)
-    given, triangles = shapes.triangulation(row.object, source.depsgraph)
+    vertices, triangles = shapes.triangulation(row.object, source.depsgraph)
     composed.objects.add(place)
-    _take_mesh(composed, surface, row.object, given, triangles, row.stored_mesh)
+    _take_mesh(composed, surface, row.object, vertices, triangles, row.stored_mesh)
 
 
 def _lines_of_object(source, composed, fault, row):
@@ -406,13 +406,13 @@ def _made_of(scene, place, row):
     return {"vertices": vertices, "triangles": triangles}
 
 
-def _take_mesh(composed, surface, item, given, triangles, base):
+def _take_mesh(composed, surface, obj, vertices, triangles, base):
     if not len(triangles):
-        raise InputRefused(f"object '{item.name}' has no faces", advice="choose a mesh that has faces")
+        raise InputRefused(f"object '{obj.name}' has no faces", advice="choose a mesh that has faces")
     if hasattr(surface, "points"):
         surface.points = None
     surface.vertices = shapes.with_full_digits(
-        given, triangles, composed.origin, base.get("vertices"), base.get("triangles")
+        vertices, triangles, composed.origin, base.get("vertices"), base.get("triangles")
     )
     surface.triangles = triangles
 
@@ -420,8 +420,8 @@ def _take_mesh(composed, surface, item, given, triangles, base):
 def oldest_first(items, depsgraph):
     """Mesh objects by the mean height of their vertices: for surfaces in sequence, their order in age."""
 
-    def mean_height(item):
-        heights = shapes.points(item, depsgraph)[:, 2]
+    def mean_height(obj):
+        heights = shapes.points(obj, depsgraph)[:, 2]
         return float(heights.mean()) if len(heights) else 0.0
 
     return sorted(items, key=mean_height)
@@ -429,12 +429,12 @@ def oldest_first(items, depsgraph):
 
 def read_project(composed):
     """The project with arrays in the place of the files that it still names. Raises InputRefused."""
-    given = composed.project
+    project = composed.project
     if not composed.read:
-        return given
-    inputs = run(lambda work: read_rocks(work, given))
-    faults, bodies, _ = run(lambda work: read_structures(work, given))
-    return replace(given, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+        return project
+    inputs = run(lambda work: read_rocks(work, project))
+    faults, bodies, _ = run(lambda work: read_structures(work, project))
+    return replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
 
 
 def in_use(item):
@@ -516,8 +516,8 @@ def fill_surface(row, surface):
     """Sets a surface's row from a realmodel.core.Surface."""
     with settings.filling():
         method_settings.set_values(row, Surface, surface)
-        given = surface.method is not None or surface.options
-        row.use_continuation = bool(given) and not surface.interpolated
+        has_method = surface.method is not None or surface.options
+        row.use_continuation = bool(has_method) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
         surface_dips.keep(row, surface.own_dips())

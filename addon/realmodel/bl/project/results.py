@@ -38,8 +38,8 @@ def row_chosen(group, context):
         return
     if context.mode != "OBJECT":
         return  # an edit under way is not to be left for it
-    for item in layer.objects:
-        item.select_set(item == chosen)
+    for obj in layer.objects:
+        obj.select_set(obj == chosen)
     layer.objects.active = chosen
 
 

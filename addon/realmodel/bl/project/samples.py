@@ -52,12 +52,12 @@ def enum_items(_operator, _context):
 
 def label(name):
     """The label of an example."""
-    return next((item[1] for item in enum_items(None, None) if item[0] == name), name)
+    return next((entry[1] for entry in enum_items(None, None) if entry[0] == name), name)
 
 
 def description(name):
     """What an example shows; empty where that is not known."""
-    return next((item[2] for item in enum_items(None, None) if item[0] == name), "")
+    return next((entry[2] for entry in enum_items(None, None) if entry[0] == name), "")
 
 
 def project_file(name):

@@ -17,10 +17,10 @@ def fill(rock, series):
     """Fills the rows of a rock mass from realmodel.core.Series whose dips are arrays."""
     rock.series.clear()
     rock.active_series = 0
-    for each in series:
+    for entry in series:
         row = rock.series.add()
-        method_settings.set_values(row, Series, each)
-        surface_dips.keep(row, each.dips)
+        method_settings.set_values(row, Series, entry)
+        surface_dips.keep(row, entry.dips)
 
 
 def of_rock(rock):
@@ -74,17 +74,17 @@ def refusal(rock, row):
     surfaces = [_outline_of(surface) for surface in rock.surfaces]
     has_region = rock.region is not None or rock.region_file or rock.region_stored
     try:
-        given = Rock(
+        core_rock = Rock(
             rock.name,
             surfaces,
             region=_STANDS_FOR if has_region else None,
             base_elevation=method_settings.value(rock, "base_elevation", ROCK),
             series=[_series(row, surface_dips.outline_of)],
         )
-        check_series(given)
+        check_series(core_rock)
         for number in members(rock, row) if row.kind == FIELD else ():
             surface = surfaces[number]
-            check_level_set(given, surface, lambda *told, own=surface.item: _refused(own, *told))
+            check_level_set(core_rock, surface, lambda *told, own=surface.item: _refused(own, *told))
     except InputRefused as error:
         about = f"{error.item}: " if (error.item or "").startswith("surface") else ""
         return f"{about}{error.what}; {error.advice}" if error.advice else f"{about}{error.what}"
@@ -105,5 +105,5 @@ def _outline_of(row):
     return surface
 
 
-def _refused(item, what, _key=None, advice=None):
-    return InputRefused(what, item=item, advice=advice)
+def _refused(label, what, _key=None, advice=None):
+    return InputRefused(what, item=label, advice=advice)

@@ -223,7 +223,7 @@ def plain(value):
 def set_number(row, key, value):
     """Sets a number of a row, and keeps all its digits."""
     setattr(row, key, value)
-    exact = {name: kept for name, kept in row.exact.items() if name != key}
+    exact = {name: exact_value for name, exact_value in row.exact.items() if name != key}
     if plain(getattr(row, key)) != float(value):
         exact[key] = float(value)
     row.exact = exact

@@ -67,7 +67,7 @@ def fill(scene, project):
     group.bodies.clear()
     group.active_fault = group.active_body = 0
     group.structure_kind = "BODY" if project.bodies and not project.faults else "FAULT"
-    for fault in (each.traced or each for each in project.faults):
+    for fault in (entry.traced or entry for entry in project.faults):
         row = group.faults.add()
         method_settings.set_values(row, Fault, fault)
         _fill_shape(row, fault, project.units)

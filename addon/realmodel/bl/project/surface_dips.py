@@ -17,9 +17,9 @@ def keep(row, dips):
 def add(row, dips):
     """Adds Dips, or SpaceDips, to those that a row has; together with Dips all are of sheets. Raises
     InputRefused where sheets would get a vertical or an overturned one."""
-    parts = [each for each in (of_row(row), dips) if each is not None]
-    if any(isinstance(each, Dips) for each in parts):
-        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
+    parts = [part for part in (of_row(row), dips) if part is not None]
+    if any(isinstance(part, Dips) for part in parts):
+        flat = [part if isinstance(part, Dips) else part.checked().of_sheets() for part in parts]
         keep(row, Dips.joined(flat))
     else:
         keep(row, SpaceDips.joined(parts))

@@ -14,7 +14,7 @@ def of_model(model):
     known), variogram (as a project file writes it, where one was fitted) and share (of the surface itself;
     null where the region cuts it off). Of faults and bodies, which follow, area and share are null."""
     areas = _surviving_areas(model)
-    found, number = [], 0
+    texts, number = [], 0
     for rock in model.project.rocks:
         for surface in rock.surfaces:
             vertices, triangles = model.surface(number)
@@ -22,7 +22,7 @@ def of_model(model):
             whole = 0.0
             if surface.interpolated or rock.region is None:  # each sheet goes on beyond its faults
                 sheets = [triangles] if model.lacks_project else model.sheet_triangles(number)
-                whole = max(plan_area(vertices, each) for each in sheets)
+                whole = max(plan_area(vertices, sheet) for sheet in sheets)
             figures = {
                 "points": len(surface.points) if surface.points is not None else None,
                 "triangles": len(triangles),
@@ -33,25 +33,25 @@ def of_model(model):
                 "variogram": _fitted(model.interpolations[number]),
                 "share": min(float(areas[number]) / whole, 1.0) if whole else None,
             }
-            found.append(json.dumps(figures))
+            texts.append(json.dumps(figures))
             number += 1
     for fault_or_body in range(number, len(model.surface_names)):
         vertices, triangles = model.surface(fault_or_body)
         low, high = vertices[:, 2].min(), vertices[:, 2].max()
         figures = {"points": None, "triangles": len(triangles), "low": float(low), "high": float(high)}
-        found.append(json.dumps(figures | {"area": None, "share": None}))
-    return found
+        texts.append(json.dumps(figures | {"area": None, "share": None}))
+    return texts
 
 
 def _fitted(result):
-    found = result.variogram if result is not None else None
-    return found.settings() if found is not None and found.fitted else None
+    variogram = result.variogram if result is not None else None
+    return variogram.settings() if variogram is not None and variogram.fitted else None
 
 
 def _most_deviation(variance):
     """The largest standard deviation of heights; None where none is known."""
-    known = variance[np.isfinite(variance)]
-    return float(np.sqrt(max(known.max(), 0.0))) if len(known) else None
+    finite = variance[np.isfinite(variance)]
+    return float(np.sqrt(max(finite.max(), 0.0))) if len(finite) else None
 
 
 def read(row):

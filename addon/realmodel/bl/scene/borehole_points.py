@@ -18,9 +18,9 @@ def give(scene, rock, picks, add_surfaces=False, units=()):
     too. Returns warnings about unused points, and about their order. Raises InputRefused.
     """
     points = picks.points
-    given = {row.name for row in rock.surfaces}
-    new = [name for name in dict.fromkeys((*points, *units)) if name not in given]
-    own = {row.name: own_points(scene, row) for row in rock.surfaces if row.name in points}
+    surface_names = {row.name for row in rock.surfaces}
+    new = [name for name in dict.fromkeys((*points, *units)) if name not in surface_names]
+    surface_points = {row.name: own_points(scene, row) for row in rock.surfaces if row.name in points}
     warnings = []
     with settings.filling():
         if add_surfaces:
@@ -32,18 +32,18 @@ def give(scene, rock, picks, add_surfaces=False, units=()):
                 row.property_id = library_rows.for_surface(scene, name)
                 row.block = name if name in units else ""
                 if name in points:
-                    own[name] = np.empty((0, 3))
+                    surface_points[name] = np.empty((0, 3))
         else:
             warnings += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
         for row in rock.surfaces:  # Blender may have moved all of them when some were added
-            if own.get(row.name) is not None:
-                keep_points(row, np.concatenate([own[row.name], points[row.name]]))
+            if surface_points.get(row.name) is not None:
+                keep_points(row, np.concatenate([surface_points[row.name], points[row.name]]))
             off = picks.switched_off.get(row.name)
             if off is not None and row.source == "POINTS_FILE":
                 keep_left_out(row, np.concatenate([left_out(row), off]))
         warnings += [
             f"'{name}' is made of an object or a mesh, and takes no points from boreholes"
-            for name, array in own.items()
+            for name, array in surface_points.items()
             if array is None
         ]
         rock.active_surface = len(rock.surfaces) - 1
@@ -63,11 +63,11 @@ def own_points(scene, row):
         return np.empty((0, 3))
     if row.source != "POINTS_FILE":
         return None
-    found = data_objects.read_points(scene, row)
-    if found is None:
+    points = data_objects.read_points(scene, row)
+    if points is None:
         return np.empty((0, 3))
-    own = Surface(row.name, points=found, contacts=row.stored.get("contacts")).own_points()
-    return np.empty((0, 3)) if own is None else own
+    without_contacts = Surface(row.name, points=points, contacts=row.stored.get("contacts")).own_points()
+    return np.empty((0, 3)) if without_contacts is None else without_contacts
 
 
 def keep_points(row, points):

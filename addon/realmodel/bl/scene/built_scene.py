@@ -83,11 +83,11 @@ def prepare(model, composed, stage=None, threads=0):
     for surface, place in enumerate(_places(model.project)):
         if not composed.from_object(place):
             vertices, triangles = model.surface(surface)
-            given = offsets_from(origin, vertices)
+            offsets = offsets_from(origin, vertices)
             triangles = meshes.without_repeated_corners(triangles)
-            digest = shapes.digest(given, triangles)
+            digest = shapes.digest(offsets, triangles)
             is_surface = model.surface_kind[surface] == 0
-            shape = polygon_mesh.of_triangles(given, triangles, smooth=bool(is_surface))
+            shape = polygon_mesh.of_triangles(offsets, triangles, smooth=bool(is_surface))
             prepared.interfaces[place] = (shape, digest)
             if is_surface:
                 prepared.attributes[place] = model.surface_attributes(surface)
@@ -107,8 +107,8 @@ def prepare(model, composed, stage=None, threads=0):
     if stage is not None:
         at_stage = build_stage(model, stage, cells="blocks")
         made = polygon_mesh.of_blocks(at_stage, origin, threads, compartments=model.compartment_names)
-        found = block_shapes.by_name(at_stage, made)
-        prepared.stage = (stage, at_stage, found)
+        named_shapes = block_shapes.by_name(at_stage, made)
+        prepared.stage = (stage, at_stage, named_shapes)
     return prepared
 
 
@@ -156,24 +156,24 @@ def check_modes(scene, prepared=None):
     """Raises BuildFailed where an object whose mesh is to be replaced is being edited: Blender would keep its
     mesh as it is. prepared: as for `put`, to look at the interfaces too."""
     for row in scene.realmodel.results:
-        item = row.object
-        if item is not None and item.mode != "OBJECT":
+        obj = row.object
+        if obj is not None and obj.mode != "OBJECT":
             raise BuildFailed(
-                f"block '{item.name}' is in {_mode_name(item)}, and a build replaces the meshes of blocks; "
+                f"block '{obj.name}' is in {_mode_name(obj)}, and a build replaces the meshes of blocks; "
                 "leave the mode (Tab), then build again"
             )
     for place, (_, digest) in prepared.interfaces.items() if prepared is not None else ():
         row = settings.row_at(scene, place)
-        item = _interface(row)
-        if item is not None and item.mode != "OBJECT" and digest != row.interface_digest:
+        obj = _interface(row)
+        if obj is not None and obj.mode != "OBJECT" and digest != row.interface_digest:
             raise BuildFailed(
-                f"interface '{item.name}' is in {_mode_name(item)}, and its heights have become others; "
+                f"interface '{obj.name}' is in {_mode_name(obj)}, and its heights have become others; "
                 "leave the mode (Tab), then build again"
             )
 
 
-def _mode_name(item):
-    return item.bl_rna.properties["mode"].enum_items[item.mode].name.lower()
+def _mode_name(obj):
+    return obj.bl_rna.properties["mode"].enum_items[obj.mode].name.lower()
 
 
 def write_model(scene, model, project=None):
@@ -240,8 +240,8 @@ def move_helpers(scene, moved):
     items = model_tree.sections(scene)
     if (plane := scene.realmodel.view.plane) is not None and plane.get(model_tree.TAG) == "view":
         items.append(plane)
-    for item in items:
-        item.location = np.array(item.location) + moved
+    for obj in items:
+        obj.location = np.array(obj.location) + moved
     data_objects.place(scene)
 
 
@@ -265,9 +265,9 @@ def _palette(scene, model, created):
     """The material of each property that a block has, and the materials to be renamed or recolored."""
     palette, updates = {}, []
     for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
-        there = len(bpy.data.materials)
+        count = len(bpy.data.materials)
         palette[property_id] = library_rows.material_of(scene, property_id)
-        if len(bpy.data.materials) > there:
+        if len(bpy.data.materials) > count:
             created.append(palette[property_id])
         name, color = materials.name_and_color(model.project.library, property_id)
         updates.append((name, color, palette[property_id]))
@@ -282,24 +282,24 @@ def _interface(row):
 def _new_interfaces(scene, prepared, composed, created):
     """For each place the object that will be the interface, with a new mesh if it needs one: (object, mesh or
     None, digest)."""
-    found = {}
+    interfaces = {}
     for place, row in settings.interface_rows(scene):
-        own = _interface(row)
+        obj = _interface(row)
         if composed.from_object(place):
-            found[place] = (own, None, "")
+            interfaces[place] = (obj, None, "")
             continue
         shape, digest = prepared.interfaces[place]
         mesh = None
-        if own is None or digest != row.interface_digest:
+        if obj is None or digest != row.interface_digest:
             mesh = meshes.new_mesh(row.name, shape)
             created.append(mesh)
             if place in prepared.attributes:
                 uncertainty.add_attributes(mesh, prepared.attributes[place])
-        if own is None:
-            own = bpy.data.objects.new(row.name, mesh)
-            created.append(own)
-        found[place] = (own, mesh, digest)
-    return found
+        if obj is None:
+            obj = bpy.data.objects.new(row.name, mesh)
+            created.append(obj)
+        interfaces[place] = (obj, mesh, digest)
+    return interfaces
 
 
 def _settle_edited(scene, composed):
@@ -314,25 +314,25 @@ def _settle_edited(scene, composed):
 
 def _new_blocks(scene, prepared, created, in_place):
     """For each block of the model (object, new mesh or None to be updated in place), None for absent ones."""
-    known = {(row.rock, row.name): row.object for row in scene.realmodel.results}
-    model, found = prepared.model, []
+    objects_by_name = {(row.rock, row.name): row.object for row in scene.realmodel.results}
+    model, blocks = prepared.model, []
     for block, shape in zip(model.blocks, prepared.blocks, strict=True):
         if shape is None:
-            found.append(None)
+            blocks.append(None)
             continue
-        item = known.get((model.project.rocks[block.rock].name, block.name))
-        if item is not None and (item.type != "MESH" or item.library is not None):
-            item = None
-        if item is not None and in_place and item.mode == "OBJECT" and item.data.users == 1:
-            found.append((item, None))
+        obj = objects_by_name.get((model.project.rocks[block.rock].name, block.name))
+        if obj is not None and (obj.type != "MESH" or obj.library is not None):
+            obj = None
+        if obj is not None and in_place and obj.mode == "OBJECT" and obj.data.users == 1:
+            blocks.append((obj, None))
             continue
         mesh = meshes.new_mesh(block.name, shape)
         created.append(mesh)
-        if item is None:
-            item = bpy.data.objects.new(block.name, mesh)
-            created.append(item)
-        found.append((item, mesh))
-    return found
+        if obj is None:
+            obj = bpy.data.objects.new(block.name, mesh)
+            created.append(obj)
+        blocks.append((obj, mesh))
+    return blocks
 
 
 def _tree(scene, project):
@@ -346,8 +346,8 @@ def _tree(scene, project):
         parent = _collection(scene, top, row, "collection", row.name, tags)
         pair = []
         for kind in ("interfaces", "blocks"):
-            own = tags | {model_tree.TAG: kind}
-            pair.append(_collection(scene, parent, row, kind, f"{row.name} {kind}", own))
+            kind_tags = tags | {model_tree.TAG: kind}
+            pair.append(_collection(scene, parent, row, kind, f"{row.name} {kind}", kind_tags))
         rocks[number] = tuple(pair)
     if len(group.faults) or len(group.bodies):
         rocks[None] = _collection(
@@ -372,81 +372,81 @@ def _collection(scene, parent, row, pointer, name, tags):
 
 
 def _place_interfaces(scene, tree, interfaces):
-    for place, (item, mesh, digest) in interfaces.items():
+    for place, (obj, mesh, digest) in interfaces.items():
         row, kind = settings.row_at(scene, place), place[0]
-        if mesh is not None and item.data != mesh:
-            _change_mesh(item, mesh)
+        if mesh is not None and obj.data != mesh:
+            _change_mesh(obj, mesh)
         of_surface = not isinstance(kind, str)
         wanted = {model_tree.TAG: "interface" if of_surface else kind, model_tree.SURFACE: row.name}
         if of_surface:
             wanted[model_tree.ROCK] = scene.realmodel.rocks[kind].name
         if kind != "fault":
             wanted[model_tree.PROPERTY] = row.property_id
-        adopted = item.get(model_tree.TAG) == wanted[model_tree.TAG]
-        if item.library is None:
+        adopted = obj.get(model_tree.TAG) == wanted[model_tree.TAG]
+        if obj.library is None:
             for key, value in wanted.items():
-                item[key] = value
-        _link(scene, tree[kind][0] if of_surface else tree[None], item, move=not adopted)
-        if item.library is None and not model_tree.is_name_of(item.name, row.name):
-            model_tree.give_name(bpy.data.objects, item, row.name)
-        row.interface = item
+                obj[key] = value
+        _link(scene, tree[kind][0] if of_surface else tree[None], obj, move=not adopted)
+        if obj.library is None and not model_tree.is_name_of(obj.name, row.name):
+            model_tree.give_name(bpy.data.objects, obj, row.name)
+        row.interface = obj
         row.interface_digest = digest
         if row.source in ("MESH_FILE", "POINTS_FILE", "TRACE_FILE"):
-            row.object = item
+            row.object = obj
 
 
 def _place_blocks(scene, prepared, tree, blocks, palette):
     model = prepared.model
     before = [row.object for row in scene.realmodel.results]
-    kept = []
+    objects = []
     for block, made, shape in zip(model.blocks, blocks, prepared.blocks, strict=True):
         if made is None:
-            kept.append(None)
+            objects.append(None)
             continue
-        item, mesh = made
+        obj, mesh = made
         if mesh is None:
-            if not meshes.holds(item.data, shape):
-                meshes.refill(item.data, shape)
-        elif item.data != mesh:
-            _change_mesh(item, mesh)
-        materials.give(item, palette[int(block.property)])
+            if not meshes.holds(obj.data, shape):
+                meshes.refill(obj.data, shape)
+        elif obj.data != mesh:
+            _change_mesh(obj, mesh)
+        materials.give(obj, palette[int(block.property)])
         rock_name = model.project.rocks[block.rock].name
-        item[model_tree.TAG] = "block"
-        item[model_tree.ROCK] = rock_name
-        item[model_tree.SURFACE] = str(model.surface_names[block.surface])
-        item[model_tree.BLOCK] = block.name
-        item[model_tree.PROPERTY] = int(block.property)
-        _link(scene, tree[block.rock][1], item)
-        kept.append(item)
-    model_tree.remove_objects([item for item in before if item is not None and item not in kept])
-    fill_results(scene, model, kept)
+        obj[model_tree.TAG] = "block"
+        obj[model_tree.ROCK] = rock_name
+        obj[model_tree.SURFACE] = str(model.surface_names[block.surface])
+        obj[model_tree.BLOCK] = block.name
+        obj[model_tree.PROPERTY] = int(block.property)
+        _link(scene, tree[block.rock][1], obj)
+        objects.append(obj)
+    model_tree.remove_objects([obj for obj in before if obj is not None and obj not in objects])
+    fill_results(scene, model, objects)
 
 
-def _change_mesh(item, mesh):
+def _change_mesh(obj, mesh):
     """Replaces the mesh of an object by another one, with its materials and its name; the old mesh is
     removed."""
-    old = item.data
+    old = obj.data
     if not len(mesh.materials):
         for material in old.materials:
             mesh.materials.append(material)
-    item.data = mesh
+    obj.data = mesh
     if not old.users:
         name = old.name
         bpy.data.meshes.remove(old)
         model_tree.give_name(bpy.data.meshes, mesh, name)
 
 
-def _link(scene, collection, item, move=False):
+def _link(scene, collection, obj, move=False):
     """Links an object to its collection if it is in no collection of the scene; an object that becomes part
     of the model now is moved there."""
     if move:
-        for other in list(item.users_collection):
+        for other in list(obj.users_collection):
             if other != collection and (
                 other == scene.collection or other in list(scene.collection.children_recursive)
             ):
-                other.objects.unlink(item)
-    if scene not in item.users_scene and item.name not in collection.objects:
-        collection.objects.link(item)
+                other.objects.unlink(obj)
+    if scene not in obj.users_scene and obj.name not in collection.objects:
+        collection.objects.link(obj)
 
 
 def fill_results(scene, model, objects):
@@ -456,7 +456,7 @@ def fill_results(scene, model, objects):
     group.results.clear()
     total = model.volume
     slivers = results.slivers(model)
-    for number, (block, item) in enumerate(zip(model.blocks, objects, strict=True)):
+    for number, (block, obj) in enumerate(zip(model.blocks, objects, strict=True)):
         row = group.results.add()
         row.name, row.rock = block.name, model.project.rocks[block.rock].name
         row.surface = str(model.surface_names[block.surface])
@@ -465,7 +465,7 @@ def fill_results(scene, model, objects):
         row.volume, row.volume_exact = block.volume, repr(block.volume)
         row.share = 100.0 * block.volume / total if total else 0.0
         row.cells, row.components, row.slivers = block.cells, block.components, slivers[number]
-        row.object = item
+        row.object = obj
     group.active_result = min(chosen, max(len(group.results) - 1, 0))
 
 
@@ -498,18 +498,18 @@ def remove_model(scene, kept=()):
     model_tree.remove_unused_materials()
 
 
-def _remove_model(scene, kept=()):
+def _remove_model(scene, kept_objects=()):
     _clear(scene)
     group = scene.realmodel
     for _, row in settings.interface_rows(scene):
-        item = row.interface
-        if item is None:
+        obj = row.interface
+        if obj is None:
             continue
-        if row.interface_digest and item not in kept:
+        if row.interface_digest and obj not in kept_objects:
             row.interface = row.object = None
-            model_tree.remove_objects([item])
+            model_tree.remove_objects([obj])
         else:
-            _release(scene, item)
+            _release(scene, obj)
     collections = [(row.interfaces, row.blocks, row.collection) for row in group.rocks]
     last = [group.structures, group.collection]
     for key in ("rocks", "faults", "bodies", "results", "library", "planned_holes"):
@@ -522,19 +522,19 @@ def _remove_model(scene, kept=()):
     exaggeration.apply(scene, [], 0.0)
 
 
-def _release(scene, item):
+def _release(scene, obj):
     """An object of the user's that is no interface any more."""
-    display.let_go(item)
-    exaggeration.release(item)
+    display.let_go(obj)
+    exaggeration.release(obj)
     for key in (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.PROPERTY):
-        if key in item:
-            del item[key]
-    for collection in list(item.users_collection):
+        if key in obj:
+            del obj[key]
+    for collection in list(obj.users_collection):
         if collection.get(model_tree.TAG) in ("interfaces", "structures"):
-            collection.objects.unlink(item)
-    if scene not in item.users_scene:
-        scene.collection.objects.link(item)
-    visible.show(scene, item, True)
+            collection.objects.unlink(obj)
+    if scene not in obj.users_scene:
+        scene.collection.objects.link(obj)
+    visible.show(scene, obj, True)
 
 
 def remove_rock(scene, row):
@@ -548,7 +548,7 @@ def remove_rock(scene, row):
         objects = [group.results[n].object for n in gone]
         for n in reversed(gone):
             group.results.remove(n)
-        model_tree.remove_objects([item for item in objects if item is not None])
+        model_tree.remove_objects([obj for obj in objects if obj is not None])
         model_tree.remove_unused_materials()
         for collection in (row.interfaces, row.blocks, row.collection):
             model_tree.release_collection(collection)
@@ -557,12 +557,12 @@ def remove_rock(scene, row):
 def release_surface(scene, row):
     """Removes the interface of a surface, fault or body that is removed from the list; an object of the user
     stays."""
-    item = row.interface
+    obj = row.interface
     row.interface = None
-    if item is None:
+    if obj is None:
         return
-    if row.interface_digest and item.library is None:
-        row.object = row.object if row.object != item else None
-        model_tree.remove_objects([item])
+    if row.interface_digest and obj.library is None:
+        row.object = row.object if row.object != obj else None
+        model_tree.remove_objects([obj])
     else:
-        _release(scene, item)
+        _release(scene, obj)

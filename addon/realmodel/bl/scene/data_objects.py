@@ -34,18 +34,18 @@ def update(scene, read=None):
     wanted = {}
     if scene.realmodel.show_data and scene.library is None:
         wanted = _wanted(scene, read or {})
-    known = {item[KEY]: item for item in objects(scene)}
-    for stamp in known.keys() - wanted.keys():
-        _remove(known.pop(stamp))
+    by_stamp = {obj[KEY]: obj for obj in objects(scene)}
+    for stamp in by_stamp.keys() - wanted.keys():
+        _remove(by_stamp.pop(stamp))
     for stamp, (name, load) in wanted.items():
-        item = known.get(stamp)
-        if item is None:
+        obj = by_stamp.get(stamp)
+        if obj is None:
             try:
-                item = _new(scene, stamp, name, *load())
+                obj = _new(scene, stamp, name, *load())
             except (RealModelError, KeyError):
                 continue
         else:
-            model_tree.give_name(bpy.data.objects, item, name)
+            model_tree.give_name(bpy.data.objects, obj, name)
     collection = _collection(scene)
     if collection is not None and not len(collection.objects):
         bpy.data.collections.remove(collection)
@@ -56,14 +56,14 @@ def update(scene, read=None):
 def objects(scene):
     """The objects of the data in a scene."""
     collection = _collection(scene)
-    return [] if collection is None else [item for item in collection.objects if KEY in item]
+    return [] if collection is None else [obj for obj in collection.objects if KEY in obj]
 
 
 def place(scene):
     """Moves the objects to their positions relative to the scene's origin."""
     origin = project_settings.model_origin(scene)
-    for item in objects(scene):
-        item.location = np.array(item[_ORIGIN]) - origin
+    for obj in objects(scene):
+        obj.location = np.array(obj[_ORIGIN]) - origin
 
 
 def begin(scene, points):
@@ -76,14 +76,14 @@ def begin(scene, points):
 def points_of(scene, rock, depsgraph):
     """(P, 3) float64 of all points of a rock mass's surfaces and of its observations, in model coordinates;
     the vertices of ready meshes count where there are no points. Raises InputRefused."""
-    found = [row_points(scene, row, depsgraph) for row in rock.surfaces]
-    found.append(observed_blocks.places_of(rock))
-    found = [points for points in found if points is not None and len(points)]
-    if not found:
+    clouds = [row_points(scene, row, depsgraph) for row in rock.surfaces]
+    clouds.append(observed_blocks.places_of(rock))
+    clouds = [points for points in clouds if points is not None and len(points)]
+    if not clouds:
         raise InputRefused(
             f"no surface of {rock.name} has points yet", advice="import surfaces or boreholes first"
         )
-    return np.concatenate(found)
+    return np.concatenate(clouds)
 
 
 def row_points(scene, row, depsgraph):
@@ -100,9 +100,9 @@ def row_points(scene, row, depsgraph):
     path = project_settings.absolute(row.filepath)
     if row.source != "MESH_FILE" or path is None:
         return None
-    given = Surface(row.name)
-    project_settings.name_file(given, row, path)
-    return read_mesh(given.mesh).in_model(given.mesh, scene.realmodel.units)[0]
+    surface = Surface(row.name)
+    project_settings.name_file(surface, row, path)
+    return read_mesh(surface.mesh).in_model(surface.mesh, scene.realmodel.units)[0]
 
 
 def _ground_points(scene, rock):
@@ -136,30 +136,30 @@ def file_key(row):
 
 def _wanted(scene, read):
     """{stamp: (name, load)}: load() gives coordinates (N, 3) in model coordinates and edges (E, 2)."""
-    found = {}
+    wanted = {}
     for rock in scene.realmodel.rocks:
         if rock.region is None and (rock.region_stored or rock.region_file):
             made_of = rock.region_file or rock.region_stored.digest
-            found[f"outline {rock.name} {made_of}"] = (
+            wanted[f"outline {rock.name} {made_of}"] = (
                 f"{rock.name} outline",
                 lambda rock=rock: _outline(scene, rock),
             )
         logs, outcrops = observed_blocks.shown(rock)
         if rock.hole_picks or logs:
-            found[f"boreholes {rock.name} {rock.hole_picks.digest}{rock.observations.digest}"] = (
+            wanted[f"boreholes {rock.name} {rock.hole_picks.digest}{rock.observations.digest}"] = (
                 f"{rock.name} boreholes",
                 lambda rock=rock: _chains(borehole_picks.paths(rock)),
             )
         # A map lies on its ground, and has a color where it was observed: thousands of dots would hide it.
         ground = rock.surfaces[-1].name if rock.map and len(rock.surfaces) else None
         if len(outcrops) and not rock.map:
-            found[f"observations {rock.name} {rock.observations.digest}"] = (
+            wanted[f"observations {rock.name} {rock.observations.digest}"] = (
                 f"{rock.name} observations",
                 lambda outcrops=outcrops: (outcrops, np.empty((0, 2), np.int32)),
             )
         for row in rock.surfaces:
             if row.name != ground and (key := _points_key(row)) is not None:
-                found[f"points {rock.name} / {row.name} {key or row.stored.digest}"] = (
+                wanted[f"points {rock.name} / {row.name} {key or row.stored.digest}"] = (
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),
                 )
@@ -169,16 +169,16 @@ def _wanted(scene, read):
                 key = row.stored_stamp if row.stored_trace else file_key(row)
             except RealModelError:
                 continue
-            found[f"trace {row.name} {key or row.stored_trace.digest}"] = (
+            wanted[f"trace {row.name} {key or row.stored_trace.digest}"] = (
                 f"{row.name} trace",
                 lambda row=row: _trace(scene, row),
             )
         elif key := _points_key(row):
-            found[f"sticks {row.name} {row.stick} {key}"] = (
+            wanted[f"sticks {row.name} {row.stick} {key}"] = (
                 f"{row.name} sticks",
                 lambda row=row: _sticks(scene, row),
             )
-    return found
+    return wanted
 
 
 def _points_key(row):
@@ -198,9 +198,9 @@ def _cloud(scene, row, points):
 
 def _sticks(scene, row):
     """The sticks of a fault, or its scattered points."""
-    given = method_settings.point_file(row, project_settings.absolute(row.filepath))
-    found, _ = read_fault_points(given, method_settings.value(row, "stick", FAULT), scene.realmodel.units)
-    return (found, np.empty((0, 2), np.int32)) if isinstance(found, np.ndarray) else _chains(found)
+    source = method_settings.point_file(row, project_settings.absolute(row.filepath))
+    sticks, _ = read_fault_points(source, method_settings.value(row, "stick", FAULT), scene.realmodel.units)
+    return (sticks, np.empty((0, 2), np.int32)) if isinstance(sticks, np.ndarray) else _chains(sticks)
 
 
 def _chains(lines):
@@ -228,8 +228,8 @@ def _trace(scene, fault):
     if fault.stored_trace:
         lines = [fault.stored_trace["line"]]
     else:
-        given = method_settings.point_file(fault, project_settings.absolute(fault.filepath))
-        lines = read_fault_trace(given, scene.realmodel.units).lines
+        trace_file = method_settings.point_file(fault, project_settings.absolute(fault.filepath))
+        lines = read_fault_trace(trace_file, scene.realmodel.units).lines
     places, edges = _chains(lines)
     places[np.isnan(places[:, 2]), 2] = project_settings.model_origin(scene)[2]
     return places, edges
@@ -239,27 +239,27 @@ def _new(scene, stamp, name, coordinates, edges):
     if ORIGIN_KEY not in scene:
         begin(scene, coordinates)
     origin = project_settings.model_origin(scene)
-    item = bpy.data.objects.new(name, meshes.line_mesh(name, coordinates - origin, edges))
-    item[KEY], item[_ORIGIN] = stamp, [float(value) for value in origin]
-    item.hide_select = item.hide_render = True
+    obj = bpy.data.objects.new(name, meshes.line_mesh(name, coordinates - origin, edges))
+    obj[KEY], obj[_ORIGIN] = stamp, [float(value) for value in origin]
+    obj.hide_select = obj.hide_render = True
     collection = _collection(scene)
     if collection is None:
         collection = bpy.data.collections.new(f"{scene.realmodel.name} Data")
         collection[KEY] = True
         collection.hide_render = True
         scene.collection.children.link(collection)
-    collection.objects.link(item)
-    return item
+    collection.objects.link(obj)
+    return obj
 
 
 def _collection(scene):
-    found = scene.collection.children_recursive  # it may have been moved
-    return next((c for c in found if KEY in c and c.library is None), None)
+    collections = scene.collection.children_recursive  # it may have been moved
+    return next((c for c in collections if KEY in c and c.library is None), None)
 
 
-def _remove(item):
-    mesh = item.data
-    bpy.data.objects.remove(item)
+def _remove(obj):
+    mesh = obj.data
+    bpy.data.objects.remove(obj)
     if not mesh.users:
         bpy.data.meshes.remove(mesh)
 

@@ -104,9 +104,9 @@ def changed(scene, edited):
             rock.region_area = -1.0
             region_size.ask()
             _edited(scene, rock.region)
-        for item in plan_mesh.objects(rock):
-            if _names(item) & edited:
-                _edited(scene, item)
+        for obj in plan_mesh.objects(rock):
+            if _names(obj) & edited:
+                _edited(scene, obj)
     for _, row in settings.interface_rows(scene):
         made = row.interface if row.interface_digest else None
         if made is not None and _names(made) & edited:
@@ -116,18 +116,18 @@ def changed(scene, edited):
             _edited(scene, source)
 
 
-def _edited(scene, item):
+def _edited(scene, obj):
     """Blender has evaluated an object that a model is made from. Only in edit mode it is sure that it has
     another shape now."""
-    if item.mode == "EDIT":
+    if obj.mode == "EDIT":
         touch(scene)
     else:
         _look_at(scene)
 
 
-def _names(item):
-    own = {(True, item.name_full)}
-    return own | {(False, item.data.name_full)} if item.data is not None else own
+def _names(obj):
+    keys = {(True, obj.name_full)}
+    return keys | {(False, obj.data.name_full)} if obj.data is not None else keys
 
 
 def undone():
@@ -181,9 +181,9 @@ def _watch():
     """The timer: looks whether the files of models are others now."""
     for scene in bpy.data.scenes:
         if len(scene.realmodel.results) and scene.library is None:
-            found = [stored_arrays.file_stamp(path) for path in project_settings.files(scene)]
-            if _stamps.setdefault(scene.name, found) != found:
-                _stamps[scene.name] = found
+            stamps = [stored_arrays.file_stamp(path) for path in project_settings.files(scene)]
+            if _stamps.setdefault(scene.name, stamps) != stamps:
+                _stamps[scene.name] = stamps
                 _checks.touch(scene.name)
     return _WATCH_SECONDS
 

@@ -29,9 +29,9 @@ def migrate_all():
         if group.exists and group.version == _FIRST:
             for row in (group.view, *_rows(group)):
                 _take_texts(row)
-            item = group.ensemble.object
-            if item is not None and isinstance(item.get(BLOCKS), str):
-                store(item, BLOCKS, _arrays_of_npz(item[BLOCKS]))
+            obj = group.ensemble.object
+            if obj is not None and isinstance(obj.get(BLOCKS), str):
+                store(obj, BLOCKS, _arrays_of_npz(obj[BLOCKS]))
             group.version = settings.VERSION
 
 

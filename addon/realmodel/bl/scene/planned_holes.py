@@ -109,8 +109,8 @@ def keep(scene, row, hole):
             "remarks": hole.remarks,
             "names": hole.block_names,
             "properties": hole.properties,
-            "intervals": [astuple(each) for each in hole.intervals],
-            "contacts": [astuple(each) for each in hole.contacts],
+            "intervals": [astuple(interval) for interval in hole.intervals],
+            "contacts": [astuple(contact) for contact in hole.contacts],
         }
     )
     has_shares = hole.probability is not None
@@ -122,15 +122,15 @@ def kept(row):
     arrays."""
     if not row.result:
         return None
-    found = json.loads(row.result)
+    table = json.loads(row.result)
     return PlannedHole(
         axis_of(row),
-        [HoleInterval(*each) for each in found["intervals"]],
-        [HoleContact(*each) for each in found["contacts"]],
-        found["names"],
-        found["properties"],
-        found["unit"],
-        tuple(found.get("remarks", ())),
+        [HoleInterval(*fields) for fields in table["intervals"]],
+        [HoleContact(*fields) for fields in table["contacts"]],
+        table["names"],
+        table["properties"],
+        table["unit"],
+        tuple(table.get("remarks", ())),
         **row.shares,
     )
 
@@ -155,7 +155,7 @@ def show(scene):
         except RealModelError:
             continue
         met = [] if hole is None else hole.intervals
-        parts = [(hole.properties[each.block], each.begin, each.end) for each in met]
+        parts = [(hole.properties[interval.block], interval.begin, interval.end) for interval in met]
         _show(scene, row.name, axis, parts, size)
     display.exaggeration_changed(scene)
 
@@ -166,7 +166,7 @@ def _show(scene, name, axis, parts, size):
     places = axis.places(ends) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
     radii = size * np.where(pairs[:, 0] == 0, _AXIS, _RADIUS)
-    item = bodies.add(scene, KIND, name, marks.lines(places, pairs, radii, _SIDES))
-    item.show_in_front = True  # it begins on the ground: blocks hide all of it
+    body = bodies.add(scene, KIND, name, marks.lines(places, pairs, radii, _SIDES))
+    body.show_in_front = True  # it begins on the ground: blocks hide all of it
     of_parts = [colors.of_property(scene, number) for number, *_ in parts]
-    bodies.give_materials(item.data, [colors.plain_material(*_NOTHING), *of_parts], _SIDES)
+    bodies.give_materials(body.data, [colors.plain_material(*_NOTHING), *of_parts], _SIDES)

@@ -35,9 +35,9 @@ def remember(scene, error):
     activity.problem_item = (error.item or "") if isinstance(error, InputRefused) else ""
     row = build_job.refused_surface(scene, error)
     is_given = row is not None and row.source in ("MESH_OBJECT", "TRACE_OBJECT")
-    item = None if row is None else (row.object if is_given else row.interface)
-    if project_settings.in_use(item) and (error.triangles or error.place is not None):
-        activity.problem_object = item.name
+    obj = None if row is None else (row.object if is_given else row.interface)
+    if project_settings.in_use(obj) and (error.triangles or error.place is not None):
+        activity.problem_object = obj.name
         activity.problem_triangles = json.dumps([int(t) for t in error.triangles])
     if isinstance(error, InputRefused) and error.place is not None:
         activity.problem_place = json.dumps([float(value) for value in error.place])
@@ -64,45 +64,45 @@ def show(context):
     Raises InputRefused where they are not there any more.
     """
     activity = context.window_manager.realmodel
-    item = bpy.data.objects.get(activity.problem_object)
-    item = None if item is None or item.name not in context.view_layer.objects else item
-    if item is None and not activity.problem_place:
+    obj = bpy.data.objects.get(activity.problem_object)
+    obj = None if obj is None or obj.name not in context.view_layer.objects else obj
+    if obj is None and not activity.problem_place:
         raise InputRefused("the refused surface is not in this scene any more", advice="build again")
     triangles = json.loads(activity.problem_triangles or "[]")
     if context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    if item is None:
+    if obj is None:
         _show_place(context, None, json.loads(activity.problem_place))
         return
-    visible.show(context.scene, item, True)
-    _open_eyes(context.view_layer.layer_collection, item)
+    visible.show(context.scene, obj, True)
+    _open_eyes(context.view_layer.layer_collection, obj)
     if not triangles:
-        _show_place(context, item, json.loads(activity.problem_place))
+        _show_place(context, obj, json.loads(activity.problem_place))
         return
     depsgraph = context.evaluated_depsgraph_get()
-    with shapes.evaluated_mesh(item, depsgraph) as mesh:
+    with shapes.evaluated_mesh(obj, depsgraph) as mesh:
         corners, polygons = shapes.mesh_triangles(mesh), shapes.triangle_polygons(mesh)
         bad = np.array([t for t in triangles if t < len(corners)], np.int64)
-        places = shapes.offsets(item, mesh)[np.unique(corners[bad])]
-        same = len(mesh.polygons) == len(item.data.polygons)
+        places = shapes.offsets(obj, mesh)[np.unique(corners[bad])]
+        same = len(mesh.polygons) == len(obj.data.polygons)
         chosen = set(np.unique(polygons[bad]).tolist()) if same else set()
-    _select(context, item)
+    _select(context, obj)
     bpy.ops.object.mode_set(mode="EDIT")
-    _select_faces(context, item, chosen)
-    _frame(context, places, max(item.dimensions) * _FRAMED)
+    _select_faces(context, obj, chosen)
+    _frame(context, places, max(obj.dimensions) * _FRAMED)
 
 
-def _select(context, item):
+def _select(context, obj):
     for other in context.view_layer.objects:
-        other.select_set(other == item)
-    context.view_layer.objects.active = item
+        other.select_set(other == obj)
+    context.view_layer.objects.active = obj
 
 
-def _show_place(context, item, place):
-    """item: the object that it is of, or None. place: (x, y, z), or (x, y) in the middle of the heights of
+def _show_place(context, obj, place):
+    """obj: the object that it is of, or None. place: (x, y, z), or (x, y) in the middle of the heights of
     the object or of all data, in model coordinates."""
-    scene, items = context.scene, [item]
-    if item is None:
+    scene, items = context.scene, [obj]
+    if obj is None:
         items = data_objects.objects(scene) + project_settings.user_objects(scene)
     around = viewports.corners(items)
     offset = np.zeros(3)
@@ -111,26 +111,26 @@ def _show_place(context, item, place):
     if len(place) < 3 and len(around):
         at[2] = (around[:, 2].min() + around[:, 2].max()) / 2
     scene.cursor.location = at
-    if item is not None:
-        _select(context, item)
+    if obj is not None:
+        _select(context, obj)
     size = np.ptp(around, axis=0).max() if len(around) else 1.0
     _frame(context, at[None], size * _FRAMED)
 
 
-def _open_eyes(layer, item):
+def _open_eyes(layer, obj):
     """The collections that an object stands in are shown, or it could not be edited."""
-    found = item.name in layer.collection.objects
+    is_inside = obj.name in layer.collection.objects
     for child in layer.children:
-        if _open_eyes(child, item):
-            found = True
-    if found:
+        if _open_eyes(child, obj):
+            is_inside = True
+    if is_inside:
         layer.hide_viewport = False
-    return found
+    return is_inside
 
 
-def _select_faces(context, item, chosen):
+def _select_faces(context, obj, chosen):
     context.tool_settings.mesh_select_mode = (False, False, True)
-    mesh = bmesh.from_edit_mesh(item.data)
+    mesh = bmesh.from_edit_mesh(obj.data)
     for sequence in (mesh.verts, mesh.edges, mesh.faces):
         for element in sequence:
             element.select = False
@@ -138,7 +138,7 @@ def _select_faces(context, item, chosen):
         if face.index in chosen:
             face.select_set(True)
     mesh.select_flush_mode()
-    bmesh.update_edit_mesh(item.data, loop_triangles=False, destructive=False)
+    bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
 
 
 def _frame(context, places, least):

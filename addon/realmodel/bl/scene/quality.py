@@ -48,8 +48,8 @@ def found(scene):
 def volume_deviation(scene, row):
     """An upper bound of the standard deviation of a block's volume (a row of the results), model units cubed;
     None where it was not requested, or is not known."""
-    known = _deviations.get(scene.realmodel.built_stamp, {}).get((row.rock, row.name))
-    return known if known is not None and np.isfinite(known) else None
+    deviation = _deviations.get(scene.realmodel.built_stamp, {}).get((row.rock, row.name))
+    return deviation if deviation is not None and np.isfinite(deviation) else None
 
 
 def check(scene):
@@ -90,9 +90,9 @@ def _asked(scene):
         names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
         if wanted not in names:
             raise InputRefused(f"surface '{wanted[1]}' is not in the built model", advice="press Build first")
-        found = surface_quality(model, names.index(wanted), threads())
+        quality = surface_quality(model, names.index(wanted), threads())
         blocks = [(model.project.rocks[block.rock].name, block.name) for block in model.blocks]
-        return found, dict(zip(blocks, volume_deviations(model).tolist(), strict=True))
+        return quality, dict(zip(blocks, volume_deviations(model).tolist(), strict=True))
 
     wanted = rock.name, surface.name
     return _key(scene, rock, surface), request, task

@@ -33,12 +33,12 @@ def displayed(context):
     """The objects of the model of the scene that are displayed and that other programs can show."""
     project = model_tree.model_collection(context.scene)
     items = () if project is None else project.all_objects
-    return [item for item in items if item.type == "MESH" and item.visible_get() and _shows_rock(item)]
+    return [obj for obj in items if obj.type == "MESH" and obj.visible_get() and _shows_rock(obj)]
 
 
-def _shows_rock(item):
-    is_part = item.get(bodies.KIND, bodies.PLANE) != bodies.PLANE
-    return (is_part or item.get(model_tree.TAG) in model_tree.OBJECT_KINDS) and len(item.data.polygons) > 0
+def _shows_rock(obj):
+    is_part = obj.get(bodies.KIND, bodies.PLANE) != bodies.PLANE
+    return (is_part or obj.get(model_tree.TAG) in model_tree.OBJECT_KINDS) and len(obj.data.polygons) > 0
 
 
 def write(context, items, path, size):
@@ -47,14 +47,14 @@ def write(context, items, path, size):
     size: of the pictures of looks, pixels; 0: materials have the color of their property. Raises InputRefused
     where this Blender cannot, OutputFailed.
     """
-    known, path = by_ending(path, FORMATS, "scenes are not written as {}"), writable_target(path)
-    _require_exporter(known.write)
+    file_format, path = by_ending(path, FORMATS, "scenes are not written as {}"), writable_target(path)
+    _require_exporter(file_format.write)
     with tempfile.TemporaryDirectory() as place, Outputs() as outputs:
         target = Path(place) / path.name
         with _copies(context, items, target if size else None, size):
-            known.write(str(target))
+            file_format.write(str(target))
         for made in sorted(Path(place).iterdir()):
-            if known.write is _write_gltf and made != target:
+            if file_format.write is _write_gltf and made != target:
                 continue  # packed pictures
             with outputs.file(path.parent / made.name) as file:
                 file.write(made.read_bytes())
@@ -75,12 +75,12 @@ def _write_gltf(path):
 
 
 def _write_usd(path):
-    known = bpy.ops.wm.usd_export.get_rna_type().properties
+    options = bpy.ops.wm.usd_export.get_rna_type().properties
     wanted = {"export_custom_properties": True, "relative_paths": True}
     wanted |= (
-        {"export_textures_mode": "KEEP"} if "export_textures_mode" in known else {"export_textures": False}
+        {"export_textures_mode": "KEEP"} if "export_textures_mode" in options else {"export_textures": False}
     )
-    wanted = {name: value for name, value in wanted.items() if name in known}
+    wanted = {name: value for name, value in wanted.items() if name in options}
     bpy.ops.wm.usd_export(filepath=path, selected_objects_only=True, check_existing=False, **wanted)
 
 
@@ -117,13 +117,13 @@ def _copies(context, items, beside, size):
     try:
         context.scene.collection.children.link(collection)
         depsgraph = context.evaluated_depsgraph_get()
-        shown = [(item, item.evaluated_get(depsgraph)) for item in items]
+        shown = [(obj, obj.evaluated_get(depsgraph)) for obj in items]
         new = [
             bpy.data.meshes.new_from_object(seen, preserve_all_data_layers=True, depsgraph=depsgraph)
             for _, seen in shown
         ]
         made += new
-        copies = [_copy(context.scene, item, mesh, names) for item, mesh in zip(items, new, strict=True)]
+        copies = [_copy(context.scene, obj, mesh, names) for obj, mesh in zip(items, new, strict=True)]
         made += copies
         for copy in copies:
             collection.objects.link(copy)
@@ -148,15 +148,15 @@ def _take_name(datablock, names):
     return name
 
 
-def _copy(scene, item, mesh, names):
+def _copy(scene, obj, mesh, names):
     """An object that shows the mesh as an object does, with its name and its custom properties."""
-    mesh.name = _take_name(item.data, names)
-    copy = bpy.data.objects.new(_take_name(item, names), mesh)
-    copy.matrix_world = item.matrix_world
-    for key in item.keys():  # noqa: SIM118 - objects of Blender are not iterable
+    mesh.name = _take_name(obj.data, names)
+    copy = bpy.data.objects.new(_take_name(obj, names), mesh)
+    copy.matrix_world = obj.matrix_world
+    for key in obj.keys():  # noqa: SIM118 - objects of Blender are not iterable
         if key in _KEPT or not key.startswith(model_tree.TAG):
-            copy[key] = item[key]
-    row = library_rows.find(scene, item.get(model_tree.PROPERTY))
+            copy[key] = obj[key]
+    row = library_rows.find(scene, obj.get(model_tree.PROPERTY))
     if row is not None:
         copy[f"{model_tree.TAG}_name"] = row.name
         for key in ("rock", "age", "structure", "description"):
@@ -167,12 +167,12 @@ def _copy(scene, item, mesh, names):
     return copy
 
 
-def _baked_slots(item):
+def _baked_slots(obj):
     """The slots of an object whose material is a look to bake, where polygons have it."""
-    found = np.empty(len(item.data.polygons), np.int32)
-    item.data.polygons.foreach_get("material_index", found)
-    slots = [int(slot) for slot in np.unique(found) if slot < len(item.data.materials)]
-    return [slot for slot in slots if _is_baked(item.data.materials[slot])]
+    material_indices = np.empty(len(obj.data.polygons), np.int32)
+    obj.data.polygons.foreach_get("material_index", material_indices)
+    slots = [int(slot) for slot in np.unique(material_indices) if slot < len(obj.data.materials)]
+    return [slot for slot in slots if _is_baked(obj.data.materials[slot])]
 
 
 def _is_baked(material):
@@ -198,17 +198,17 @@ def _bake(context, copies, beside, size, names, made):
     pictures = {}
     for material, users in by_material.items():
         _unwrap(context, users)
-        own = material.copy()
-        made.append(own)
-        own.name = _take_name(material, names)
-        looks.level(own)
-        pictures[own] = image = bpy.data.images.new(own.name, size, size)
+        new_material = material.copy()
+        made.append(new_material)
+        new_material.name = _take_name(material, names)
+        looks.level(new_material)
+        pictures[new_material] = image = bpy.data.images.new(new_material.name, size, size)
         made.append(image)
-        node = own.node_tree.nodes.new("ShaderNodeTexImage")
+        node = new_material.node_tree.nodes.new("ShaderNodeTexImage")
         node.image = image
-        own.node_tree.nodes.active = node
+        new_material.node_tree.nodes.active = node
         for copy, slot in users:
-            copy.data.materials[slot] = own
+            copy.data.materials[slot] = new_material
     _select(context.view_layer, baked)
     with _renderer(context.scene):
         bpy.ops.object.bake(
@@ -235,13 +235,13 @@ def _unwrap(context, users):
     settings = context.scene.tool_settings
     before = tuple(settings.mesh_select_mode)
     settings.mesh_select_mode = (False, False, True)
-    _select(context.view_layer, [item for item, _ in users])
-    for item, slot in users:
-        polygons = item.data.polygons
-        found = np.empty(len(polygons), np.int32)
-        polygons.foreach_get("material_index", found)
+    _select(context.view_layer, [obj for obj, _ in users])
+    for obj, slot in users:
+        polygons = obj.data.polygons
+        material_indices = np.empty(len(polygons), np.int32)
+        polygons.foreach_get("material_index", material_indices)
         polygons.foreach_set("hide", np.zeros(len(polygons), bool))
-        polygons.foreach_set("select", found == slot)
+        polygons.foreach_set("select", material_indices == slot)
     bpy.ops.object.mode_set(mode="EDIT")
     try:
         bpy.ops.uv.smart_project(angle_limit=_STEEPEST, island_margin=_GAP)
@@ -268,8 +268,8 @@ def _renderer(scene):
 
 
 def _select(layer, items, active=None):
-    for item in layer.objects:
-        item.select_set(False, view_layer=layer)
-    for item in items:
-        item.select_set(True, view_layer=layer)
+    for obj in layer.objects:
+        obj.select_set(False, view_layer=layer)
+    for obj in items:
+        obj.select_set(True, view_layer=layer)
     layer.objects.active = active or (items[0] if items else None)

@@ -13,11 +13,11 @@ from ..project import borehole_picks
 
 def paths(scene):
     """{hole: (N, 3) its line in model coordinates} of all rock masses."""
-    found = {}
+    lines = {}
     for rock in scene.realmodel.rocks:
         for name, line in borehole_picks.named_paths(rock).items():
-            found.setdefault(name, np.array(line))
-    return found
+            lines.setdefault(name, np.array(line))
+    return lines
 
 
 def chosen(scene):
@@ -40,8 +40,8 @@ def _quoted(name):
 
 def line(scene):
     """(N, 2) the line of a section through the chosen holes, in model coordinates. Raises InputRefused."""
-    places = {name: found[0] for name, found in paths(scene).items()}
+    places = {name: path[0] for name, path in paths(scene).items()}
     names = chosen(scene)
-    given = line_through(places, names, 0.0)
-    length = float(norm(np.diff(given, axis=0)).sum())
+    corners = line_through(places, names, 0.0)
+    length = float(norm(np.diff(corners, axis=0)).sum())
     return line_through(places, names, 0.01 * scene.realmodel.view.section_beyond * length)

@@ -72,7 +72,7 @@ def _fill(group):
     for name, kind in (("Color", "NodeSocketColor"), ("Normal", "NodeSocketVector")):
         versions.add_group_socket(group, name, kind, is_output=True)
     nodes = Nodes(group)
-    given, made = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
+    group_input, made = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
     wear = nodes.new("ShaderNodeAttribute")
     wear.attribute_name = ATTRIBUTE
     wear = wear.outputs["Fac"]
@@ -87,4 +87,4 @@ def _fill(group):
     edge.inside, edge.only_local, edge.samples = True, True, _SAMPLES
     nodes.link(radius, edge.inputs["Distance"])
     pale = nodes.ramp(edge.outputs["AO"], 0.6, 1.0, 1.0 + _PALE, 1.0)
-    nodes.link(nodes.vector("SCALE", given.outputs["Color"], pale), made.inputs["Color"])
+    nodes.link(nodes.vector("SCALE", group_input.outputs["Color"], pale), made.inputs["Color"])

@@ -63,8 +63,8 @@ def write(folder):
 def register(folder):
     """Adds the folder to the asset libraries of the preferences. Returns whether it was new there."""
     folder = Path(folder).resolve()
-    known = bpy.context.preferences.filepaths.asset_libraries
-    if any(library.path and Path(library.path).resolve() == folder for library in known):
+    libraries = bpy.context.preferences.filepaths.asset_libraries
+    if any(library.path and Path(library.path).resolve() == folder for library in libraries):
         return False
     versions.add_asset_library(LIBRARY, str(folder))
     bpy.context.preferences.is_dirty = True  # saved at the end, where the preferences are

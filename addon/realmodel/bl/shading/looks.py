@@ -139,18 +139,18 @@ def _fill(nodes, shader, look, color, unit, seed):
     _fill_texture(nodes, look, _place(nodes, size, seed), size, texture)
     tone = nodes.math("MULTIPLY", nodes.total(texture.tones), 1.6)
     tint = nodes.new("ShaderNodeHueSaturation")
-    given = nodes.new("ShaderNodeRGB")
-    given.name = given.label = materials.COLOR
-    given = given.outputs[0]
-    given.default_value = color
-    nodes.link(_brown_below(nodes, given) if look.grassy else given, tint.inputs["Color"])
+    base_color = nodes.new("ShaderNodeRGB")
+    base_color.name = base_color.label = materials.COLOR
+    base_color = base_color.outputs[0]
+    base_color.default_value = color
+    nodes.link(_brown_below(nodes, base_color) if look.grassy else base_color, tint.inputs["Color"])
     nodes.link(nodes.math("MAXIMUM", nodes.math("ADD", tone, 1.0), 0.15), tint.inputs["Value"])
     pale = nodes.total([nodes.math("MULTIPLY", tone, 0.3), *texture.pale])
     nodes.link(nodes.math("SUBTRACT", 0.95, pale), tint.inputs["Saturation"])
     if look.hue and texture.hues:
         hue = nodes.total([nodes.about(hue, 2.0 * look.hue) for hue in texture.hues])
         nodes.link(nodes.math("ADD", hue, 0.5), tint.inputs["Hue"])
-    _multiply(nodes, given, tint.outputs["Color"], shader.inputs["Base Color"])
+    _multiply(nodes, base_color, tint.outputs["Color"], shader.inputs["Base Color"])
     if texture.heights:
         bump = nodes.new("ShaderNodeBump")
         nodes.link(size, bump.inputs["Distance"])
@@ -289,7 +289,7 @@ def _beds(nodes, above, rough, bed):
 def _joints(nodes, place, rough, bed, spacing):
     """The depth in a joint (0 to 1). Joints are steep planes of two sets at irregular distances: those of the
     first set pass through all beds, those of the second only through some, at other positions in each bed."""
-    found = []
+    joints = []
     for number, (normal, apart) in enumerate(_JOINT_SETS):
         apart *= spacing
         along = nodes.vector("DOT_PRODUCT", place, tuple(part / apart for part in normal))
@@ -300,8 +300,8 @@ def _joints(nodes, place, rough, bed, spacing):
         joint = nodes.ramp(_bands(nodes, along)[1], 0.0, _GROOVE / apart, 1.0, 0.0)
         if number and bed is not None:
             joint = nodes.math("MULTIPLY", joint, nodes.ramp(bed[1], 0.35, 0.65, 0.0, 1.0))
-        found.append(joint)
-    return nodes.math("MAXIMUM", *found)
+        joints.append(joint)
+    return nodes.math("MAXIMUM", *joints)
 
 
 def _cells(nodes, place, rough, look):
@@ -423,11 +423,11 @@ def _add_blades(nodes, place, texture):
         bent = nodes.vector("SINE", nodes.vector("CROSS_PRODUCT", near, (0.0, 0.0, 2.7)))
         near = nodes.vector("ADD", near, nodes.vector("SCALE", bent, 0.3))
         cell, away = _around_middle(nodes, near, 1.0)
-        own = [nodes.part(cell.outputs["Color"], axis) for axis in range(3)]
+        randoms = [nodes.part(cell.outputs["Color"], axis) for axis in range(3)]
         # on a circle in the noise, so that there is no seam; farther out it is another place
         circle = nodes.vector("SCALE", nodes.vector("NORMALIZE", away), around)
         turned = nodes.vector("CROSS_PRODUCT", away, (0.0, 0.0, _BENT_BLADES * around))
-        turned = nodes.vector("SCALE", turned, nodes.math("SUBTRACT", own[2], 0.5))
+        turned = nodes.vector("SCALE", turned, nodes.math("SUBTRACT", randoms[2], 0.5))
         circle = nodes.vector("ADD", nodes.vector("ADD", circle, turned), away)
         circle = nodes.vector("ADD", circle, nodes.vector("SCALE", cell.outputs["Color"], 50.0))
         blade = nodes.ramp(nodes.noise(circle, 1.0, 1.0, "2D"), 0.35, 0.65, 0.0, 1.0)
@@ -435,9 +435,9 @@ def _add_blades(nodes, place, texture):
         reach = nodes.math(
             "MULTIPLY", nodes.ramp(far, 0.0, 0.35, 0.2, 1.0), nodes.ramp(far, 0.3, 0.8, 1.0, 0.1)
         )
-        reach = nodes.math("MULTIPLY", reach, nodes.math("MULTIPLY_ADD", own[1], 0.5, 0.6))
+        reach = nodes.math("MULTIPLY", reach, nodes.math("MULTIPLY_ADD", randoms[1], 0.5, 0.6))
         highest = nodes.math("MAXIMUM", highest, nodes.math("MULTIPLY", blade, reach))
-        tint = nodes.math("MULTIPLY_ADD", own[0], 1.0 / len(_TUFTS), tint)
+        tint = nodes.math("MULTIPLY_ADD", randoms[0], 1.0 / len(_TUFTS), tint)
     is_top = nodes.attribute("is_top")
     highest = nodes.math("MULTIPLY", highest, is_top)
     tone = nodes.math("MULTIPLY", nodes.math("SUBTRACT", highest, 0.6), 0.85)
@@ -468,11 +468,11 @@ class _Nodes(Nodes):
         return node
 
     def attribute(self, name):
-        found = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
-        if found is None:
-            found = self.new("ShaderNodeGroup")
-            found.node_tree = group_once("ShaderNodeTree", "RealModel Bedding", GROUP, _fill_bedding_group)
-        return found.outputs[name]
+        group = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
+        if group is None:
+            group = self.new("ShaderNodeGroup")
+            group.node_tree = group_once("ShaderNodeTree", "RealModel Bedding", GROUP, _fill_bedding_group)
+        return group.outputs[name]
 
 
 def _fill_bedding_group(group):

@@ -32,9 +32,9 @@ _GRASS, _ROCK = "#7d9440", "#9b9286"
 
 def item(name):
     """The object of tufts or stones, made if the file has none."""
-    known = (found for found in bpy.data.objects if found.get(KEY) == name and found.library is None)
-    found = next(known, None)
-    if found is None:
+    candidates = (obj for obj in bpy.data.objects if obj.get(KEY) == name and obj.library is None)
+    obj = next(candidates, None)
+    if obj is None:
         mesh = bpy.data.meshes.new(name)
         if name == TUFT:
             vertices, faces, numbers = _tuft()
@@ -46,9 +46,9 @@ def item(name):
             vertices, faces = _stone()
             mesh.from_pydata(vertices.tolist(), [], faces)
             mesh.materials.append(_rock())
-        found = bpy.data.objects.new(name, mesh)
-        found[KEY] = name
-    return found
+        obj = bpy.data.objects.new(name, mesh)
+        obj[KEY] = name
+    return obj
 
 
 def _new_material(name, color):
@@ -64,15 +64,15 @@ def _grass():
     """Blades from fresh to dry, each tuft of its own, darker at the foot and lighter at the tip, which light
     passes through. Stalks are dry."""
     material, nodes, shader, tuft = _new_material("Grass Blades", _GRASS)
-    share, own = (_attribute(nodes, name) for name in (_SHARE, _OWN))
+    share, blade_number = (_attribute(nodes, name) for name in (_SHARE, _OWN))
     tint = nodes.new("ShaderNodeHueSaturation")
     tint.inputs["Color"].default_value = shader.inputs["Base Color"].default_value
-    is_dry = nodes.math("GREATER_THAN", nodes.math("MULTIPLY_ADD", tuft, 0.12, own), 0.97)
-    hue = nodes.math("MULTIPLY", nodes.math("MULTIPLY_ADD", own, 0.6, tuft), 0.05)
+    is_dry = nodes.math("GREATER_THAN", nodes.math("MULTIPLY_ADD", tuft, 0.12, blade_number), 0.97)
+    hue = nodes.math("MULTIPLY", nodes.math("MULTIPLY_ADD", blade_number, 0.6, tuft), 0.05)
     hue = nodes.math("MULTIPLY_ADD", is_dry, 0.06, hue)
     nodes.link(nodes.math("SUBTRACT", 0.54, hue), tint.inputs["Hue"])
     nodes.link(nodes.math("MULTIPLY_ADD", is_dry, -0.35, 1.0), tint.inputs["Saturation"])
-    value = nodes.math("ADD", nodes.ramp(share, 0.0, 0.9, 0.6, 1.5), nodes.about(own, 0.4))
+    value = nodes.math("ADD", nodes.ramp(share, 0.0, 0.9, 0.6, 1.5), nodes.about(blade_number, 0.4))
     nodes.link(nodes.math("MULTIPLY_ADD", is_dry, 0.6, value), tint.inputs["Value"])
     nodes.link(tint.outputs["Color"], shader.inputs["Base Color"])
     through, mix = nodes.new("ShaderNodeBsdfTranslucent"), nodes.new("ShaderNodeMixShader")
@@ -114,7 +114,7 @@ def _tuft():
     are higher. Vertices, faces, and of each vertex its share of the blade and a number of the blade from 0 to
     1, which is 1 for stalks."""
     random = np.random.default_rng(4)
-    vertices, faces, shares, own = [], [], [], []
+    vertices, faces, shares, blade_numbers = [], [], [], []
     count = _BLADES + _STALKS
     for number, azimuth in enumerate(2.0 * np.pi * random.random(count)):
         is_stalk = number >= _BLADES
@@ -133,10 +133,10 @@ def _tuft():
             ends = (-1.0, 1.0) if width else (0.0,)
             vertices += [place + end * width * across for end in ends]
             shares += [share] * len(ends)
-        own += [1.0 if is_stalk else 0.95 * random.random()] * (len(vertices) - first)
+        blade_numbers += [1.0 if is_stalk else 0.95 * random.random()] * (len(vertices) - first)
         faces += [(first + k, first + k + 1, first + k + 3, first + k + 2) for k in (0, 2, 4)]
         faces.append((first + 6, first + 7, first + 8))
-    return np.array(vertices), faces, (np.array(shares), np.array(own))
+    return np.array(vertices), faces, (np.array(shares), np.array(blade_numbers))
 
 
 def _stone():
@@ -158,13 +158,13 @@ def _stone():
     corners = np.array(corners)
     faces = []
     for number, normal in enumerate(normals):
-        own = [k for k, three in enumerate(sides) if number in three]
-        if len(own) < 3:
+        face = [k for k, three in enumerate(sides) if number in three]
+        if len(face) < 3:
             continue
         right = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
-        away = corners[own] - corners[own].mean(axis=0)
+        away = corners[face] - corners[face].mean(axis=0)
         turn = np.arctan2((away * np.cross(normal, right)).sum(axis=1), (away * right).sum(axis=1))
-        faces.append([own[k] for k in np.argsort(turn)])
+        faces.append([face[k] for k in np.argsort(turn)])
     return corners * (0.5, 0.4, 0.3), faces
 
 

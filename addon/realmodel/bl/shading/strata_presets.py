@@ -67,8 +67,8 @@ def values(preset):
 
 def of_item(item):
     """The preset of the materials of an object, or None."""
-    given = (slot.material.get(KEY) for slot in item.material_slots if slot.material is not None)
-    return next((preset for preset in given if preset in PRESETS), None)
+    names = (slot.material.get(KEY) for slot in item.material_slots if slot.material is not None)
+    return next((preset for preset in names if preset in PRESETS), None)
 
 
 def material(preset):
@@ -96,22 +96,22 @@ def material(preset):
     return made
 
 
-def _level(nodes, given):
-    """The height in the strata, 0 to 1 in the bounding box where they are level. given: of a preset."""
+def _level(nodes, preset):
+    """The height in the strata, 0 to 1 in the bounding box where they are level. preset: its settings."""
     place = nodes.of("ShaderNodeTexCoord", "Generated")
     across, height = nodes.part(place, 0), nodes.part(place, 2)
     rough = nodes.about(nodes.noise(place, _ROUGH_SIZE, 4.0), 2.0 * _ROUGH)
     level = nodes.math("ADD", height, rough)
-    tilted = nodes.math("MULTIPLY_ADD", across, math.tan(given["dip"]), level)
-    if given["fold_amplitude"]:
-        leaning = nodes.math("MULTIPLY_ADD", height, 1.0 / math.tan(given["axial_dip"]), across)
-        wave = nodes.math("SINE", nodes.math("MULTIPLY", leaning, 2.0 * math.pi / given["fold_wavelength"]))
-        tilted = nodes.math("MULTIPLY_ADD", wave, given["fold_amplitude"], tilted)
-    if given["faults"]:
-        side = nodes.math("FLOOR", nodes.math("MULTIPLY", across, given["faults"] + 1.0))
-        tilted = nodes.math("MULTIPLY_ADD", nodes.math("PINGPONG", side, 2.0), given["throw"], tilted)
-    if given["unconformity"]:
-        is_above = nodes.math("GREATER_THAN", level, given["unconformity"])
+    tilted = nodes.math("MULTIPLY_ADD", across, math.tan(preset["dip"]), level)
+    if preset["fold_amplitude"]:
+        leaning = nodes.math("MULTIPLY_ADD", height, 1.0 / math.tan(preset["axial_dip"]), across)
+        wave = nodes.math("SINE", nodes.math("MULTIPLY", leaning, 2.0 * math.pi / preset["fold_wavelength"]))
+        tilted = nodes.math("MULTIPLY_ADD", wave, preset["fold_amplitude"], tilted)
+    if preset["faults"]:
+        side = nodes.math("FLOOR", nodes.math("MULTIPLY", across, preset["faults"] + 1.0))
+        tilted = nodes.math("MULTIPLY_ADD", nodes.math("PINGPONG", side, 2.0), preset["throw"], tilted)
+    if preset["unconformity"]:
+        is_above = nodes.math("GREATER_THAN", level, preset["unconformity"])
         tilted = nodes.math("MULTIPLY_ADD", is_above, nodes.math("SUBTRACT", level, tilted), tilted)
     return tilted
 

@@ -61,8 +61,8 @@ def hardness_of(row):
 
 def modifier_of(item):
     """The modifier of a block that weathers it, or None."""
-    found = (m for m in item.modifiers if m.type == "NODES" and m.node_group and KEY in m.node_group)
-    return next(found, None)
+    modifiers = (m for m in item.modifiers if m.type == "NODES" and m.node_group and KEY in m.node_group)
+    return next(modifiers, None)
 
 
 @dataclass(frozen=True)
@@ -85,19 +85,19 @@ class Weathering:
 def put_on(scene, items, given):
     """Adds Weathering to blocks, and to beds of filled meshes, or changes its settings."""
     group, of_model = _group(), looks.diagonal(scene) / looks.UNITS
-    for item in items:
-        is_bed = filled_beds.BED in item
-        unit = filled_beds.size(item) / looks.UNITS if is_bed else of_model
-        modifier = modifier_of(item)
+    for obj in items:
+        is_bed = filled_beds.BED in obj
+        unit = filled_beds.size(obj) / looks.UNITS if is_bed else of_model
+        modifier = modifier_of(obj)
         if modifier is None:
-            modifier = item.modifiers.new(NAME, "NODES")
+            modifier = obj.modifiers.new(NAME, "NODES")
             modifier.show_in_editmode = False
         modifier.node_group = group
         for name, value in _values(given, unit).items():
             versions.set_group_input(modifier, name, value)
         if is_bed:
-            versions.set_group_input(modifier, "Hardness", _hardness_of_bed(item))
-        item.pop(HARDNESS, None)
+            versions.set_group_input(modifier, "Hardness", _hardness_of_bed(obj))
+        obj.pop(HARDNESS, None)
     for material in _rocks(items):
         edge_wear.put_on(material)
     follow(scene)
@@ -105,43 +105,43 @@ def put_on(scene, items, given):
 
 def _rocks(items):
     """The materials of blocks and beds."""
-    return {slot.material for item in items for slot in item.material_slots if slot.material is not None}
+    return {slot.material for obj in items for slot in obj.material_slots if slot.material is not None}
 
 
-def _values(given, unit):
+def _values(values, unit):
     """The inputs of the modifier. unit: a texture unit."""
     return {
-        "Strength": given.strength * _UNITS["Strength"] * unit,
-        "Edge Rounding": given.rounding,
-        "Noise Scale": given.noise * _UNITS["Noise Scale"] * unit,
-        "Bed Thickness": given.noise * _UNITS["Bed Thickness"] * unit,
-        "Edge Wear": given.wear * _UNITS["Edge Wear"] * unit,
-        "Seed": given.seed,
-        "Grass Slope": given.grass,
-        "Scree Slope": given.scree,
-        "Detail": given.detail,
-        "Plants and Stones": given.plants,
+        "Strength": values.strength * _UNITS["Strength"] * unit,
+        "Edge Rounding": values.rounding,
+        "Noise Scale": values.noise * _UNITS["Noise Scale"] * unit,
+        "Bed Thickness": values.noise * _UNITS["Bed Thickness"] * unit,
+        "Edge Wear": values.wear * _UNITS["Edge Wear"] * unit,
+        "Seed": values.seed,
+        "Grass Slope": values.grass,
+        "Scree Slope": values.scree,
+        "Detail": values.detail,
+        "Plants and Stones": values.plants,
         "Scatter Size": unit,
         **{name: _cover(name, unit) for name in COVERS},
-        scatter.TUFT: scatter.item(scatter.TUFT) if given.plants else None,
-        scatter.STONE: scatter.item(scatter.STONE) if given.plants else None,
+        scatter.TUFT: scatter.item(scatter.TUFT) if values.plants else None,
+        scatter.STONE: scatter.item(scatter.STONE) if values.plants else None,
     }
 
 
-def _hardness_of_bed(item):
+def _hardness_of_bed(obj):
     """That of the look of its rock."""
-    given = (slot.material.get(looks.KEY) for slot in item.material_slots if slot.material)
-    return LOOKS[next((look for look in given if look in LOOKS), DEFAULT)].hardness
+    names = (slot.material.get(looks.KEY) for slot in obj.material_slots if slot.material)
+    return LOOKS[next((look for look in names if look in LOOKS), DEFAULT)].hardness
 
 
 def take_off(items):
     """Removes the weathering of blocks, and worn edges from materials that no weathered block has."""
-    for item in items:
-        modifier = modifier_of(item)
+    for obj in items:
+        modifier = modifier_of(obj)
         if modifier is not None:
-            item.modifiers.remove(modifier)
-            item.pop(HARDNESS, None)
-    worn = (item for item in bpy.data.objects if item.type == "MESH" and modifier_of(item) is not None)
+            obj.modifiers.remove(modifier)
+            obj.pop(HARDNESS, None)
+    worn = (obj for obj in bpy.data.objects if obj.type == "MESH" and modifier_of(obj) is not None)
     for material in _rocks(items) - _rocks(worn):
         edge_wear.take_off(material)
 
@@ -150,19 +150,19 @@ def follow(scene):
     """Updates the hardness of weathered blocks where that of their properties has changed; values set by hand
     in the modifier stay otherwise."""
     for block in scene.realmodel.results:
-        item = block.object
-        if item is None or item.library is not None or (modifier := modifier_of(item)) is None:
+        obj = block.object
+        if obj is None or obj.library is not None or (modifier := modifier_of(obj)) is None:
             continue
         hardness = float(np.float32(hardness_of(library_rows.find(scene, block.property_id))))
-        if item.get(HARDNESS) != hardness:
+        if obj.get(HARDNESS) != hardness:
             versions.set_group_input(modifier, "Hardness", hardness)
-            item[HARDNESS] = hardness
+            obj[HARDNESS] = hardness
 
 
 def _cover(name, unit):
     """The material of grass or scree."""
-    known = (m for m in bpy.data.materials if m.get(KEY) == name and m.library is None)
-    material = next(known, None)
+    candidates = (m for m in bpy.data.materials if m.get(KEY) == name and m.library is None)
+    material = next(candidates, None)
     if material is None:
         look, color = COVERS[name]
         material = bpy.data.materials.new(name)
@@ -184,8 +184,8 @@ def _fill(group):
     for name, (kind, *values) in _INPUTS.items():
         versions.add_group_socket(group, name, kind, values)
     nodes = _Nodes(group)
-    given = nodes.new("NodeGroupInput").outputs
-    geometry = nodes.to("GeometryNodeSubdivideMesh", given["Geometry"], Level=given["Detail"])
+    inputs = nodes.new("NodeGroupInput").outputs
+    geometry = nodes.to("GeometryNodeSubdivideMesh", inputs["Geometry"], Level=inputs["Detail"])
     is_top = nodes.named("is_top", "BOOLEAN")
     surface = nodes.named("surface", "INT")
     exposed = nodes.math("MAXIMUM", is_top, nodes.math("COMPARE", surface, -1.0, 0.5))
@@ -194,7 +194,7 @@ def _fill(group):
     position = nodes.of("GeometryNodeInputPosition", "Position")
     part = nodes.to("GeometryNodeSeparateGeometry", geometry, Selection=exposed)
     part.node.domain = "FACE"
-    depth = nodes.math("MULTIPLY", _depth(nodes, given, position), given["Strength"])
+    depth = nodes.math("MULTIPLY", _depth(nodes, inputs, position), inputs["Strength"])
     inward = nodes.vector("SCALE", nodes.of("GeometryNodeInputNormal", "Normal"), -1.0)
     # Each vertex goes at least as far inwards as the exposed point beside it: else faces between blocks would
     # stick out of the walls that fell back.
@@ -202,29 +202,29 @@ def _fill(group):
     reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
     push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
     geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=nodes.vector("SCALE", inward, push))
-    is_fine = nodes.math("GREATER_THAN", given["Detail"], 0.5)  # coarse polygons would lose their shape
-    rounding = nodes.math("MULTIPLY", given["Edge Rounding"], is_fine)
+    is_fine = nodes.math("GREATER_THAN", inputs["Detail"], 0.5)  # coarse polygons would lose their shape
+    rounding = nodes.math("MULTIPLY", inputs["Edge Rounding"], is_fine)
     for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
         middle = nodes.on("POINT", nodes.on("EDGE", position))
         shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), rounding)
         geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
     geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry, Selection=is_fine)
-    geometry = nodes.stored(geometry, edge_wear.ATTRIBUTE, given["Edge Wear"])
-    geometry = _covered(nodes, given, geometry, is_top, position)
+    geometry = nodes.stored(geometry, edge_wear.ATTRIBUTE, inputs["Edge Wear"])
+    geometry = _covered(nodes, inputs, geometry, is_top, position)
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
 
 
-def _depth(nodes, given, position):
+def _depth(nodes, inputs, position):
     """The depth of erosion, about 0 to 2: larger and uneven in soft rock; by layers in bedded rock."""
-    soft = nodes.math("SUBTRACT", 1.0, given["Hardness"])
-    place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
+    soft = nodes.math("SUBTRACT", 1.0, inputs["Hardness"])
+    place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, inputs["Noise Scale"]))
     shift = nodes.new("ShaderNodeCombineXYZ")
     for axis, step in enumerate((12.7, 7.3, 31.1)):
-        nodes.link(nodes.math("MULTIPLY", given["Seed"], step), shift.inputs[axis])
+        nodes.link(nodes.math("MULTIPLY", inputs["Seed"], step), shift.inputs[axis])
     place = nodes.vector("ADD", place, shift.outputs[0])
     uneven = nodes.ramp(nodes.noise(place, 1.0, 4.0), 0.25, 0.75, 0.0, 1.0)
     above = nodes.math("MULTIPLY", nodes.named("height", "FLOAT"), nodes.named("thickness", "FLOAT"))
-    above = nodes.math("DIVIDE", above, given["Bed Thickness"])
+    above = nodes.math("DIVIDE", above, inputs["Bed Thickness"])
     above = nodes.math("ADD", above, nodes.math("MULTIPLY", nodes.named("age", "FLOAT"), 7.3))
     beds = nodes.new("ShaderNodeCombineXYZ")
     nodes.link(nodes.math("ADD", above, shift.outputs[0]), beds.inputs[2])
@@ -234,24 +234,24 @@ def _depth(nodes, given, position):
     return nodes.math("ADD", level, nodes.math("MULTIPLY", rest, nodes.math("ADD", soft, 0.35)))
 
 
-def _covered(nodes, given, geometry, is_top, position):
+def _covered(nodes, inputs, geometry, is_top, position):
     """Grass, and scree on steeper ground, with a ragged border; tufts and stones on them."""
-    place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
+    place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, inputs["Noise Scale"]))
     ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
     up = nodes.part(nodes.turned(nodes.of("GeometryNodeInputNormal", "Normal")), 2)
     slope = nodes.math("ADD", nodes.math("ARCCOSINE", up), ragged)
     scattered = []
     for name, thing in (("Scree", scatter.STONE), ("Grass", scatter.TUFT)):
-        steepest = given[f"{name} Slope"]
+        steepest = inputs[f"{name} Slope"]
         here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", slope, steepest), is_top)
         here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", steepest, 0.0))
         around = nodes.on("FACE", nodes.on("POINT", nodes.on("FACE", here)))
         here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", around, _ALONE))
-        geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=given[name])
+        geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=inputs[name])
         scattered.append((thing, here))
     joined = nodes.new("GeometryNodeJoinGeometry")
     for thing, here in scattered:
-        nodes.link(scatter.on(nodes, given, geometry, thing, here), joined.inputs[0])
+        nodes.link(scatter.on(nodes, inputs, geometry, thing, here), joined.inputs[0])
     nodes.link(geometry, joined.inputs[0])
     return joined.outputs[0]
 
@@ -285,9 +285,9 @@ class _Nodes(Nodes):
 
     def nearest(self, geometry, place, values):
         """The values of fields at the point of a geometry that is nearest to a position."""
-        found = self.new("GeometryNodeSampleNearest")
-        self.link(geometry, next(s for s in found.inputs if s.type == "GEOMETRY"))
-        self.link(place, found.inputs["Sample Position"])
+        nearest_node = self.new("GeometryNodeSampleNearest")
+        self.link(geometry, next(s for s in nearest_node.inputs if s.type == "GEOMETRY"))
+        self.link(place, nearest_node.inputs["Sample Position"])
         sampled = []
         for value in values:
             node = self.new("GeometryNodeSampleIndex")
@@ -295,7 +295,7 @@ class _Nodes(Nodes):
             node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
             self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
             self.link(value, _of_type(node.inputs, kind))
-            self.link(found.outputs["Index"], node.inputs["Index"])
+            self.link(nearest_node.outputs["Index"], node.inputs["Index"])
             sampled.append(_of_type(node.outputs, kind))
         return sampled
 
