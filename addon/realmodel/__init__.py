@@ -52,8 +52,8 @@ def register_for_batch():
     """Registers this copy of RealModel where none is, or another one: build_model.py brings its own along."""
     import bpy
 
-    known = bpy.types.Scene.bl_rna.properties.get("realmodel")
-    owner = type(known.fixed_type).__module__.rpartition(".")[0] if known else None
+    pointer = bpy.types.Scene.bl_rna.properties.get("realmodel")
+    owner = type(pointer.fixed_type).__module__.rpartition(".")[0] if pointer else None
     if owner != __name__:
         if owner:
             sys.modules[owner].unregister()

@@ -80,8 +80,8 @@ def current():
     addon = bpy.context.preferences.addons.get(__package__)
     if addon is not None and addon.preferences is not None:
         return addon.preferences
-    own = RealModelPreferences.__annotations__
-    return SimpleNamespace(**{name: made.keywords.get("default", 0) for name, made in own.items()})
+    annotations = RealModelPreferences.__annotations__
+    return SimpleNamespace(**{name: made.keywords.get("default", 0) for name, made in annotations.items()})
 
 
 def build_memory():

@@ -45,24 +45,24 @@ def _all(settings, update, updates):
 
 
 def _property(setting, update):
-    given = {"name": setting.label, "description": setting.tip, "options": set(), "update": update}
+    attrs = {"name": setting.label, "description": setting.tip, "options": set(), "update": update}
     if setting.words:
         return EnumProperty(
-            **given,
+            **attrs,
             items=items(setting.words),
             default=setting.default or next(iter(setting.words)) or "NONE",
         )
     if setting.kind in _TEXTS or setting.kind in _SEARCH:
         if setting.kind in _SEARCH:
-            given["search"] = _SEARCH[setting.kind]
-        return StringProperty(**given)
+            attrs["search"] = _SEARCH[setting.kind]
+        return StringProperty(**attrs)
     if setting.kind == "truth":
-        return BoolProperty(**given, default=setting.default)
-    given |= {key: bound for key, bound in (("min", setting.low), ("max", setting.high)) if bound is not None}
+        return BoolProperty(**attrs, default=setting.default)
+    attrs |= {key: bound for key, bound in (("min", setting.low), ("max", setting.high)) if bound is not None}
     if setting.kind in ("whole", "integer"):
-        return IntProperty(**given, default=int(setting.start))
+        return IntProperty(**attrs, default=int(setting.start))
     return FloatProperty(
-        **given, default=setting.start, subtype="DISTANCE" if setting.kind == "length" else "NONE"
+        **attrs, default=setting.start, subtype="DISTANCE" if setting.kind == "length" else "NONE"
     )
 
 
@@ -70,4 +70,4 @@ def items(words):
     """The items of a menu. Each keeps the number by which Blender stores it; what chooses by itself comes
     first."""
     numbered = [(word or "NONE", *texts, "", number) for number, (word, texts) in enumerate(words.items())]
-    return sorted(numbered, key=lambda item: item[0] != "auto")
+    return sorted(numbered, key=lambda entry: entry[0] != "auto")

@@ -16,14 +16,14 @@ _KINDS = tuple(
 
 def modules_in(package, folders):
     """All modules of a package. folders: its __path__."""
-    return [importlib.import_module(f"{package}.{each.name}") for each in pkgutil.iter_modules(folders)]
+    return [importlib.import_module(f"{package}.{module.name}") for module in pkgutil.iter_modules(folders)]
 
 
 def classes(modules):
     """The classes of the modules that Blender knows once they are registered, each once."""
-    found = (cls for module in modules for cls in vars(module).values() if isinstance(cls, type))
-    own = (cls for cls in found if issubclass(cls, _KINDS) and cls.__module__.startswith(__package__))
-    return list(dict.fromkeys(own))
+    types = (cls for module in modules for cls in vars(module).values() if isinstance(cls, type))
+    rna_types = (cls for cls in types if issubclass(cls, _KINDS) and cls.__module__.startswith(__package__))
+    return list(dict.fromkeys(rna_types))
 
 
 def drop_handler(name, tip, label, opens):

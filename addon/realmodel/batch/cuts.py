@@ -56,11 +56,11 @@ class SectionRequest:
     def run(self, model, outputs, threads: int, progress) -> str:
         """Makes the section and stages its file. Returns the summary for the terminal."""
         progress(1.0, f"cutting {self.file.name}")
-        found = self.cut(model, threads)
+        section = self.cut(model, threads)
         drawn = {"exaggeration": self.exaggeration, "hole_width": self.hole_width}
-        self.exporter.write(found, self.file, outputs, **drawn)
+        self.exporter.write(section, self.file, outputs, **drawn)
         kind = self.option.removeprefix("--")
-        return f"{kind} {self.file.name}: {len(found)} polygons, area {found.area:.2f}"
+        return f"{kind} {self.file.name}: {len(section)} polygons, area {section.area:.2f}"
 
 
 @dataclass
@@ -86,18 +86,18 @@ class BoreholeRequest:
     def run(self, model, outputs, _threads: int, progress) -> str:
         """Stages the file. Returns the summary of the borehole for the terminal."""
         progress(1.0, f"writing {self.file.name}")
-        found: Sequence[HoleInterval | Interval]
+        intervals: Sequence[HoleInterval | Interval]
         remarks: Sequence[str] = ()
         if isinstance(self.what, HoleAxis):
             axis = self.what
             hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
             self.exporter.write(hole, self.file, outputs)
-            found, remarks = hole.intervals, hole.remarks
+            intervals, remarks = hole.intervals, hole.remarks
         else:
-            found = model.borehole(*self.what)
-            self.exporter.write((model, found), self.file, outputs)
-        length = sum(interval.length for interval in found)
-        line = f"borehole {self.file.name}: {counted(len(found), 'interval')}, {length:.2f} of rock"
+            intervals = model.borehole(*self.what)
+            self.exporter.write((model, intervals), self.file, outputs)
+        length = sum(interval.length for interval in intervals)
+        line = f"borehole {self.file.name}: {counted(len(intervals), 'interval')}, {length:.2f} of rock"
         return "\n  ".join([line, *remarks])
 
 

@@ -370,13 +370,13 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 def _with_negative_values(arguments: list[str]) -> list[str]:
     """The arguments, a value that begins with a negative number joined to its option: alone argparse takes it
     for an option."""
-    found: list[str] = []
+    words: list[str] = []
     for argument in arguments:
-        if _NEGATIVE.match(argument) and found and found[-1].startswith("--") and "=" not in found[-1]:
-            found[-1] += f"={argument}"
+        if _NEGATIVE.match(argument) and words and words[-1].startswith("--") and "=" not in words[-1]:
+            words[-1] += f"={argument}"
         else:
-            found.append(argument)
-    return found
+            words.append(argument)
+    return words
 
 
 def _conflict(option: Option, value: Any, chosen: set[str]) -> str:

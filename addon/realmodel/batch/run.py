@@ -98,8 +98,8 @@ def run(options: argparse.Namespace) -> None:
     lines += [wanted.line(mesh) for wanted in mesh_requests]
     if cells is not None:
         lines.append(cleaned_line(cells))
-    made = [each for each in (model, mesh, cells) if each is not None]
-    _print(options, [warning for each in made for warning in each.warnings], lines)
+    made = [result for result in (model, mesh, cells) if result is not None]
+    _print(options, [warning for result in made for warning in result.warnings], lines)
 
 
 def _require_fields(options: argparse.Namespace, project) -> None:
@@ -136,14 +136,14 @@ def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
 
 def _estimate(options: argparse.Namespace, project, progress) -> None:
     try:
-        found = estimate(
+        forecast = estimate(
             project, cells=options.cells, threads=options.threads, progress=progress, stage=options.stage
         )
     finally:
         progress.close()
-    print(found.table(), flush=True)
-    limit = found.available if options.memory is None else options.memory
-    if found.memory > limit:
+    print(forecast.table(), flush=True)
+    limit = forecast.available if options.memory is None else options.memory
+    if forecast.memory > limit:
         print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
 
 
@@ -165,12 +165,12 @@ def _tiles(options: argparse.Namespace, project, progress) -> None:
     from ..distributed import build as build_tiles
 
     with _client(options, progress) as client:
-        found = build_tiles(
+        tiled = build_tiles(
             project, options.out, options.tiles, client, cells=options.cells, progress=progress
         )
     if options.export_field is not None:
-        FIELDS.save([rock.fields for rock in found.rock_fields()], options.export_field)
-    _print(options, found.warnings, [tiles_table(found)])
+        FIELDS.save([rock.fields for rock in tiled.rock_fields()], options.export_field)
+    _print(options, tiled.warnings, [tiles_table(tiled)])
 
 
 def _ensemble(options: argparse.Namespace, project, progress, probabilities: ProbabilityRequests) -> None:
@@ -179,7 +179,7 @@ def _ensemble(options: argparse.Namespace, project, progress, probabilities: Pro
     for request in probabilities.made:
         request.read()
     with _client(options, progress) as client:
-        found = ensemble(
+        result = ensemble(
             project,
             options.ensemble,
             options.out,
@@ -190,7 +190,7 @@ def _ensemble(options: argparse.Namespace, project, progress, probabilities: Pro
             also=probabilities.write,
             progress=progress,
         )
-    _print(options, found.model.warnings, [ensemble_table(found)])
+    _print(options, result.model.warnings, [ensemble_table(result)])
 
 
 def _left_out_holes(options: argparse.Namespace, model, progress):

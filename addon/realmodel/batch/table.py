@@ -62,25 +62,25 @@ def surface_table(surfaces) -> str:
     outside the hull of the points."""
     rows = []
     rocks = [entry.rock.name for entry in surfaces.rock_inputs for _ in entry.surfaces]
-    given = [surface for entry in surfaces.rock_inputs for surface in entry.rock.surfaces]
-    for number, kind in enumerate(surfaces.surface_kind[len(given) :].tolist(), len(given)):
+    inputs = [surface for entry in surfaces.rock_inputs for surface in entry.rock.surfaces]
+    for number, kind in enumerate(surfaces.surface_kind[len(inputs) :].tolist(), len(inputs)):
         heights = surfaces.surface(number)[0][:, 2]
         shape = [f"{len(heights)}", f"{heights.min():.7g}", f"{heights.max():.7g}"]
         rows.append([surfaces.surface_names[number], "", ("fault", "body")[kind - 1], "", *shape, "", ""])
-    for number in reversed(range(len(given))):
+    for number in reversed(range(len(inputs))):
         result = surfaces.interpolations[number]
         attributes = surfaces.surface_attributes(number)
-        known = attributes["variance"][np.isfinite(attributes["variance"])]
+        variances = attributes["variance"][np.isfinite(attributes["variance"])]
         rows.append(
             [
                 surfaces.surface_names[number],
                 rocks[number],
                 result.method if result else "ready mesh",
-                f"{len(given[number].points)}" if result else "",
+                f"{len(inputs[number].points)}" if result else "",
                 f"{len(attributes['height'])}",
                 f"{attributes['height'].min():.7g}",
                 f"{attributes['height'].max():.7g}",
-                f"{known.max() ** 0.5:.3g}" if len(known) else "",
+                f"{variances.max() ** 0.5:.3g}" if len(variances) else "",
                 f"{100 * result.extrapolated:.3g} %" if result else "",
             ]
         )

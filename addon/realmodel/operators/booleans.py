@@ -19,7 +19,7 @@ def _selected(context):
     active = context.active_object
     if active is None or active.type != "MESH":
         return "the active object is no mesh; make the object that is to be changed active"
-    others = [item for item in context.selected_objects if item != active and item.type == "MESH"]
+    others = [obj for obj in context.selected_objects if obj != active and obj.type == "MESH"]
     if len(others) != 1:
         return "select one other mesh object beside the active one"
     return None
@@ -35,10 +35,10 @@ def _two_meshes(context):
 
 
 def _editable(context):
-    item = context.active_object
-    if item is None or (item.library is None and item.override_library is None):
+    obj = context.active_object
+    if obj is None or (obj.library is None and obj.override_library is None):
         return None
-    return f"{item.name} is linked from another file; make it local first"
+    return f"{obj.name} is linked from another file; make it local first"
 
 
 class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
@@ -65,7 +65,7 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
         if reason:
             raise InputRefused(reason)
         active = context.active_object
-        other = next(item for item in context.selected_objects if item != active and item.type == "MESH")
+        other = next(obj for obj in context.selected_objects if obj != active and obj.type == "MESH")
         depsgraph = context.evaluated_depsgraph_get()
         return BooleanJob(context.scene, active, other, self.operation, depsgraph, self.keep_operands)
 

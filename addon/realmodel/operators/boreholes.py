@@ -75,7 +75,7 @@ def _rasters(properties):
     """The names of the rasters beside the first of the chosen maps."""
     path = _first_map(properties)
     beside = sorted(path.parent.iterdir()) if path is not None and os.path.isdir(path.parent) else []
-    return [each.name for each in beside if each.suffix.lower() in endings(RASTER)]
+    return [file.name for file in beside if file.suffix.lower() in endings(RASTER)]
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
@@ -180,49 +180,47 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             tables.give_dips_to_series(every=bool(self.series))
         surface = _surface_for_dips(scene).name if tables.dips and series is None else ""
         rock = settings.active_rock(scene)
-        found = field_tables.read(
-            scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces
-        )
+        data = field_tables.read(scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces)
         rock = rock or add_rock(scene)
-        warnings = [*found.picks.warnings, *found.warnings, *left_out_texts(found.left_out).values()]
-        if found.picks.points or found.picks.switched_off or found.new:
-            warnings += borehole_points.give(scene, rock, found.picks, self.add_surfaces, found.new)
-        given = list(found.picks.points.values())
-        if len(found.observations):
-            observed_blocks.add(rock, found.observations)
-            given.append(found.observations.places)
+        warnings = [*data.picks.warnings, *data.warnings, *left_out_texts(data.left_out).values()]
+        if data.picks.points or data.picks.switched_off or data.new:
+            warnings += borehole_points.give(scene, rock, data.picks, self.add_surfaces, data.new)
+        places = list(data.picks.points.values())
+        if len(data.observations):
+            observed_blocks.add(rock, data.observations)
+            places.append(data.observations.places)
         if surface:
             row = rock.surfaces[surface]  # it may have moved where surfaces were added
-            surface_dips.add(row, found.dips)
+            surface_dips.add(row, data.dips)
             warnings += method_settings.dips_unused(row)
         if is_of_sheets:
-            found.give_dips_to_sheets()
-        if found.rock_dips is not None:
-            surface_dips.add(rock, found.rock_dips)
-        if found.series_dips is not None:
-            surface_dips.add(series, found.series_dips)
-        borehole_picks.keep(rock, found.picks.holes)
-        borehole_picks.keep_ends(rock, found.picks.ends)
-        for draped, file in zip(found.maps, tables.maps, strict=True):
+            data.give_dips_to_sheets()
+        if data.rock_dips is not None:
+            surface_dips.add(rock, data.rock_dips)
+        if data.series_dips is not None:
+            surface_dips.add(series, data.series_dips)
+        borehole_picks.keep(rock, data.picks.holes)
+        borehole_picks.keep_ends(rock, data.picks.ends)
+        for draped, file in zip(data.maps, tables.maps, strict=True):
             map_settings.keep(rock, draped)
-            given.append(draped.vertices)
+            places.append(draped.vertices)
             if ground := map_settings.take_ground(rock, file):
                 text = "is made from the ground, as the youngest surface; check the order of the surfaces"
                 warnings.append(f"'{ground}' {text}")
-        for values in found.values:
+        for values in data.values:
             interval_values.add(rock, values)
-            given.append(values.begins)
-        if found.new and given:
-            plan_mesh.propose_base(rock, np.concatenate(given), is_of_map=bool(found.maps))
+            places.append(values.begins)
+        if data.new and places:
+            plan_mesh.propose_base(rock, np.concatenate(places), is_of_map=bool(data.maps))
         with settings.filling():
             view = scene.realmodel.view
-            view.show_boreholes = view.show_boreholes or bool(found.picks.holes)
+            view.show_boreholes = view.show_boreholes or bool(data.picks.holes)
             view.show_dips = view.show_dips or bool(tables.dips or tables.rock_dips or tables.series_dips)
-            view.show_map = view.show_map or bool(found.maps)
-        arrived(context, rock, given)
+            view.show_map = view.show_map or bool(data.maps)
+        arrived(context, rock, places)
         for text in warnings:
             self.report({"WARNING"}, text)
-        self.report({"INFO"}, _summary(found, surface or (series.name if series is not None else "")))
+        self.report({"INFO"}, _summary(data, surface or (series.name if series is not None else "")))
 
     def _tables(self, context):
         """The chosen tables, and those that are named. Raises InputRefused."""
@@ -288,10 +286,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         return True  # a file of any ending; what the chosen tables are is drawn anew
 
 
-def _beside(table, given):
+def _beside(table, filepath):
     """The path of another table, which may stand beside one; None where none is given."""
-    path = project_settings.absolute(given)
-    return table.parent / given.strip() if path is not None and not os.path.isfile(path) else path
+    path = project_settings.absolute(filepath)
+    return table.parent / filepath.strip() if path is not None and not os.path.isfile(path) else path
 
 
 def shown_kind(path, columns, map_layer="", map_block=""):
@@ -348,35 +346,35 @@ def _series_for_dips(scene, name):
     if not name:
         is_of_field = surface is not None and series_settings.is_level_set(surface)
         return series_settings.of_surface(surface) if is_of_field else None
-    there = [] if rock is None else list(rock.series)
-    found = next((row for row in there if row.name == name), None)
-    if found is None:
-        advice = f"there are {', '.join(row.name for row in there)}" if there else "add one first (Series, +)"
+    rows = [] if rock is None else list(rock.series)
+    series = next((row for row in rows if row.name == name), None)
+    if series is None:
+        advice = f"there are {', '.join(row.name for row in rows)}" if rows else "add one first (Series, +)"
         raise InputRefused(f"there is no series '{name}'", advice=advice)
-    return found
+    return series
 
 
-def _summary(found, of):
+def _summary(data, of):
     """What was read, in one sentence. of: the name of the surface or of the series whose dips were read."""
     said = []
-    names = dict.fromkeys((*found.picks.points, *found.new))
-    if found.picks.points:
-        said.append(f"points for {counted(len(found.picks.points), 'surface')}")
-    elif found.new:
-        said.append(counted(len(found.new), "new surface"))
-    if len(found.observations):
-        said.append(f"{counted(len(found.observations), 'observation')} of blocks")
-    if found.maps:
-        said.append(f"{counted(sum(len(draped.triangles) for draped in found.maps), 'triangle')} of a map")
-    if found.dips is not None:
-        said.append(f"{counted(len(found.dips), 'dip')} of '{of}'")
-    if found.series_dips is not None:
-        said.append(f"{counted(len(found.series_dips), 'dip')} of series '{of}'")
-    columns = dict.fromkeys(name for values in found.values for name in values.columns)
+    names = dict.fromkeys((*data.picks.points, *data.new))
+    if data.picks.points:
+        said.append(f"points for {counted(len(data.picks.points), 'surface')}")
+    elif data.new:
+        said.append(counted(len(data.new), "new surface"))
+    if len(data.observations):
+        said.append(f"{counted(len(data.observations), 'observation')} of blocks")
+    if data.maps:
+        said.append(f"{counted(sum(len(draped.triangles) for draped in data.maps), 'triangle')} of a map")
+    if data.dips is not None:
+        said.append(f"{counted(len(data.dips), 'dip')} of '{of}'")
+    if data.series_dips is not None:
+        said.append(f"{counted(len(data.series_dips), 'dip')} of series '{of}'")
+    columns = dict.fromkeys(name for values in data.values for name in values.columns)
     if columns:
         said.append(f"{'column' if len(columns) == 1 else 'columns'} {', '.join(columns)} to color by")
-    if found.rock_dips is not None:
-        said.append(f"{counted(len(found.rock_dips), 'dip')} of the rock mass")
+    if data.rock_dips is not None:
+        said.append(f"{counted(len(data.rock_dips), 'dip')} of the rock mass")
     text = ", ".join(said) or "nothing that could be used"
     text = text[0].upper() + text[1:]
     return f"{text}: {', '.join(names)}" if names else text

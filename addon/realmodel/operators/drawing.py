@@ -70,11 +70,11 @@ class _Drawing(InViewport):
             if not len(self._places):
                 raise InputRefused("nothing was drawn", advice="click on the plane, or give use_object")
             return [np.array(self._places)]
-        item = context.active_object
-        if item is None or not settings.is_drawn_object(item):
+        obj = context.active_object
+        if obj is None or not settings.is_drawn_object(obj):
             advice = "make a curve, a mesh or grease pencil strokes active"
             raise InputRefused("the active object has no lines", advice=advice)
-        return drawn_data.lines_of(context.scene, item, context.evaluated_depsgraph_get())
+        return drawn_data.lines_of(context.scene, obj, context.evaluated_depsgraph_get())
 
 
 class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
@@ -174,10 +174,10 @@ class REALMODEL_OT_image_place(Reporting, bpy.types.Operator, ImportHelper):
             heights if is_section else heights * 2,
             is_section,
         )
-        item = placed_images.place(context.scene, path, placing)
-        visible.select_alone(context, item)
+        obj = placed_images.place(context.scene, path, placing)
+        visible.select_alone(context, obj)
         exaggeration_changed(context.scene)
-        self.report({"INFO"}, f"Placed {item.name}")
+        self.report({"INFO"}, f"Placed {obj.name}")
 
     def draw(self, _context):
         layout = self.layout

@@ -57,15 +57,15 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
 
     def tell_done(self, found):
         display.exaggeration_changed(bpy.context.scene)
-        item = ensembles.item_of(bpy.context.scene)
-        if item is not None:
-            visible.select_alone(bpy.context, item)
+        obj = ensembles.item_of(bpy.context.scene)
+        if obj is not None:
+            visible.select_alone(bpy.context, obj)
         self.report({"INFO"}, f"Made {counted(len(found.volumes), 'realization')}")
 
 
 def _an_ensemble(context):
-    there = ensembles.table(context.scene) is not None
-    return None if there else "there is no ensemble; make one first"
+    has_ensemble = ensembles.table(context.scene) is not None
+    return None if has_ensemble else "there is no ensemble; make one first"
 
 
 class REALMODEL_OT_ensemble_remove(Reporting, bpy.types.Operator):

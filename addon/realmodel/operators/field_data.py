@@ -21,8 +21,8 @@ def any_data(context):
 
 
 def a_datum(context):
-    there = handle.active(context.scene) is not None
-    return None if there else "no datum is active; pick one first"
+    has_datum = handle.active(context.scene) is not None
+    return None if has_datum else "no datum is active; pick one first"
 
 
 def any_switched_off(context):
@@ -60,8 +60,8 @@ class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
     location: place_property("Where the datum is, in the coordinates of the scene: the nearest is picked")
 
     def act(self, context):
-        given = self.properties.is_property_set("location")
-        at = np.array(self.location if given else context.scene.cursor.location)
+        has_location = self.properties.is_property_set("location")
+        at = np.array(self.location if has_location else context.scene.cursor.location)
         groups, numbers, places = _shown_places(context.scene)
         if not groups:
             raise InputRefused("there are no data with a place", advice="import points, boreholes or dips")
@@ -77,11 +77,11 @@ class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
         if event.type in {"ESC", "RIGHTMOUSE"}:
             return self.leave(context, {"CANCELLED"})
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
-            found = _under_mouse(context, event)
-            if found is None:
+            datum = _under_mouse(context, event)
+            if datum is None:
                 self.report({"INFO"}, "no datum is here; click nearer to one")
                 return {"RUNNING_MODAL"}
-            self._activate(context, found)
+            self._activate(context, datum)
             return self.leave(context, {"FINISHED"})
         return {"PASS_THROUGH"}
 
@@ -92,10 +92,10 @@ class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
 
 def _under_mouse(context, event):
     """The datum nearest to the mouse in whatever 3D viewport that is; None where none is near."""
-    there = viewports.under_mouse(context, event)
-    if there is None:
+    viewport = viewports.under_mouse(context, event)
+    if viewport is None:
         return None
-    area, mouse = there
+    area, mouse = viewport
     groups, numbers, places = _shown_places(context.scene)
     away = np.linalg.norm(viewports.pixels(area, places) - mouse, axis=1)
     if not (len(away) and away.min() <= _NEAR):

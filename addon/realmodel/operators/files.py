@@ -32,7 +32,7 @@ _OUTDATED = "The model is out of date: what it is made from was changed since it
 
 
 def format_menu(formats, default=None):
-    items = [(known.ending[1:].upper(), f"{known.label} ({known.ending})", known.tip) for known in formats]
+    items = [(entry.ending[1:].upper(), f"{entry.label} ({entry.ending})", entry.tip) for entry in formats]
     return EnumProperty(
         name="Format",
         description="Format of the file; its ending follows",
@@ -43,7 +43,7 @@ def format_menu(formats, default=None):
 
 
 def format_filter(formats):
-    return file_filter(*(known.ending for known in formats))
+    return file_filter(*(entry.ending for entry in formats))
 
 
 class Exporting(Reporting, ExportHelper):
@@ -93,9 +93,9 @@ class Exporting(Reporting, ExportHelper):
         if live.check(bpy.context.scene):
             self.report({"WARNING"}, _OUTDATED)
         path = chosen_path(self, "the output")
-        known = self.filter_glob.replace("*", "").split(";")
-        if path.suffix.lower() not in known:
-            raise UsageError(f"{path}: the name must end in {' or '.join(known)}")
+        endings = self.filter_glob.replace("*", "").split(";")
+        if path.suffix.lower() not in endings:
+            raise UsageError(f"{path}: the name must end in {' or '.join(endings)}")
         return path
 
 
@@ -118,9 +118,9 @@ class ExportingInBackground(InBackground, Exporting):
     def execute(self, context):
         if not self._browsed or bpy.app.background:
             return super().execute(context)
-        given = self.as_keywords(ignore=("filter_glob", "check_existing", "is_chosen"))
+        keywords = self.as_keywords(ignore=("filter_glob", "check_existing", "is_chosen"))
         try:
-            invoke(getattr(bpy.ops.realmodel, self.command), self, is_chosen=True, **given)
+            invoke(getattr(bpy.ops.realmodel, self.command), self, is_chosen=True, **keywords)
         except BuildFailed as error:  # what the other operator reported
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -269,7 +269,7 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
     def write(self, context, path):
         items = scene_export.displayed(context)
         if self.only_selected:
-            items = [item for item in items if item.select_get()]
+            items = [obj for obj in items if obj.select_get()]
         if not items:
             raise InputRefused("nothing of the model would be exported", advice="display or select blocks")
         scene_export.write(context, items, path, self.picture_size if self.bake_looks else 0)

@@ -31,8 +31,8 @@ def _set_preset(self, _context):
 
 
 def _a_mesh(context):
-    item = context.active_object
-    if item is None or item.type != "MESH":
+    obj = context.active_object
+    if obj is None or obj.type != "MESH":
         return "the active object is no mesh; make the object that is to be filled active"
     return None
 
@@ -168,16 +168,16 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     _problem = ""
 
     def invoke(self, context, event):
-        item = context.active_object
-        given = strata_presets.of_item(item)
-        if given is not None and not self.properties.is_property_set("preset"):
-            self.preset = given
+        obj = context.active_object
+        preset = strata_presets.of_item(obj)
+        if preset is not None and not self.properties.is_property_set("preset"):
+            self.preset = preset
         if bpy.app.background or context.window is None:
             return self.execute(context)
         try:
-            self._shape = FilledShape.of(item, context.evaluated_depsgraph_get())
+            self._shape = FilledShape.of(obj, context.evaluated_depsgraph_get())
             self._shape.closed(self.base_depth)
-            self._preview, self._preset = FillPreview(item, self._shape), self.preset
+            self._preview, self._preset = FillPreview(obj, self._shape), self.preset
             self._show()
         except RealModelError as error:
             self._end_preview()
@@ -244,7 +244,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         return self._filling
 
     def tell_done(self, result):
-        beds = sum(VOLUME in item for item in result.objects)
+        beds = sum(VOLUME in obj for obj in result.objects)
         for warning in self._filling.warnings:
             self.report({"WARNING"}, warning)
         has_picture = by_hand(self) and set_up_first(bpy.context.scene)

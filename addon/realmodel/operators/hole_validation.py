@@ -12,13 +12,13 @@ from .reporting import Reporting, a_model, not_building
 
 
 def any_holes(context):
-    there = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
-    return None if there else "there are no boreholes; import some first"
+    has_holes = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
+    return None if has_holes else "there are no boreholes; import some first"
 
 
 def a_table(context):
-    there = len(context.scene.realmodel.left_out_holes)
-    return None if there else "no holes were left out yet; press Leave Out Holes first"
+    count = len(context.scene.realmodel.left_out_holes)
+    return None if count else "no holes were left out yet; press Leave Out Holes first"
 
 
 class REALMODEL_OT_cross_validate_holes(InBackground, bpy.types.Operator):

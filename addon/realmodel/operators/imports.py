@@ -137,11 +137,11 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             invoke(bpy.ops.realmodel.surface_add, self, **chosen)
             return
         scene = context.scene
-        given, warnings = self._given(context)
+        surfaces, warnings = self._given(context)
         rock = settings.active_rock(scene) or add_rock(scene)
         read = {}
         with settings.filling():
-            for surface in given:
+            for surface in surfaces:
                 row = rock.surfaces.add()
                 row.name = settings.free_name(rock.surfaces, surface.name, own=row)
                 row.property_id = library_rows.for_surface(scene, row.name)
@@ -154,7 +154,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
                     if surface.source == "POINTS_FILE" and surface.places is not None:
                         read[data_objects.file_key(row)] = surface.places
             rock.active_surface = len(rock.surfaces) - 1
-        arrived(context, rock, [s.places for s in given if s.item is None and s.places is not None], read)
+        arrived(context, rock, [s.places for s in surfaces if s.item is None and s.places is not None], read)
         for text in warnings:
             self.report({"WARNING"}, text)
 
@@ -199,27 +199,27 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
     def _given(self, context):
         """The surfaces to add, the oldest first, and warnings about them. Raises InputRefused."""
         if self.use_object:
-            item = context.active_object
-            if item is None or item.type != "MESH":
+            obj = context.active_object
+            if obj is None or obj.type != "MESH":
                 raise InputRefused("the active object is no mesh", advice="make a mesh object active")
-            shapes.require_open(item)
-            return [_Given(self.name.strip() or item.name, item=item)], []
+            shapes.require_open(obj)
+            return [_Given(self.name.strip() or obj.name, item=obj)], []
         paths = [] if self.empty else self.paths()
         if not paths:
             return [_Given(self.name.strip() or "surface")], []
-        found, warnings = [], []
+        surfaces, warnings = [], []
         for path in paths:
             for surface in self._of_file(path):
                 texts = _read(surface, context.scene.realmodel.units)
                 warnings += [text for text in texts if text not in warnings]
-                found.append(surface)
-        if len(found) == 1:
-            found[0].name = self.name.strip() or found[0].name
-            return found, warnings
-        names = [surface.name for surface in found]
-        order = age_order(names, [surface.places for surface in found])
+                surfaces.append(surface)
+        if len(surfaces) == 1:
+            surfaces[0].name = self.name.strip() or surfaces[0].name
+            return surfaces, warnings
+        names = [surface.name for surface in surfaces]
+        order = age_order(names, [surface.places for surface in surfaces])
         warnings += [text] if (text := order.warning(names)) else []
-        return [found[number] for number in order.order], warnings
+        return [surfaces[number] for number in order.order], warnings
 
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
@@ -253,18 +253,18 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
     def _of_objects(self, path, objects):
         """The surfaces of a file of objects, each by its name: its open surfaces, and sets of points and
         lines. Closed ones are blocks of another model."""
-        found = []
-        for each in objects:
-            layer = {"layer": each.name}
-            if each.kind in (POINTS, LINES):
-                found.append(_Given(each.name, "POINTS_FILE", path, reading=layer))
-            elif each.kind == SURFACE:
+        surfaces = []
+        for obj in objects:
+            layer = {"layer": obj.name}
+            if obj.kind in (POINTS, LINES):
+                surfaces.append(_Given(obj.name, "POINTS_FILE", path, reading=layer))
+            elif obj.kind == SURFACE:
                 mesh = read_mesh(MeshFile(path, **layer))
                 if len(open_edges(mesh.vertices, mesh.triangles)):
-                    found.append(_Given(each.name, "MESH_FILE", path, reading=layer))
-        if not found:
+                    surfaces.append(_Given(obj.name, "MESH_FILE", path, reading=layer))
+        if not surfaces:
             raise InputRefused("it has neither open surfaces nor points", file=path)
-        return found
+        return surfaces
 
 
 def _read(surface, unit):
@@ -272,16 +272,16 @@ def _read(surface, unit):
     options could make the file readable. Missing heights of shapes are no error: their source can be chosen
     once the surface is there."""
     if surface.source == "MESH_FILE":
-        given = MeshFile(surface.path, **surface.reading)
-        surface.places, warnings = read_mesh(given).in_model(given, unit)
+        mesh_file = MeshFile(surface.path, **surface.reading)
+        surface.places, warnings = read_mesh(mesh_file).in_model(mesh_file, unit)
         return warnings
-    given = PointFile(surface.path, **surface.reading)
+    point_file = PointFile(surface.path, **surface.reading)
     try:
-        given.check()
+        point_file.check()
     except OptionRefused as error:
         raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
     with contextlib.suppress(HeightsMissing):
-        surface.places, warnings = read_point_file(given, unit)
+        surface.places, warnings = read_point_file(point_file, unit)
         return warnings
     return []
 

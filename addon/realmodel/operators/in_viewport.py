@@ -84,10 +84,10 @@ class InViewport(Pointing):
         return {"PASS_THROUGH"}
 
     def _take(self, context, event):
-        found = viewports.under_mouse(context, event)
-        if found is None:
+        viewport = viewports.under_mouse(context, event)
+        if viewport is None:
             return {"PASS_THROUGH"}
-        area, at = found
+        area, at = viewport
         is_held = event.type == "MOUSEMOVE"
         if is_held and np.hypot(*(np.array(at) - self._held)) < _LEAST_STEP:
             return {"RUNNING_MODAL"}

@@ -67,8 +67,8 @@ class REALMODEL_OT_save_chart(Exporting, bpy.types.Operator):
         return settings.active_surface(context.scene).name, self.chart.lower()
 
     def write(self, context, path):
-        found = quality.found(context.scene)
-        drawn = quality.drawing(found, self.chart, context.scene.realmodel.units)
+        surface_quality = quality.found(context.scene)
+        drawn = quality.drawing(surface_quality, self.chart, context.scene.realmodel.units)
         if drawn is None:
             raise UsageError("the surface has no such chart")
         save_drawing(drawn, path)

@@ -64,10 +64,10 @@ class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
         path = chosen_path(self, "the library")
         library = load_library(path)
         scene = context.scene
-        kept = (
+        entries = (
             [] if self.replace else [e for e in library_rows.library_of(scene) or () if e.id not in library]
         )
-        library_rows.fill(scene, [*kept, *library])
+        library_rows.fill(scene, [*entries, *library])
         library_rows.update_materials(scene)
         looks.follow(scene)
         display.colors_changed(scene)

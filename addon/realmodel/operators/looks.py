@@ -58,9 +58,9 @@ def _blocks(context):
     """The selected blocks and beds of filled meshes, all where none is selected."""
     items = [row.object for row in context.scene.realmodel.results if row.object is not None]
     items += filled_beds.of_scene(context.scene)
-    items = [item for item in items if item.type == "MESH" and item.library is None]
+    items = [obj for obj in items if obj.type == "MESH" and obj.library is None]
     selected = set(context.selected_objects)
-    return [item for item in items if item in selected] or items
+    return [obj for obj in items if obj in selected] or items
 
 
 class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
@@ -137,8 +137,8 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = _blocks(context)
-        given = weathering.Weathering(*values, *covers, self.detail, self.plants, self.wear)
-        weathering.put_on(context.scene, items, given)
+        parameters = weathering.Weathering(*values, *covers, self.detail, self.plants, self.wear)
+        weathering.put_on(context.scene, items, parameters)
         self.report(
             {"INFO"}, f"Weathered {counted(len(items), 'block')}; the modifier of each has all settings"
         )
@@ -151,7 +151,7 @@ class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
     needs = (a_model_or_beds,)
 
     def act(self, context):
-        items = [item for item in _blocks(context) if weathering.modifier_of(item) is not None]
+        items = [obj for obj in _blocks(context) if weathering.modifier_of(obj) is not None]
         if not items:
             raise InputRefused("no block is weathered", advice="use Weathering first, or select other blocks")
         weathering.take_off(items)
@@ -171,8 +171,8 @@ class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        given = self.directory.strip()
-        folder = project_settings.absolute(given) if given else look_assets.default_folder()
+        directory = self.directory.strip()
+        folder = project_settings.absolute(directory) if directory else look_assets.default_folder()
         look_assets.write(folder)
         look_assets.register(folder)
         self.report({"INFO"}, f"The asset library '{look_assets.LIBRARY}' is in {folder}")

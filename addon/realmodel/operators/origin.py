@@ -30,7 +30,7 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
         interfaces = [row for row in rows if row.interface is not None and row.interface not in mine]
         made += [row.interface for row in interfaces]
         items = [*mine, *made, *data_objects.objects(scene)]
-        corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
+        corners = [obj.matrix_world @ Vector(corner) for obj in items for corner in obj.bound_box]
         old = project_settings.model_origin(scene)
         if not corners:
             raise InputRefused("there is nothing to move yet", advice="import surfaces first")
@@ -38,10 +38,10 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
         if not moved.any():
             raise InputRefused("the model stands near the zero of the scene")
         scene[KEY] = [float(value) for value in new]
-        for item in {_top(item) for item in mine}:
-            item.matrix_basis = Matrix.Translation(moved) @ item.matrix_basis
+        for obj in {_top(obj) for obj in mine}:
+            obj.matrix_basis = Matrix.Translation(moved) @ obj.matrix_basis
         unchanged = [row for row in interfaces if _digest(context, row) == row.interface_digest]
-        for mesh in {item.data for item in made}:
+        for mesh in {obj.data for obj in made}:
             mesh.transform(Matrix.Translation(moved))
             mesh.update()
         with settings.filling():
@@ -59,8 +59,8 @@ def _digest(context, row):
     return shapes.digest(*shapes.triangulation(row.interface, context.evaluated_depsgraph_get()))
 
 
-def _top(item):
+def _top(obj):
     """The object that carries another along, or itself."""
-    while item.parent is not None and exaggeration.KEY not in item.parent:
-        item = item.parent
-    return item
+    while obj.parent is not None and exaggeration.KEY not in obj.parent:
+        obj = obj.parent
+    return obj

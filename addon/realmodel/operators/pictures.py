@@ -69,12 +69,12 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
 
     def act(self, context):
         scene = context.scene
-        found = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
+        view = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
         picture.set_up(
             scene,
             viewpoints.model_points(scene, cut=True),
             _size(scene),
-            None if found is None else found[2],
+            None if view is None else view[2],
             legend=overlay.legend_shares(scene, _size(scene)),
             sun=(self.sun_azimuth, self.sun_elevation),
         )

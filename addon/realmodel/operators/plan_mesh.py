@@ -28,11 +28,11 @@ class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
     needs = (a_rock,)
 
     def act(self, context):
-        rock, item = settings.active_rock(context.scene), context.active_object
+        rock, obj = settings.active_rock(context.scene), context.active_object
         with settings.filling():
             row = rock.sizes.add()
-            if not an_outline_object(context) and item != rock.region:
-                row.at, row.object = "OBJECT", item
+            if not an_outline_object(context) and obj != rock.region:
+                row.at, row.object = "OBJECT", obj
             row.length = rock.edge_length / 4.0 or 1.0
         live.touch(context.scene)
 
@@ -95,10 +95,10 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
         rock = settings.active_rock(context.scene)
         path = chosen_path(self, "the constraints")
         require_file(path)
-        found = read_constraints([path], context.scene.realmodel.units)
-        plan_mesh.add_constraints(rock, found)
+        constraints = read_constraints([path], context.scene.realmodel.units)
+        plan_mesh.add_constraints(rock, constraints)
         live.touch(context.scene)
-        self.report({"INFO"}, f"Lines and points read: {len(found)}")
+        self.report({"INFO"}, f"Lines and points read: {len(constraints)}")
 
     def check(self, _context):
         return False  # a file of any ending

@@ -20,13 +20,13 @@ _LONGER = 1.1  # a new hole goes so far below the model
 
 
 def a_planned_hole(context):
-    there = planned_holes.active(context.scene) is not None
-    return None if there else "there is no planned hole; add one first"
+    has_hole = planned_holes.active(context.scene) is not None
+    return None if has_hole else "there is no planned hole; add one first"
 
 
 def an_ensemble(context):
-    there = bool(context.scene.realmodel.ensemble.table)
-    return None if there else "there is no ensemble; make one first (Ensemble)"
+    has_ensemble = bool(context.scene.realmodel.ensemble.table)
+    return None if has_ensemble else "there is no ensemble; make one first (Ensemble)"
 
 
 class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):

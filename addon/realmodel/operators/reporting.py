@@ -30,8 +30,8 @@ class Reporting:
 
     @classmethod
     def poll(cls, context):
-        own = (an_own_scene,) if "UNDO" in cls.bl_options else ()
-        for need in (*own, *cls.needs):
+        scene_needs = (an_own_scene,) if "UNDO" in cls.bl_options else ()
+        for need in (*scene_needs, *cls.needs):
             reason = need(context)
             if reason:
                 cls.poll_message_set(reason)
@@ -73,14 +73,14 @@ def a_structure(context):
 
 def a_fault(context):
     row = settings.active_structure(context.scene)
-    there = row is not None and settings.kind_of(row) == "fault"
-    return None if there else "no fault is active; choose one in the list"
+    is_fault = row is not None and settings.kind_of(row) == "fault"
+    return None if is_fault else "no fault is active; choose one in the list"
 
 
 def a_body(context):
     row = settings.active_structure(context.scene)
-    there = row is not None and settings.kind_of(row) == "body"
-    return None if there else "no body is active; choose one in the list"
+    is_body = row is not None and settings.kind_of(row) == "body"
+    return None if is_body else "no body is active; choose one in the list"
 
 
 def any_surface(context):
@@ -101,8 +101,8 @@ def a_model_or_beds(context):
 
 def an_interface(context):
     row = settings.active_surface(context.scene)
-    there = row is not None and row.interface is not None and row.interface.name in context.view_layer.objects
-    return None if there else "the surface has no interface yet; press Build first"
+    shown = row is not None and row.interface is not None and row.interface.name in context.view_layer.objects
+    return None if shown else "the surface has no interface yet; press Build first"
 
 
 def an_edit(context):
@@ -129,25 +129,25 @@ def is_sheet(item):
 
 
 def selected_sheets(context):
-    there = any(is_sheet(item) for item in context.selected_objects)
-    return None if there else "no mesh object is selected but results; select surfaces of your model first"
+    has_any = any(is_sheet(obj) for obj in context.selected_objects)
+    return None if has_any else "no mesh object is selected but results; select surfaces of your model first"
 
 
 def selected_shapes(context):
-    there = any(settings.is_region_object(None, item) for item in context.selected_objects)
-    return None if there else "no mesh object or curve is selected; select faults or bodies first"
+    has_shapes = any(settings.is_region_object(None, obj) for obj in context.selected_objects)
+    return None if has_shapes else "no mesh object or curve is selected; select faults or bodies first"
 
 
 def selected_blocks(context):
     selected = set(context.selected_objects)
-    there = any(row.object in selected for row in context.scene.realmodel.results)
-    return None if there else "no block is selected; select blocks of the model first"
+    has_blocks = any(row.object in selected for row in context.scene.realmodel.results)
+    return None if has_blocks else "no block is selected; select blocks of the model first"
 
 
 def an_outline_object(context):
-    item = context.active_object
-    there = item is not None and settings.is_region_object(None, item)
-    return None if there else "the active object has no lines; make a curve or a mesh object active"
+    obj = context.active_object
+    has_lines = obj is not None and settings.is_region_object(None, obj)
+    return None if has_lines else "the active object has no lines; make a curve or a mesh object active"
 
 
 def a_viewport(context):

@@ -96,8 +96,8 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
         _draw_plane(self, context)
 
     def act(self, context):
-        found = sections.by_plane(context.scene, *_plane_of(self, context))
-        _show(self, context, sections.add(context.scene, found, "Section", self.flat))
+        section = sections.by_plane(context.scene, *_plane_of(self, context))
+        _show(self, context, sections.add(context.scene, section, "Section", self.flat))
 
 
 class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
@@ -111,20 +111,20 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
 
     def act(self, context):
         line = sections.line_of(context.active_object)
-        found = sections.along(context.scene, line, context.evaluated_depsgraph_get())
-        made = sections.add(context.scene, found, "Fence", self.flat)
+        fence = sections.along(context.scene, line, context.evaluated_depsgraph_get())
+        made = sections.add(context.scene, fence, "Fence", self.flat)
         made[sections.LINE] = line
         _show(self, context, made)
 
 
 def some_holes(context):
-    there = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
-    return None if there else "there are no boreholes; import some first (Import Field Data)"
+    has_holes = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
+    return None if has_holes else "there are no boreholes; import some first (Import Field Data)"
 
 
 def chosen_holes(context):
-    there = context.scene.realmodel.view.section_holes.strip()
-    return None if there else "no boreholes are chosen; pick them first (Pick Holes)"
+    holes = context.scene.realmodel.view.section_holes.strip()
+    return None if holes else "no boreholes are chosen; pick them first (Pick Holes)"
 
 
 class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
@@ -158,7 +158,7 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
         for name, line in self._lines.items():
             seen = viewports.pixels(area, project_settings.in_world(context.scene, line))
             seen = seen[np.isfinite(seen).all(axis=1)]
-            best = min(best, (_distance(np.array(at, float), seen), name), key=lambda found: found[0])
+            best = min(best, (_distance(np.array(at, float), seen), name), key=lambda pair: pair[0])
         return best[1]
 
     def remove_last(self):
@@ -193,8 +193,8 @@ class REALMODEL_OT_fence_holes(Reporting, bpy.types.Operator):
     flat: BoolProperty(name="Flat", description=_FLAT)
 
     def act(self, context):
-        found = sections.through(context.scene, section_holes.line(context.scene))
-        _show(self, context, sections.add(context.scene, found, "Holes", self.flat))
+        section = sections.through(context.scene, section_holes.line(context.scene))
+        _show(self, context, sections.add(context.scene, section, "Holes", self.flat))
 
 
 class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
@@ -253,19 +253,19 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     def write(self, context, path):
         width = settings.plain(self.hole_width)
         if self.along == "PLANE":
-            found = sections.by_plane(context.scene, *_plane_of(self, context))
+            section = sections.by_plane(context.scene, *_plane_of(self, context))
         elif self.along == "HOLES":
             if reason := chosen_holes(context):
                 raise InputRefused(reason)
-            found = sections.through(context.scene, section_holes.line(context.scene))
-            width = max(width, _ON_LINE * found.length)
+            section = sections.through(context.scene, section_holes.line(context.scene))
+            width = max(width, _ON_LINE * section.length)
         else:
             reason = an_outline_object(context)
             if reason:
                 raise InputRefused(reason)
             line = sections.line_of(context.active_object)
-            found = sections.along(context.scene, line, context.evaluated_depsgraph_get())
-        found.save(path, settings.plain(self.exaggeration), width)
+            section = sections.along(context.scene, line, context.evaluated_depsgraph_get())
+        section.save(path, settings.plain(self.exaggeration), width)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
@@ -317,8 +317,8 @@ class REALMODEL_OT_section_flip(Reporting, bpy.types.Operator):
 
 
 def _a_cut(context):
-    there = cuts.is_on(context.scene)
-    return None if there else "no cut is shown; add a section plane and switch Show Cut on"
+    is_shown = cuts.is_on(context.scene)
+    return None if is_shown else "no cut is shown; add a section plane and switch Show Cut on"
 
 
 class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):

@@ -17,8 +17,8 @@ from .reporting import Reporting, a_rock, a_surface, place_property
 
 def a_series(context):
     rock = settings.active_rock(context.scene)
-    there = rock is not None and len(rock.series)
-    return None if there else "the rock mass has no series; add one first (Series, +)"
+    has_series = rock is not None and len(rock.series)
+    return None if has_series else "the rock mass has no series; add one first (Series, +)"
 
 
 def dips_of_series(context):
@@ -29,8 +29,8 @@ def dips_of_series(context):
 
 def dips_to_give(context):
     row = settings.active_surface(context.scene)
-    there = row is not None and row.dips and series_settings.is_level_set(row)
-    return None if there else "the surface has no dips that a field could take"
+    has_dips = row is not None and row.dips and series_settings.is_level_set(row)
+    return None if has_dips else "the surface has no dips that a field could take"
 
 
 class REALMODEL_OT_series_add(Reporting, bpy.types.Operator):
@@ -92,19 +92,19 @@ class REALMODEL_OT_series_move(Reporting, bpy.types.Operator):
     def act(self, context):
         rock = settings.active_rock(context.scene)
         row = series_settings.active(rock)
-        own = series_settings.members(rock, row)
+        members = series_settings.members(rock, row)
         is_up = self.direction == "UP"
-        at = (own[-1] + 1 if is_up else own[0] - 1) if own else -1
+        at = (members[-1] + 1 if is_up else members[0] - 1) if members else -1
         if not 0 <= at < len(rock.surfaces):
             return {"CANCELLED"}
         passed = series_settings.of_surface(rock.surfaces[at])
         others = [at] if passed is None else series_settings.members(rock, passed)
         active = rock.surfaces[rock.active_surface].name
         for step, other in enumerate(others if is_up else reversed(others)):
-            rock.surfaces.move(other, own[0] + step if is_up else own[-1] - step)
+            rock.surfaces.move(other, members[0] + step if is_up else members[-1] - step)
         rock.active_surface = rock.surfaces.find(active)
         if passed is not None:
-            first, second = (list(rock.series).index(each) for each in (row, passed))
+            first, second = (list(rock.series).index(series) for series in (row, passed))
             rock.series.move(first, second)
             rock.active_series = second
         live.touch(context.scene)
@@ -140,8 +140,8 @@ class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
                 raise InputRefused("dips of a field need a height", advice="give them a column z")
             z = np.where(np.isnan(z), points[:, 2].mean(), z)
         normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
-        given = SpaceDips(np.column_stack([dips.positions, z]), normals, dips.used)
-        surface_dips.add(series_settings.of_surface(row), given)
+        space_dips = SpaceDips(np.column_stack([dips.positions, z]), normals, dips.used)
+        surface_dips.add(series_settings.of_surface(row), space_dips)
         surface_dips.keep(row, None)
         data_objects.update(scene)
         live.touch(scene)

@@ -34,10 +34,10 @@ from .reporting import (
 _MODEL_ENDING = ".npz"
 
 
-def _begin(scene, name, kept=()):
-    """An empty model in a scene, in place of the one that is there with its sections. kept: interfaces that
+def _begin(scene, name, interfaces=()):
+    """An empty model in a scene, in place of the one that is there with its sections. interfaces: those that
     stay."""
-    built_scene.remove_model(scene, kept)
+    built_scene.remove_model(scene, interfaces)
     if cuts.plane_of(scene) is not None:
         cuts.remove_plane(scene)
     model_tree.remove_objects(model_tree.sections(scene))
@@ -157,12 +157,12 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
 
 
 def _open(scene, path):
-    given = load_project(path)
-    project = with_arrays(given)
+    file_project = load_project(path)
+    project = with_arrays(file_project)
     _begin(scene, project.name)
     project_settings.fill(scene, project)
-    map_settings.keep_of_project(scene, given)
-    map_settings.take_ground_of_project(scene, given)
+    map_settings.keep_of_project(scene, file_project)
+    map_settings.take_ground_of_project(scene, file_project)
     data_objects.update(scene)
     region_size.ask()
     live.touch(scene)
@@ -241,26 +241,26 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
     def act(self, context):
         chosen = _chosen(context)
-        for item in chosen:
-            shapes.require_open(item)
+        for obj in chosen:
+            shapes.require_open(obj)
         depsgraph = context.evaluated_depsgraph_get()
         ordered = project_settings.oldest_first(chosen, depsgraph)
         scene = context.scene
         origin = project_settings.model_origin(scene)  # the objects stand where it says
         had_one = ORIGIN_KEY in scene
-        points = np.concatenate([shapes.points(item, depsgraph) for item in chosen]) + origin
+        points = np.concatenate([shapes.points(obj, depsgraph) for obj in chosen]) + origin
         _begin(scene, "Model", chosen)
         if had_one:
             scene[ORIGIN_KEY] = [float(value) for value in origin]
         with settings.filling():
             rock = scene.realmodel.rocks.add()
             rock.name = "rock mass"
-            for item in ordered:
+            for obj in ordered:
                 row = rock.surfaces.add()
-                row.name = settings.free_name(rock.surfaces, item.name, own=row)
+                row.name = settings.free_name(rock.surfaces, obj.name, own=row)
                 row.property_id = library_rows.for_surface(scene, row.name)
                 row.source = "MESH_OBJECT"
-                row.object = item
+                row.object = obj
             rock.active_surface = len(ordered) - 1
             settings.set_number(rock, "base_elevation", plan_mesh.base_below(points))
             rock.use_base = self.add_base
@@ -279,7 +279,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
 
 def _chosen(context):
-    return [item for item in context.selected_objects if is_sheet(item)]
+    return [obj for obj in context.selected_objects if is_sheet(obj)]
 
 
 REALMODEL_FH_project = drop_handler(

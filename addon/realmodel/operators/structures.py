@@ -52,14 +52,14 @@ def _surface_of(row):
 
 
 def _its_surface(context):
-    item = _surface_of(settings.active_structure(context.scene))
-    there = item is not None and item.name in context.view_layer.objects
-    return None if there else "it has no surface in the scene yet; choose its object, or press Build first"
+    obj = _surface_of(settings.active_structure(context.scene))
+    is_shown = obj is not None and obj.name in context.view_layer.objects
+    return None if is_shown else "it has no surface in the scene yet; choose its object, or press Build first"
 
 
-def _is_surface(scene, item):
+def _is_surface(scene, obj):
     """Whether an object is a surface of the model already, or of its structures."""
-    return any(item in (row.object, row.interface) for _, row in settings.interface_rows(scene))
+    return any(obj in (row.object, row.interface) for _, row in settings.interface_rows(scene))
 
 
 def _active_in_its_list(scene):
@@ -91,7 +91,7 @@ def _shapes_in(path):
     require_file(path)
     if not (objects := objects_in(path)):
         return [MeshFile(path)]
-    surfaces = [each.name for each in objects if each.kind == SURFACE]
+    surfaces = [obj.name for obj in objects if obj.kind == SURFACE]
     if not surfaces:
         raise InputRefused("it has no surfaces", file=path)
     return [MeshFile(path, layer=name) for name in surfaces]
@@ -121,32 +121,32 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
     def act(self, context):
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         chosen = [
-            item
-            for item in context.selected_objects
-            if settings.is_region_object(None, item) and not _is_surface(scene, item)
+            obj
+            for obj in context.selected_objects
+            if settings.is_region_object(None, obj) and not _is_surface(scene, obj)
         ]
         if not chosen:
             raise InputRefused(
                 "the selected meshes are in the model already", advice="select other mesh objects"
             )
-        found = [self._looked_at(item, depsgraph) for item in chosen]
-        for item, (kind, source) in zip(chosen, found, strict=True):
-            row = _add(scene, kind, item.name, source)
+        kinds = [self._looked_at(obj, depsgraph) for obj in chosen]
+        for obj, (kind, source) in zip(chosen, kinds, strict=True):
+            row = _add(scene, kind, obj.name, source)
             with settings.filling():
-                row.object = item
+                row.object = obj
                 if source == "TRACE_OBJECT":
                     settings.set_number(row, "dip", VERTICAL)
         live.touch(scene)
-        self.report({"INFO"}, f"Added {_counts_text([kind for kind, _ in found])}")
+        self.report({"INFO"}, f"Added {_counts_text([kind for kind, _ in kinds])}")
 
-    def _looked_at(self, item, depsgraph):
+    def _looked_at(self, obj, depsgraph):
         """(kind, source) of an object. Raises InputRefused."""
-        vertices, triangles = shapes.triangulation(item, depsgraph)
-        if item.type == "MESH" and len(triangles):
+        vertices, triangles = shapes.triangulation(obj, depsgraph)
+        if obj.type == "MESH" and len(triangles):
             return _kind_of_shape(self.kind, vertices, triangles), "MESH_OBJECT"
-        if self.kind == "BODY" or not shapes.has_edges(item, depsgraph):
-            raise InputRefused(f"object '{item.name}' has no faces", advice="select meshes with faces")
-        shapes.lines(item, depsgraph)
+        if self.kind == "BODY" or not shapes.has_edges(obj, depsgraph):
+            raise InputRefused(f"object '{obj.name}' has no faces", advice="select meshes with faces")
+        shapes.lines(obj, depsgraph)
         return "fault", "TRACE_OBJECT"
 
 
@@ -182,24 +182,24 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
             kind = scene.realmodel.structure_kind.lower() if self.kind == "AUTO" else self.kind.lower()
             _add(scene, kind, kind, "MESH_OBJECT")
             return
-        given = [each for path in self.paths() for each in _shapes_in(path)]
-        found = [self._looked_at(mesh, scene.realmodel.units) for mesh in given]
-        if not found:
+        meshes = [mesh for path in self.paths() for mesh in _shapes_in(path)]
+        structures = [self._looked_at(mesh, scene.realmodel.units) for mesh in meshes]
+        if not structures:
             raise InputRefused("no file was given", advice="choose a file")
-        for kind, source, mesh, places in found:
+        for kind, source, mesh, places in structures:
             data_objects.begin(scene, places)
             row = _add(scene, kind, mesh.layer or mesh.file.stem, source)
             with settings.filling():
                 row.filepath, row.layer = str(mesh.file), mesh.layer or ""
         of_data = ("POINTS_FILE", "TRACE_FILE")
-        arrived(context, None, [places for _, source, _, places in found if source in of_data])
-        self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
+        arrived(context, None, [places for _, source, _, places in structures if source in of_data])
+        self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in structures])}")
 
-    def _looked_at(self, given, units):
+    def _looked_at(self, mesh_file, units):
         """(kind, source, MeshFile, vertices or points) of a file, or of an object in one. Raises
         InputRefused."""
-        path = given.file
-        if given.layer is None and not is_mesh_file(path):
+        path = mesh_file.file
+        if mesh_file.layer is None and not is_mesh_file(path):
             if self.kind == "BODY":
                 raise InputRefused(f"{path.name} has no triangles", advice="give a closed mesh for a body")
             try:
@@ -209,12 +209,12 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
                 if not lines:
                     raise
                 plan = np.concatenate(lines)
-                return "fault", "TRACE_FILE", given, np.column_stack([plan, np.zeros(len(plan))])
+                return "fault", "TRACE_FILE", mesh_file, np.column_stack([plan, np.zeros(len(plan))])
             whole = points if isinstance(points, np.ndarray) else np.concatenate(points)
-            return "fault", "POINTS_FILE", given, whole
-        mesh = read_mesh(given)
-        vertices, _ = mesh.in_model(given, units)
-        return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", given, vertices
+            return "fault", "POINTS_FILE", mesh_file, whole
+        mesh = read_mesh(mesh_file)
+        vertices, _ = mesh.in_model(mesh_file, units)
+        return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", mesh_file, vertices
 
 
 class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):

@@ -90,19 +90,19 @@ class REALMODEL_OT_surface_sort(Reporting, bpy.types.Operator):
         depsgraph = context.evaluated_depsgraph_get()
         names = [row.name for row in rock.surfaces]
         points = [data_objects.row_points(scene, row, depsgraph) for row in rock.surfaces]
-        found = age_order(names, points, borehole_picks.of_rock(rock))
+        order = age_order(names, points, borehole_picks.of_rock(rock))
         now, active = list(range(len(names))), rock.active_surface
-        for target, number in enumerate(found.order):
+        for target, number in enumerate(order.order):
             rock.surfaces.move(now.index(number), target)
             now.insert(target, now.pop(now.index(number)))
         rock.active_surface = now.index(active) if active in now else 0
         live.touch(scene)
-        if (text := found.warning(names)) is not None:
+        if (text := order.warning(names)) is not None:
             self.report({"WARNING"}, text)
-        if list(found.order) == sorted(found.order):
+        if list(order.order) == sorted(order.order):
             self.report({"INFO"}, "The surfaces were in this order already")
             return
-        self.report({"INFO"}, f"Oldest first: {', '.join(names[number] for number in found.order)}")
+        self.report({"INFO"}, f"Oldest first: {', '.join(names[number] for number in order.order)}")
 
 
 class REALMODEL_OT_surface_hide(Reporting, bpy.types.Operator):

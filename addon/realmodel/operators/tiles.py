@@ -70,10 +70,10 @@ class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
     def _chosen(self, tiled):
         columns = range(self.column, self.column + self.columns)
         rows = range(self.row, self.row + self.rows)
-        found = [tile for tile in tiled.tiles if tile.column in columns and tile.row in rows]
-        if not found:
+        chosen = [tile for tile in tiled.tiles if tile.column in columns and tile.row in rows]
+        if not chosen:
             raise InputRefused(
                 f"no tile is there; {tiled.name} has {len(tiled.x) - 1} columns and {len(tiled.y) - 1} rows",
                 advice="they are counted from 0",
             )
-        return found
+        return chosen

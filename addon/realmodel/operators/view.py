@@ -120,8 +120,8 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
         self.report({"INFO"}, f"Wrote {path}, {width} x {height} pixels")
 
     def _size(self, context):
-        found = capture.viewport(context)
-        usual = (1600, 1000) if found is None or bpy.app.background else (found[1].width, found[1].height)
+        view = capture.viewport(context)
+        usual = (1600, 1000) if view is None or bpy.app.background else (view[1].width, view[1].height)
         if not self.width and not self.height:
             return usual
         width = self.width or round(self.height * usual[0] / usual[1])
@@ -220,8 +220,10 @@ class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
     )
 
     def act(self, context):
-        given = self.properties.is_property_set("location")
-        place = coordinates.at_point(context.scene, self.location if given else context.scene.cursor.location)
+        has_location = self.properties.is_property_set("location")
+        place = coordinates.at_point(
+            context.scene, self.location if has_location else context.scene.cursor.location
+        )
         if place is None:
             coordinates.remember(context.scene, None)
             raise InputRefused(
@@ -232,8 +234,8 @@ class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
 
     def invoke(self, context, event):
         if bpy.app.background or context.region_data is None or context.region.type != "WINDOW":
-            found = capture.viewport(context)
-            if bpy.app.background or found is None:
+            view = capture.viewport(context)
+            if bpy.app.background or view is None:
                 return self.execute(context)
         if not len(context.scene.realmodel.results):
             return self.execute(context)
@@ -260,8 +262,8 @@ class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
 
 def _under_mouse(context, event):
     """The place of the model under the mouse, in whatever 3D viewport that is."""
-    found = viewports.under_mouse(context, event)
-    return None if found is None else coordinates.under_ray(context.scene, *viewports.ray(*found))
+    viewport = viewports.under_mouse(context, event)
+    return None if viewport is None else coordinates.under_ray(context.scene, *viewports.ray(*viewport))
 
 
 def place_text(scene, place):

@@ -93,9 +93,9 @@ def _draw_problem(box, activity):
 
 def _draw_warnings(box, group, activity):
     """Draws warnings: folded, a line for each of the first ones; unfolded, all of them in full."""
-    given = notices.read(group.warnings)
+    messages = notices.read(group.warnings)
     row = box.row(align=True)
-    count = "1 Message" if len(given) == 1 else f"{len(given)} Messages"
+    count = "1 Message" if len(messages) == 1 else f"{len(messages)} Messages"
     icon = "DISCLOSURE_TRI_DOWN" if activity.unfolded else "DISCLOSURE_TRI_RIGHT"
     row.use_property_split = False
     row.alignment = "LEFT"
@@ -104,10 +104,10 @@ def _draw_warnings(box, group, activity):
     cross.alignment = "RIGHT"
     cross.operator("realmodel.dismiss", text="", icon="X", emboss=False)
     if not activity.unfolded:
-        for text in given[:_FOLDED]:
+        for text in messages[:_FOLDED]:
             box.label(text=_cut(text, letters() - _ICON), icon="INFO")
         return
-    for text in given:
+    for text in messages:
         column = box.column(align=True)
         for number, line in enumerate(wrapped(text, taken=_ICON)):
             column.label(text=line, icon="INFO" if number == 0 else "BLANK1")

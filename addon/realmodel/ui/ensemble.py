@@ -25,40 +25,40 @@ class REALMODEL_PT_ensemble(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         row = layout.split(factor=0.7, align=True)
         row.operator("realmodel.ensemble", icon="MOD_ARRAY").along = "PLANE"
         row.operator("realmodel.ensemble", text="Curve").along = "LINE"
-        found = ensembles.table(scene)
-        if found is None:
+        table = ensembles.table(scene)
+        if table is None:
             hint(layout, "Builds the model many times: how certain are its volumes?")
             return
         row = layout.row()
-        row.label(text=f"{counted(found['count'], 'realization')}, seed {found['seed']}")
+        row.label(text=f"{counted(table['count'], 'realization')}, seed {table['seed']}")
         row.operator("realmodel.ensemble_remove", text="", icon="X", emboss=False)
         if ensembles.is_outdated(scene):
             hint(layout, "The model was built again since: make the ensemble again.")
-        _draw_table(layout, scene, found)
-        item = ensembles.item_of(scene)
-        if item is None:
+        _draw_table(layout, scene, table)
+        obj = ensembles.item_of(scene)
+        if obj is None:
             return
         layout.prop(ensemble, "color_by", text="Section")
         if ensemble.color_by == ensembles.PROBABILITY:
             layout.prop_search(ensemble, "block", group, "results")
         elif ensemble.color_by == ensembles.REALIZATION:
-            slider = slider_of(found["count"])
+            slider = slider_of(table["count"])
             if slider is None:
                 layout.prop(ensemble, "realization")
             else:
                 layout.prop(group.realization_slider, slider, slider=True)
 
 
-def _draw_table(layout, scene, found):
+def _draw_table(layout, scene, table):
     """Draws the table: volumes in thousands, millions and so on, with few digits, as the sidebar is
     narrow."""
     unit, factor = units.shown_unit(scene, 3)
-    largest = factor * max(row["percentiles"][-1] for row in found["blocks"])
+    largest = factor * max(row["percentiles"][-1] for row in table["blocks"])
     power = 3 * math.floor(math.log10(largest) / 3) if largest > 0.0 else 0
     unit = f"10{str(power).translate(_RAISED)} {unit}" if power else unit
     column = layout.box().column(align=True)
     _row(column, unit, ensembles.headings())
-    for row in reversed(found["blocks"]):
+    for row in reversed(table["blocks"]):
         _row(column, row["name"], [_short(factor * volume / 10.0**power) for volume in row["percentiles"]])
 
 

@@ -60,9 +60,9 @@ def _draw_datum(layout, context):
             box.label(text=line)
         icon = "HIDE_OFF" if datum.used else "HIDE_ON"
         box.operator("realmodel.datum_switch", text="Switch Off" if datum.used else "Switch On", icon=icon)
-        item = handle.item_of(context.scene)
-        if item is not None:
-            box.prop(item, "location", text="Offset")
+        obj = handle.item_of(context.scene)
+        if obj is not None:
+            box.prop(obj, "location", text="Offset")
         hint(layout, "Move its sphere with G; the model follows where Auto is on.")
     if off:
         row = layout.row(align=True)

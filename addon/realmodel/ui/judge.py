@@ -25,8 +25,8 @@ class REALMODEL_PT_quality(FoldedPanel, bpy.types.Panel):
             row.label(text=f"{working[1]} {100 * working[0]:.0f} %")
             row.operator("realmodel.stop_check", text="", icon="X")
             return
-        found = quality.found(context.scene)
-        if found is None:
+        surface_quality = quality.found(context.scene)
+        if surface_quality is None:
             layout.operator("realmodel.check_quality", icon="VIEWZOOM")
             hint(layout, "Variogram, cross-validation, and mesh of the active surface.")
             return
@@ -36,19 +36,19 @@ class REALMODEL_PT_quality(FoldedPanel, bpy.types.Panel):
         row.prop(context.window_manager.realmodel, "chart", expand=True)
         _draw_picture(layout, context, chart)
         unit = context.scene.realmodel.units
-        lines = quality.lines(found, chart, unit)
-        if chart == "CROSS_VALIDATION" and found.mean_deviation is not None:
+        lines = quality.lines(surface_quality, chart, unit)
+        if chart == "CROSS_VALIDATION" and surface_quality.mean_deviation is not None:
             mean, most = (
                 units.length_text(context.scene, value)
-                for value in (found.mean_deviation, found.most_deviation)
+                for value in (surface_quality.mean_deviation, surface_quality.most_deviation)
             )
             lines.append(f"Standard deviation of the heights: {mean} on average, at most {most}")
         column = layout.column(align=True)
         for line in lines:
             for part in wrapped(line):
                 column.label(text=part)
-        if chart == "CROSS_VALIDATION" and found.cross_validation is not None:
-            _draw_worst(layout, found.cross_validation)
+        if chart == "CROSS_VALIDATION" and surface_quality.cross_validation is not None:
+            _draw_worst(layout, surface_quality.cross_validation)
         row = layout.row(align=True)
         saving = row.operator("realmodel.save_chart", text="Save Chart...", icon="FILE_TICK")
         saving.chart = chart

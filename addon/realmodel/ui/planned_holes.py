@@ -65,17 +65,17 @@ def _draw_table(layout, scene, row):
     unit, factor = units.shown_unit(scene, 1)
     has_shares = hole.probability is not None
     _line(box, "From", "Depth", "±", "%" if has_shares else "")
-    for each in hole.rows():
-        deviation = each["from_deviation"]
+    for interval in hole.rows():
+        deviation = interval["from_deviation"]
         line = box.row(align=True)
-        draw_swatch(line, library_rows.find(scene, each["property"]))
-        line.label(text=each["name"])
+        draw_swatch(line, library_rows.find(scene, interval["property"]))
+        line.label(text=interval["name"])
         _line(
             box,
-            f"{factor * each['from']:.2f}",
-            f"{factor * each['vertical_from']:.2f}",
+            f"{factor * interval['from']:.2f}",
+            f"{factor * interval['vertical_from']:.2f}",
             "" if deviation is None else f"{factor * deviation:.2f}",
-            f"{100 * each['probability']:.0f}" if has_shares else "",
+            f"{100 * interval['probability']:.0f}" if has_shares else "",
         )
     end = hole.rows()[-1]
     deviation = end["to_deviation"]

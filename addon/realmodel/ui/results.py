@@ -59,30 +59,30 @@ class REALMODEL_PT_results_compartments(FoldedPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        found = compartments.read(context.scene)
-        return found is not None and bool(found["faults"] or len(found["names"]) > 1)
+        table = compartments.read(context.scene)
+        return table is not None and bool(table["faults"] or len(table["names"]) > 1)
 
     def draw_in(self, layout, context, group):
-        scene, found = context.scene, compartments.read(context.scene)
-        if len(found["names"]) > 1:
+        scene, table = context.scene, compartments.read(context.scene)
+        if len(table["names"]) > 1:
             chosen = group.results[min(group.active_result, len(group.results) - 1)]
-            own = found["volumes"].get(chosen.name, [0.0] * len(found["names"]))
-            total = [sum(volumes) for volumes in zip(*found["volumes"].values(), strict=True)]
+            chosen_row = table["volumes"].get(chosen.name, [0.0] * len(table["names"]))
+            total = [sum(volumes) for volumes in zip(*table["volumes"].values(), strict=True)]
             column = layout.column(align=True)
             _row(column, chosen.name, "All")
-            for number, name in enumerate(found["names"]):
+            for number, name in enumerate(table["names"]):
                 for line in wrapped(name):
                     column.label(text=line)
-                _row(column, *(units.volume_amount_text(scene, each[number]) for each in (own, total)))
+                _row(column, *(units.volume_amount_text(scene, row[number]) for row in (chosen_row, total)))
         unit, factor = units.shown_unit(scene, 1)
-        for fault in dict.fromkeys(entry[0] for entry in found["faults"]):
+        for fault in dict.fromkeys(entry[0] for entry in table["faults"]):
             column = layout.column(align=True)
             column.label(text=fault)
             _row(column, "Throw", "Heave", name=f"Mean ({unit})")
-            for name, surface, *values in found["faults"]:
+            for name, surface, *values in table["faults"]:
                 if name == fault:
                     texts = [
-                        "None found" if each is None else units.number_text(factor * each) for each in values
+                        "None found" if mean is None else units.number_text(factor * mean) for mean in values
                     ]
                     _row(column, *texts, name=surface)
 

@@ -9,10 +9,10 @@ def draw(layout, row, key, settings):
     setting = settings[key]
     if setting.beside is not None or not setting.label:
         return
-    given = setting.parts or {key: setting} | {
+    parts = setting.parts or {key: setting} | {
         other: beside for other, beside in settings.items() if beside.beside == key
     }
-    names = [property_name(name, part) for name, part in given.items()]
+    names = [property_name(name, part) for name, part in parts.items()]
     switch = switch_name(key, settings)
     if switch is None:
         for name in names:

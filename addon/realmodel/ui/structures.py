@@ -139,8 +139,8 @@ class REALMODEL_UL_structures(OfRows, bpy.types.UIList):
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
 
 
-def _said(item):
+def _said(row):
     """The special settings of a fault or a body, in two words."""
-    if settings.kind_of(item) == "body":
-        return "void" if item.void else ""
-    return "dies out" if item.dies_out else ""
+    if settings.kind_of(row) == "body":
+        return "void" if row.void else ""
+    return "dies out" if row.dies_out else ""

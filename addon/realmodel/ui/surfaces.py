@@ -131,9 +131,9 @@ def draw_drawing(layout, context, operator):
     these."""
     column = layout.column(align=True)
     column.operator(operator, icon="GREASEPENCIL")
-    item = context.active_object
-    is_given = item is not None and item.select_get() and model_tree.TAG not in item
-    if is_given and settings.is_drawn_object(item):
+    obj = context.active_object
+    is_given = obj is not None and obj.select_get() and model_tree.TAG not in obj
+    if is_given and settings.is_drawn_object(obj):
         column.operator(
             operator, text="From Active Object", icon="OUTLINER_OB_GREASEPENCIL"
         ).use_object = True
@@ -142,10 +142,10 @@ def draw_drawing(layout, context, operator):
 def draw_property(layout, context, row, operator):
     """The property of a surface or a body, and the menu to choose another one."""
     entry = library_rows.find(context.scene, row.property_id)
-    known = f"{entry.name} ({entry.id})" if entry else "None" if not row.property_id else str(row.property_id)
+    text = f"{entry.name} ({entry.id})" if entry else "None" if not row.property_id else str(row.property_id)
     split = layout.split(factor=0.4)
     right_label(split, "Property")
-    split.operator_menu_enum(operator, "property_id", text=known)
+    split.operator_menu_enum(operator, "property_id", text=text)
 
 
 def draw_figures(layout, context, surface):
@@ -196,8 +196,8 @@ class _OfTheMethod(_OfASurface):
 
     @classmethod
     def options(cls, surface):
-        known = METHODS[surface.method].options
-        return [key for key, setting in known.items() if setting.fold == cls.fold]
+        options = METHODS[surface.method].options
+        return [key for key, setting in options.items() if setting.fold == cls.fold]
 
     def draw_in(self, layout, context, _group):
         surface = settings.active_surface(context.scene)

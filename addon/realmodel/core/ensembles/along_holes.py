@@ -23,27 +23,27 @@ Contacts = dict[tuple[int, int], list[float]]  # depths, rising, by the blocks a
 
 def hole_of_realizations(work: Work, realizer: Realizer, count: int, hole: PlannedHole) -> PlannedHole:
     """A hole of the model with what `count` realizations say of it."""
-    axis, found = hole.axis, hole.block_names
+    axis, names = hole.axis, hole.block_names
     depths = (np.arange(_STEPS) + 0.5) / _STEPS * axis.length
-    counts = np.zeros((_STEPS, len(found)))
+    counts = np.zeros((_STEPS, len(names)))
     contacts: list[Contacts] = []
     steps = np.linspace(0.0, 1.0, count + 1)
     for number in range(count):
         with work.part(*steps[number : number + 2]):
             forms = realizer.closed_forms(work, number)
         blocks = blocks_of_all(work, forms, axis.places(depths))
-        counts += blocks[:, None] == np.arange(len(found))
+        counts += blocks[:, None] == np.arange(len(names))
         contacts.append(_contacts(work, forms, axis, depths, blocks))
     shares = counts / count
     intervals = [
-        replace(each, probability=mean_share(shares[:, each.block], depths, each.begin, each.end))
-        for each in hole.intervals
+        replace(piece, probability=mean_share(shares[:, piece.block], depths, piece.begin, piece.end))
+        for piece in hole.intervals
     ]
     spread = [_spread(contact, hole.contacts, contacts) for contact in hole.contacts]
     lacking = missing_deviations(realizer.model)
     spread = [
-        replace(each, deviation=None) if own.deviation is None and own.surface in lacking else each
-        for each, own in zip(spread, hole.contacts, strict=True)
+        replace(contact, deviation=None) if old.deviation is None and old.surface in lacking else contact
+        for contact, old in zip(spread, hole.contacts, strict=True)
     ]
     return replace(hole, intervals=intervals, contacts=spread, depths=depths, probability=shares)
 
@@ -58,25 +58,25 @@ def _contacts(
         middle = 0.5 * (low + high)
         is_above = blocks_of_all(work, forms, axis.places(middle)) == blocks[at]
         low, high = np.where(is_above, middle, low), np.where(is_above, high, middle)
-    found: Contacts = {}
+    contacts: Contacts = {}
     for row, depth in zip(at.tolist(), (0.5 * (low + high)).tolist(), strict=True):
-        found.setdefault((int(blocks[row]), int(blocks[row + 1])), []).append(depth)
-    return found
+        contacts.setdefault((int(blocks[row]), int(blocks[row + 1])), []).append(depth)
+    return contacts
 
 
-def _spread(contact: HoleContact, every: Sequence[HoleContact], found: Sequence[Contacts]) -> HoleContact:
+def _spread(contact: HoleContact, every: Sequence[HoleContact], draws: Sequence[Contacts]) -> HoleContact:
     """A contact with the standard deviation of its depth in the realizations that have it. Where the model
     has several between the same blocks, the nearest of a realization counts."""
     pair = contact.above, contact.below
-    rivals = [each.depth for each in every if (each.above, each.below) == pair]
+    rivals = [other.depth for other in every if (other.above, other.below) == pair]
     depths = []
-    for own in found:
+    for contacts in draws:
         near = [
             depth
-            for depth in own.get(pair, ())
+            for depth in contacts.get(pair, ())
             if min(rivals, key=lambda rival: abs(rival - depth)) == contact.depth
         ]
         if near:
             depths.append(min(near, key=lambda depth: abs(depth - contact.depth)))
     deviation = float(np.std(depths, ddof=1)) if len(depths) > 1 else None
-    return replace(contact, deviation=deviation, share=len(depths) / len(found))
+    return replace(contact, deviation=deviation, share=len(depths) / len(draws))

@@ -42,8 +42,8 @@ class Sums:
     counts: np.ndarray
 
     def plus(self, other: Sums) -> Sums:
-        def sums(own: list, its: list) -> list:
-            return [None if a is None else a + b for a, b in zip(own, its, strict=True)]
+        def sums(first: list, second: list) -> list:
+            return [None if a is None else a + b for a, b in zip(first, second, strict=True)]
 
         return Sums(
             np.concatenate([self.volumes, other.volumes]),
@@ -61,12 +61,12 @@ def batches(realizations: int) -> list[range]:
 def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 0) -> Sums:
     """The sums of one realization. places: (N, 3)."""
     model = realizer.realization(number, threads=threads)
-    found = differences(realizer.model, model, threads)
+    changes = differences(realizer.model, model, threads)
     blocks = model.blocks_at(places, threads=threads)
     return Sums(
         np.array([[block.volume for block in model.blocks]]),
-        found,
-        [None if each is None else each**2 for each in found],
+        changes,
+        [None if change is None else change**2 for change in changes],
         (blocks[:, None] == np.arange(len(model.blocks))).astype(np.int32),
     )
 
@@ -104,20 +104,20 @@ class Ensemble:
         means: list[np.ndarray | None] = []
         deviations: list[np.ndarray | None] = []
         model, lacking = realizer.model, missing_deviations(realizer.model)
-        for number, (given, total, squares) in enumerate(
+        for number, (z, total, squares) in enumerate(
             zip(heights(model), sums.heights, sums.squares, strict=True)
         ):
-            if given is None or total is None or squares is None:
+            if z is None or total is None or squares is None:
                 means.append(None)
                 deviations.append(None)
                 continue
-            means.append(given + total / count)
+            means.append(z + total / count)
             if model.surface_names[number] in lacking:
-                deviations.append(np.full(len(given), np.nan))
+                deviations.append(np.full(len(z), np.nan))
                 continue
             rest = np.maximum(squares - total**2 / count, 0.0)
             deviations.append(np.sqrt(rest / max(1, count - 1)))
-        found = cls(
+        result = cls(
             realizer.model,
             realizer.seed,
             realizer.correlation,
@@ -127,8 +127,8 @@ class Ensemble:
             places,
             sums.counts / count,
         )
-        found._realizer = realizer
-        return found
+        result._realizer = realizer
+        return result
 
     @cached_property
     def _realizer(self) -> Realizer:
@@ -145,9 +145,9 @@ class Ensemble:
         data of a surface that bounds the block show no variogram."""
         if len(self.volumes) < 2:
             return np.full(len(self.model.blocks), np.nan)
-        found = self.volumes.std(axis=0, ddof=1)
-        found[without_deviation(self.model)] = np.nan
-        return found
+        deviations = self.volumes.std(axis=0, ddof=1)
+        deviations[without_deviation(self.model)] = np.nan
+        return deviations
 
     def percentiles(self, percent: Iterable[float] = PERCENTILES) -> np.ndarray:
         """(len(percent), B) float64: volumes that so many percent of the realizations do not exceed."""
@@ -253,8 +253,8 @@ def realized(
 
 def places_of(model: Model, places: Places | None) -> np.ndarray:
     """(N, 3) float64: those that are given, or that a function of the model says."""
-    given = places(model) if callable(places) else places
-    return np.zeros((0, 3)) if given is None else np.asarray(given, np.float64).reshape(-1, 3)
+    points = places(model) if callable(places) else places
+    return np.zeros((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
 
 
 def check_request(realizations: int, seed: int, correlation: float) -> None:

@@ -62,12 +62,12 @@ def _report(ensemble: Ensemble) -> dict:
     surfaces = []
     for name, deviation in zip(ensemble.model.surface_names, ensemble.surface_deviation, strict=False):
         if deviation is not None:
-            known = deviation[np.isfinite(deviation)]
+            values = deviation[np.isfinite(deviation)]
             surfaces.append(
                 {
                     "name": name,
-                    "deviation_mean": float(known.mean()) if len(known) else None,
-                    "deviation_largest": float(known.max()) if len(known) else None,
+                    "deviation_mean": float(values.mean()) if len(values) else None,
+                    "deviation_largest": float(values.max()) if len(values) else None,
                 }
             )
     return {
@@ -94,9 +94,9 @@ def _volumes(ensemble: Ensemble) -> str:
 
 
 def _arrays(ensemble: Ensemble) -> dict[str, np.ndarray]:
-    given = zip(ensemble.surface_mean, ensemble.surface_deviation, strict=True)
+    pairs = zip(ensemble.surface_mean, ensemble.surface_deviation, strict=True)
     surfaces = {}
-    for number, (mean, deviation) in enumerate(given):
+    for number, (mean, deviation) in enumerate(pairs):
         if mean is not None and deviation is not None:
             surfaces[f"surface_mean_{number}"] = mean
             surfaces[f"surface_deviation_{number}"] = deviation

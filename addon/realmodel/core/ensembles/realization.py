@@ -49,9 +49,9 @@ class Realizer:
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
             places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]
-        places = [each for each in places if len(each)] or [np.zeros((1, 2))]
-        low = np.min([each.min(axis=0) for each in places], axis=0)
-        high = np.max([each.max(axis=0) for each in places], axis=0)
+        places = [points for points in places if len(points)] or [np.zeros((1, 2))]
+        low = np.min([points.min(axis=0) for points in places], axis=0)
+        high = np.max([points.max(axis=0) for points in places], axis=0)
         self._area = FieldArea(low, high)
 
     @keyword_only
@@ -87,14 +87,14 @@ class Realizer:
         return self._keep(number, *self._interpolated(work, number))
 
     def _keep(self, number: int, inputs: list[RockInput], structures: Structures) -> list[ClosedForm]:
-        found = closed_forms(replace(self.model, rock_inputs=inputs, structures=structures))
-        sheets = {id(each): each for form in found for row in form.sheets for each in row if each is not None}
-        size = sum(each.vertices.nbytes + each.triangles.nbytes for each in sheets.values())
-        size += sum(each.values.nbytes for form in found for own in form.fields for each in own.fields)
+        forms = closed_forms(replace(self.model, rock_inputs=inputs, structures=structures))
+        sheets = {id(mesh): mesh for form in forms for row in form.sheets for mesh in row if mesh is not None}
+        size = sum(mesh.vertices.nbytes + mesh.triangles.nbytes for mesh in sheets.values())
+        size += sum(grid.values.nbytes for form in forms for series in form.fields for grid in series.fields)
         if self._size + size <= _MOST_BYTES:
-            self._forms[number] = found
+            self._forms[number] = forms
             self._size += size
-        return found
+        return forms
 
     def _make(self, work: Work, number: int, cells: str) -> Model:
         began = time.perf_counter()
@@ -119,28 +119,28 @@ class Realizer:
     def correlations(self, entry: RockInput) -> list[float]:
         """The correlations of the errors of each surface of a rock mass, an entry of the model's rock_inputs,
         with those of the next older one."""
-        own = [surface.correlation for surface in entry.rock.surfaces]
-        return [self.correlation if each is None else each for each in own]
+        correlations = [surface.correlation for surface in entry.rock.surfaces]
+        return [self.correlation if value is None else value for value in correlations]
 
     def _drawn(self, entry: RockInput, rock: int, number: int) -> RockInput:
         """An entry without heights, whose surfaces will be drawn."""
         surfaces = entry.rock.surfaces
         draws: list[Draw] = []
         noise, of_series = None, None
-        for each, correlation in enumerate(self.correlations(entry)):
-            own = Noise((self.seed, number, rock, each), noise, correlation)
-            beside = sheets_beside(entry.rock, each)
-            if surfaces[each].is_level_set:
+        for index, correlation in enumerate(self.correlations(entry)):
+            surface_noise = Noise((self.seed, number, rock, index), noise, correlation)
+            beside = sheets_beside(entry.rock, index)
+            if surfaces[index].is_level_set:
                 noise, of_series = None, None
-            elif each in beside[1:]:  # drawn together with the oldest, whose noise is that of all
+            elif index in beside[1:]:  # drawn together with the oldest, whose noise is that of all
                 assert of_series is not None
-                own = Noise((self.seed, number, rock, each))
-                of_series.noises.append(own)
+                surface_noise = Noise((self.seed, number, rock, index))
+                of_series.noises.append(surface_noise)
             else:
-                noise, of_series = own, SeriesDraw([own]) if beside else None
-            given = None if self.model.structures.is_divided else entry.interpolations[each]
-            known = self._known.setdefault((rock, each), {})
-            draws.append(Draw(self._area, own, known, given, of_series))
+                noise, of_series = surface_noise, SeriesDraw([surface_noise]) if beside else None
+            interpolation = None if self.model.structures.is_divided else entry.interpolations[index]
+            cache = self._known.setdefault((rock, index), {})
+            draws.append(Draw(self._area, surface_noise, cache, interpolation, of_series))
         return replace(
             entry,
             surfaces=[
@@ -152,11 +152,11 @@ class Realizer:
             attributes={},
             structure=None,
             draws=draws,
-            field_draws={own.name: self._field_draws(own, rock, number) for own in entry.fields},
+            field_draws={series.name: self._field_draws(series, rock, number) for series in entry.fields},
             left_out=list(entry.left_out),
         )
 
-    def _field_draws(self, own: SeriesField, rock: int, number: int) -> FieldDraws:
+    def _field_draws(self, series: SeriesField, rock: int, number: int) -> FieldDraws:
         """How the fields of a series of a rock mass are drawn."""
-        noise = Noise((self.seed, number, rock, own.first))
-        return FieldDraws(noise.normal, self._known.setdefault((rock, own.first), {}), own.top)
+        noise = Noise((self.seed, number, rock, series.first))
+        return FieldDraws(noise.normal, self._known.setdefault((rock, series.first), {}), series.top)

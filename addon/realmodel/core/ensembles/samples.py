@@ -53,8 +53,8 @@ def section_samples(
     if size is None:
         steps = extent / (_COLUMNS, _ROWS)
     else:
-        given = checked_size(model, size)
-        steps = given[[0, 2]] if is_vertical(section) else given[:2]
+        sizes = checked_size(model, size)
+        steps = sizes[[0, 2]] if is_vertical(section) else sizes[:2]
     rows = _bounds(low[1], high[1], steps[1])
     if isinstance(section, Fence):
         pieces = [_bounds(*ends, steps[0]) for ends in itertools.pairwise(section.bends.tolist())]
@@ -144,10 +144,10 @@ def sample_writer(path: str | Path, kind: str, exaggeration: float = 1.0) -> Cal
     """The function (samples, probabilities, file) for files of this ending. kind: "section", "borehole" or
     "grid". exaggeration: of heights in drawings. Raises UsageError."""
     exporter = SAMPLES[kind]
-    known = exporter.format(path)
+    file_format = exporter.format(path)
 
     def write(samples: Samples, probabilities: Probabilities, file: BinaryIO) -> None:
-        content = exporter.view(known, (samples, probabilities), {"exaggeration": exaggeration})
-        known.write(content, file, no_step)
+        content = exporter.view(file_format, (samples, probabilities), {"exaggeration": exaggeration})
+        file_format.write(content, file, no_step)
 
     return write

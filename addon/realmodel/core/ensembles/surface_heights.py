@@ -44,7 +44,7 @@ def _own(entry: RockInput, number: int) -> np.ndarray:
 def _difference(entry: RockInput, drawn: RockInput, number: int, threads: int) -> np.ndarray:
     if entry.structure is None:
         return drawn.interpolation(number).z - entry.interpolation(number).z
-    found = []
+    changes = []
     for compartment, (vertices, _) in _sheets(entry, number):
         nodes, triangles = drawn.divided().sheet(compartment, number)
         if np.array_equal(nodes[:, :2], vertices[:, :2]):
@@ -52,8 +52,8 @@ def _difference(entry: RockInput, drawn: RockInput, number: int, threads: int) -
         else:
             plan = np.ascontiguousarray(vertices[:, :2])
             z = native_module().surface_heights(nodes, triangles, plan, execution=on_threads(threads))
-        found.append(z - vertices[:, 2])
-    return np.concatenate(found)
+        changes.append(z - vertices[:, 2])
+    return np.concatenate(changes)
 
 
 def _sheets(entry: RockInput, number: int) -> list[tuple[int, Sheet]]:

@@ -95,11 +95,11 @@ class Beds:
     def numbers(self, points: np.ndarray) -> np.ndarray:
         """(N,) int32: the bed that each of the points (N, 3) lies in."""
         plan, z = self.upright(points)[:, :2], points[:, 2]
-        found = np.searchsorted(self.levels, z - self.datum(plan, self.strips(plan)))
+        beds = np.searchsorted(self.levels, z - self.datum(plan, self.strips(plan)))
         if math.isfinite(self.floor):
             above = len(self.levels) + 1 + np.searchsorted(self.covers, z)
-            found = np.where(z > self.floor, above, found)
-        return found.astype(np.int32)
+            beds = np.where(z > self.floor, above, beds)
+        return beds.astype(np.int32)
 
 
 def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:

@@ -60,7 +60,7 @@ def fill_with_strata(
     mesh = closed_mesh(vertices, triangles, strata.base)
     beds = lay_beds(strata, mesh[0])
     model, places = run(lambda work: fill_within(work, mesh, beds, strata), progress, cancel, threads=threads)
-    surfaces = SurfaceArrays([Sheet(beds.leaned(own), of) for own, of in model.surface_arrays.shapes])
+    surfaces = SurfaceArrays([Sheet(beds.leaned(nodes), of) for nodes, of in model.surface_arrays.shapes])
     return replace(model, complex=replace(model.complex, vertices=places), surface_arrays=surfaces)
 
 
@@ -70,8 +70,8 @@ def fill_within(
     """`fill_with_strata` of a closed mesh with the beds that were laid through it, as a job. Returns the
     model in the space in which folds stand upright (`Beds`), where its surfaces have one height at each
     position, and where its vertices (V, 3) belong."""
-    given, triangles = mesh
-    mesh = beds.upright(given), triangles
+    vertices, triangles = mesh
+    mesh = beds.upright(vertices), triangles
     check_gap(beds, strata.gap)
     solid = solid_within(work, mesh, _SOLID)
     library, rocks = rocks_of_beds(beds.count, strata.palette, strata.seed)
@@ -87,19 +87,19 @@ def fill_within(
         model.warnings.append(
             BuildWarning(f"there is room for only {pegs.count} of the pegs; {lacking} are left out")
         )
-    return model, _where_they_belong(beds, model.vertices, given)
+    return model, _where_they_belong(beds, model.vertices, vertices)
 
 
-def _where_they_belong(beds: Beds, vertices: np.ndarray, given: np.ndarray) -> np.ndarray:
+def _where_they_belong(beds: Beds, vertices: np.ndarray, mesh_vertices: np.ndarray) -> np.ndarray:
     """(V, 3) vertices (V, 3) of the upright space, those of the given mesh without any change. Where rounding
     makes two equal, the later one takes a neighboring double, as everywhere in a model."""
     if not beds.lean.any():
         return vertices
     places = beds.leaned(vertices)
-    same = welded(np.concatenate([beds.upright(given), vertices]))[len(given) :]
-    own = same < len(given)
-    places[own] = given[same[own]]
-    order = np.argsort(~own, kind="stable")
+    same = welded(np.concatenate([beds.upright(mesh_vertices), vertices]))[len(mesh_vertices) :]
+    is_of_mesh = same < len(mesh_vertices)
+    places[is_of_mesh] = mesh_vertices[same[is_of_mesh]]
+    order = np.argsort(~is_of_mesh, kind="stable")
     while True:
         ranks = welded(places[order])
         equal = order[ranks != np.arange(len(order))]

@@ -100,10 +100,10 @@ class _Lines:
 
     def are_inside(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """(N,) whether each line is inside the mesh from one elevation to another."""
-        low, high = (np.broadcast_to(each, len(self._places)) for each in (low, high))
+        low, high = (np.broadcast_to(level, len(self._places)) for level in (low, high))
         below, upto = (
-            np.bincount(self._line[self._z < each[self._line]], minlength=len(self._places))
-            for each in (low, high)
+            np.bincount(self._line[self._z < level[self._line]], minlength=len(self._places))
+            for level in (low, high)
         )
         return (below % 2 == 1) & (below == upto)
 

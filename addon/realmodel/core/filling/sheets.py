@@ -30,7 +30,7 @@ _HALVES = np.array([(0, 1, 2), (0, 2, 3)], np.int32)  # of a box
 def sheets_of(beds: Beds, properties: list[int], gap: float, pegs: Pegs) -> list[Surface]:
     """Surfaces whose blocks are the beds, oldest first: the floor, the boundaries, and the top. properties:
     of each bed. gap: between beds, at right angles to their datum's plane; blocks there have no property."""
-    found: list[Surface] = []
+    surfaces: list[Surface] = []
     bed = 0
     for number, (gap_name, (points, triangles)) in enumerate(_Sheets(beds, gap, pegs).all()):
         surface = Surface(f"Sheet {number}" if number else "Floor", points, triangles)
@@ -38,8 +38,8 @@ def sheets_of(beds: Beds, properties: list[int], gap: float, pegs: Pegs) -> list
         if number:
             bed += not gap_name
             surface.block = gap_name.format(bed) if gap_name else f"Bed {bed}"
-        found.append(surface)
-    return found
+        surfaces.append(surface)
+    return surfaces
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,14 +192,14 @@ def _side(polygon: list[Corner], sides: list[float], sign: float) -> list[Corner
     """The part of a convex polygon on one side of a line; none where it only touches it."""
     if all(side * sign <= 0.0 for side in sides):
         return []
-    found = []
+    corners = []
     for k, corner in enumerate(polygon):
         if sides[k] * sign >= 0.0:
-            found.append(corner)
+            corners.append(corner)
         following = (k + 1) % len(polygon)
         if sides[k] * sides[following] < 0.0:
-            found.append(_crossing((corner, sides[k]), (polygon[following], sides[following])))
-    return found
+            corners.append(_crossing((corner, sides[k]), (polygon[following], sides[following])))
+    return corners
 
 
 def _crossing(one: tuple[Corner, float], other: tuple[Corner, float]) -> Corner:

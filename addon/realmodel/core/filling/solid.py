@@ -89,8 +89,8 @@ def solid_within(work: Work, mesh: Mesh, share: float) -> Mesh:
     it does, what it covers twice counts once, as in Booleans. Raises InputRefused where its triangles face
     both ways, or it holds nothing."""
     try:
-        found = intersect_within(work, mesh, _far_from(mesh[0]), share)
-        made = found.difference()
+        intersection = intersect_within(work, mesh, _far_from(mesh[0]), share)
+        made = intersection.difference()
     except InputRefused as error:
         raise InputRefused(
             error.what, item=ITEM, advice=error.advice, triangles=error.triangles, place=error.place

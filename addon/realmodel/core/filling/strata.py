@@ -85,7 +85,7 @@ class Strata:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in (each.name for each in fields(self) if each.name in _BOUNDS):
+        for name in (parameter.name for parameter in fields(self) if parameter.name in _BOUNDS):
             _check(name, getattr(self, name))
         for name in ("dip_direction", "fold_axis", "fault_strike"):
             _number(name, getattr(self, name))

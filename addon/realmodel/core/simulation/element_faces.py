@@ -107,13 +107,13 @@ class ElementFaces:
         as of solver_names, and different from one another; longest: letters of a name."""
         mesh = self.mesh
         shapes = [shape for shape in SHAPES if shape in mesh.faces and len(mesh.faces[shape])]
-        found = {shape: self._of[shape].find(mesh.faces[shape]) for shape in shapes}
-        outside = {shape: ~self._of[shape].has_twin[found[shape]] for shape in shapes}
+        indices = {shape: self._of[shape].find(mesh.faces[shape]) for shape in shapes}
+        outside = {shape: ~self._of[shape].has_twin[indices[shape]] for shape in shapes}
         surface = [mesh.face_surface[shape][outside[shape]] for shape in shapes]
         if not shapes:
             return []
         on = np.concatenate(surface)
-        corners = [self._part(shape, found[shape][outside[shape]])[0] for shape in shapes]
+        corners = [self._part(shape, indices[shape][outside[shape]])[0] for shape in shapes]
         patches, number = boundary_patches(
             on, self._rises(corners, on), mesh.surface_names, mesh.surface_kind
         )
@@ -121,8 +121,8 @@ class ElementFaces:
         of_patch = {
             shape: np.where(outside[shape], 0, -1) for shape in shapes
         }  # the set of each named face, -1: of no patch
-        for shape, own in zip(shapes, per_shape, strict=True):
-            of_patch[shape][outside[shape]] = own
+        for shape, numbers in zip(shapes, per_shape, strict=True):
+            of_patch[shape][outside[shape]] = numbers
         inner = np.unique(np.concatenate([mesh.face_surface[shape][~outside[shape]] for shape in shapes]))
         inner = inner[inner >= 0]
         for shape in shapes:
@@ -133,7 +133,7 @@ class ElementFaces:
         names = [patch.name for patch in patches] + [mesh.surface_names[k] for k in inner.tolist()]
         sets = []
         for k, (name, group) in enumerate(zip(solver_names(names, longest), groups, strict=True)):
-            parts = {shape: self._part(shape, found[shape][of_patch[shape] == k]) for shape in shapes}
+            parts = {shape: self._part(shape, indices[shape][of_patch[shape] == k]) for shape in shapes}
             sets.append(
                 FaceSet(name, group, *({shape: part[j] for shape, part in parts.items()} for j in range(3)))
             )
@@ -163,11 +163,11 @@ class ElementFaces:
 
 def joint_sets(sets: list[FaceSet]) -> dict[str, list[FaceSet]]:
     """The sets by name, then those of each group of patches by its name, where no patch has this."""
-    joint = {found.name: [found] for found in sets}
+    joint = {face_set.name: [face_set] for face_set in sets}
     groups: dict[str, list[FaceSet]] = {}
-    for found in sets:
-        if found.group and found.group not in joint:
-            groups.setdefault(found.group, []).append(found)
+    for face_set in sets:
+        if face_set.group and face_set.group not in joint:
+            groups.setdefault(face_set.group, []).append(face_set)
     return joint | groups
 
 

@@ -68,7 +68,7 @@ def solver_names_of(names: Iterable[str]) -> list[str]:
 
 def solver_names(names: Iterable[str], longest: int = 64) -> list[str]:
     """Names of ASCII letters, digits and _ that begin with a letter, all different whatever the case."""
-    found: list[str] = []
+    identifiers: list[str] = []
     taken: set[str] = set()
     for name in names:
         plain = unicodedata.normalize("NFKD", name).replace("ß", "ss")
@@ -80,5 +80,5 @@ def solver_names(names: Iterable[str], longest: int = 64) -> list[str]:
             number += 1
             free = f"{word[: longest - 1 - len(str(number))]}_{number}"
         taken.add(free.lower())
-        found.append(free)
-    return found
+        identifiers.append(free)
+    return identifiers

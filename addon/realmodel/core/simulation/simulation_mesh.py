@@ -172,18 +172,18 @@ def layer_numbers(
         unknown = [name for name in layers if name not in names]
         if unknown:
             raise UsageError(f"layers: there is no block {unknown[0]!r}; blocks are {', '.join(names)}")
-        given = [layers.get(name, default) for name in names]
+        numbers = [layers.get(name, default) for name in names]
     elif isinstance(layers, Sequence | np.ndarray) and not isinstance(layers, str):
-        given = list(layers)
-        if len(given) != len(names):
-            raise UsageError(f"layers: {len(given)} numbers for {len(names)} blocks")
+        numbers = list(layers)
+        if len(numbers) != len(names):
+            raise UsageError(f"layers: {len(numbers)} numbers for {len(names)} blocks")
     else:
-        given = [layers] * len(names)
-    for value in given:
+        numbers = [layers] * len(names)
+    for value in numbers:
         whole = is_number(value) and float(value).is_integer()
         if not whole or not default <= value <= 10_000:
             raise UsageError(f"layers must be whole numbers from 1 to 10000, not {value!r}")
-    return [int(value) for value in given]
+    return [int(value) for value in numbers]
 
 
 def _without_columns(model: ModelData) -> str | None:
@@ -231,16 +231,16 @@ def _assembled(model: ModelData, made: dict, wanted: str, layers: list[int]) -> 
         }
     return SimulationMesh(
         points=made["points"],
-        elements={kind: own["corners"] for kind, own in elements.items()},
-        element_block={kind: own["block"] for kind, own in elements.items()},
-        faces={kind: own[0] for kind, own in faces.items()},
-        face_surface={kind: own[1] for kind, own in faces.items()},
+        elements={kind: arrays["corners"] for kind, arrays in elements.items()},
+        element_block={kind: arrays["block"] for kind, arrays in elements.items()},
+        faces={kind: arrays[0] for kind, arrays in faces.items()},
+        face_surface={kind: arrays[1] for kind, arrays in faces.items()},
         **_names(model),
         plan=PlanMesh(
             made["plan_vertices"],
             made["plan_triangles"],
-            {kind: own["column"] for kind, own in elements.items()},
-            {kind: own["layer"] for kind, own in elements.items()},
+            {kind: arrays["column"] for kind, arrays in elements.items()},
+            {kind: arrays["layer"] for kind, arrays in elements.items()},
             made["layers"],
         ),
         volumes=made["volumes"],
@@ -263,8 +263,8 @@ def _divided_blocks(model: ModelData, asked: list[int], layers: list[int]) -> li
             "mesh_layers",
             model.rock_inputs[block.rock].rock.name,
         )
-        for block, given, number in zip(model.blocks, asked, layers, strict=True)
-        if given == 0 and number > 1
+        for block, limit, number in zip(model.blocks, asked, layers, strict=True)
+        if limit == 0 and number > 1
     ]
 
 
@@ -283,7 +283,7 @@ def _skewed_faces(
     return [BuildWarning(f"{text}: checkMesh fails them; {advice}", "mesh_skewness")]
 
 
-def _kept_blocks(model: ModelData, kept: list[int]) -> list[BuildWarning]:
+def _kept_blocks(model: ModelData, numbers: list[int]) -> list[BuildWarning]:
     """A warning for each block that keeps elements of bad shape, as a repair would cost too much of it."""
     return [
         BuildWarning(
@@ -292,7 +292,7 @@ def _kept_blocks(model: ModelData, kept: list[int]) -> list[BuildWarning]:
             "mesh_thin_ends",
             model.rock_inputs[block.rock].rock.name,
         )
-        for block in (model.blocks[number] for number in kept)
+        for block in (model.blocks[number] for number in numbers)
     ]
 
 

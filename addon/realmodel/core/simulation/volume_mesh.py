@@ -91,10 +91,10 @@ class VolumeMesh(ShortRepr):
         """(E,) int32 each, in the order of vtk_cells: `block`, an index of block_names, `property`, and where
         there are any `compartment`."""
         block = self.of_all(self.element_block)
-        found = {"block": block, "property": self.block_property[block] if len(block) else block}
+        arrays = {"block": block, "property": self.block_property[block] if len(block) else block}
         if self.element_compartment is not None:
-            found["compartment"] = self.of_all(self.element_compartment)
-        return found
+            arrays["compartment"] = self.of_all(self.element_compartment)
+        return arrays
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """The elements as a grid of PyVista: cell data as of cell_data, and of columns `layer` (0 the
