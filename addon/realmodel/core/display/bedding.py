@@ -51,10 +51,10 @@ class Bedding:
     @staticmethod
     def joined(parts: list[Bedding | None]) -> Bedding | None:
         """Several, one after another; None where one is not known."""
-        known = [vars(part) for part in parts if part is not None]
-        if len(known) < len(parts):
+        arrays = [vars(part) for part in parts if part is not None]
+        if len(arrays) < len(parts):
             return None
-        return Bedding(*(np.concatenate([part[name] for part in known]) for name in known[0]))
+        return Bedding(*(np.concatenate([part[name] for part in arrays]) for name in arrays[0]))
 
 
 def bedding_of(
@@ -68,32 +68,36 @@ def bedding_of(
     block = model.cell_block[cells]
     rocks = native_rocks(model)
     first = np.cumsum([0, *(len(surfaces) for surfaces, *_ in rocks)])
-    rock = np.array([each.rock for each in model.blocks], np.int32)
-    surface = np.array([each.surface for each in model.blocks], np.int32)
+    rock = np.array([model_block.rock for model_block in model.blocks], np.int32)
+    surface = np.array([model_block.surface for model_block in model.blocks], np.int32)
     layer = np.where(surface < first[-1], surface - first[rock], _NO_LAYER).astype(np.int32)
     histories: list[tuple] = []
     history = np.zeros(len(faces), np.int32)
     corner_begin = np.cumsum(np.append(0, np.diff(model.face_offsets)[faces]))
     of_corners = None
     for number, (surfaces, _, base_elevation, rules) in enumerate(rocks):
-        own = np.flatnonzero(rock[block] == number)
-        history[own] = len(histories)
+        polygons = np.flatnonzero(rock[block] == number)
+        history[polygons] = len(histories)
         structure = model.rock_inputs[number].structure if model.rock_inputs else None
         if structure is None:
             histories.append((surfaces, base_elevation, rules))
             continue
         if of_corners is None:
             of_corners = np.zeros(corner_begin[-1], np.int32)
-        compartments = _compartments(work, model, structure, faces[own], is_second[own], cells[own])
-        of_corners[_runs(corner_begin, own)] = len(histories) + compartments
+        compartments = _compartments(
+            work, model, structure, faces[polygons], is_second[polygons], cells[polygons]
+        )
+        of_corners[_runs(corner_begin, polygons)] = len(histories) + compartments
         histories += [
             ([sheet.arrays for sheet in structure.of_compartment(c)], base_elevation, rules)
             for c in range(len(structure.sheets))
         ]
     if of_corners is not None:
         plain = [n for n, entry in enumerate(model.rock_inputs) if entry.structure is None]
-        own = np.flatnonzero(np.isin(rock[block], plain))
-        of_corners[_runs(corner_begin, own)] = np.repeat(history[own], np.diff(corner_begin)[own])
+        polygons = np.flatnonzero(np.isin(rock[block], plain))
+        of_corners[_runs(corner_begin, polygons)] = np.repeat(
+            history[polygons], np.diff(corner_begin)[polygons]
+        )
     height, thickness, depth = work.native(
         native_module().bedding,
         model.native(),
@@ -106,10 +110,10 @@ def bedding_of(
     is_top &= grows[np.maximum(model.face_surface[faces], 0)]
     is_top[is_top] = ~seen_from_below(model, faces[is_top])
     age = np.array([_age(model, number, layer) for number in range(len(model.blocks))], np.float32)
-    found = Bedding(height, thickness, depth, is_top, age[block])
-    found, layers = _with_series(model, found, faces, is_second, cells)
+    bedding = Bedding(height, thickness, depth, is_top, age[block])
+    bedding, layers = _with_series(model, bedding, faces, is_second, cells)
     body = np.where(layer == _NO_LAYER, surface, -1)
-    return _with_bodies(model, found, faces, is_second, body[block]), layers
+    return _with_bodies(model, bedding, faces, is_second, body[block]), layers
 
 
 def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
@@ -120,56 +124,56 @@ def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
 
 
 def _with_bodies(
-    model: ModelData, found: Bedding, faces: np.ndarray, is_second: np.ndarray, body: np.ndarray
+    model: ModelData, bedding: Bedding, faces: np.ndarray, is_second: np.ndarray, body: np.ndarray
 ) -> Bedding:
     """body: (N,) the surface of the body that each polygon is of, -1: none."""
     if (body < 0).all():
-        return found
+        return bedding
     offsets, corners = model.face_corners(faces, is_second)
     of_corner = np.repeat(body, np.diff(offsets))
-    height, thickness = found.height.copy(), found.thickness.copy()
+    height, thickness = bedding.height.copy(), bedding.thickness.copy()
     for surface in np.unique(body[body >= 0]):
-        own = of_corner == surface
+        mask = of_corner == surface
         levels = model.surface(surface)[0][:, 2]
-        thickness[own] = np.ptp(levels)
-        height[own] = np.clip((model.vertices[corners[own], 2] - levels.min()) / np.ptp(levels), 0.0, 1.0)
-    return replace(found, height=height, thickness=thickness)
+        thickness[mask] = np.ptp(levels)
+        height[mask] = np.clip((model.vertices[corners[mask], 2] - levels.min()) / np.ptp(levels), 0.0, 1.0)
+    return replace(bedding, height=height, thickness=thickness)
 
 
 def _with_series(
-    model: ModelData, found: Bedding, faces: np.ndarray, is_second: np.ndarray, cells: np.ndarray
+    model: ModelData, bedding: Bedding, faces: np.ndarray, is_second: np.ndarray, cells: np.ndarray
 ) -> tuple[Bedding, dict[int, SeriesLayer]]:
     """Heights and thicknesses of the layers of series by their fields, also where these are vertical or
     overturned. The thickness of a layer is its mean, so that laminae are level sets of the field."""
     layers: dict[int, SeriesLayer] = {}
     if not any(entry.fields for entry in model.rock_inputs):
-        return found, layers
+        return bedding, layers
     offsets, corners = model.face_corners(faces, is_second)
     beneath = np.array([block.surface for block in model.blocks], np.int64)[model.cell_block[cells]]
-    height, thickness, first = found.height.copy(), found.thickness.copy(), 0
+    height, thickness, first = bedding.height.copy(), bedding.thickness.copy(), 0
     for entry in model.rock_inputs:
         local = local_compartments(model, entry)
-        of_series = {number for own in entry.fields for number in own.numbers}
+        of_series = {number for series_field in entry.fields for number in series_field.numbers}
         unconformities = {
             number
             for number, surface in enumerate(entry.rock.surfaces)
             if RULES[surface.rule].cuts and number not in of_series
         }
-        for own in entry.fields:
-            after = own.first + own.count
+        for series_field in entry.fields:
+            after = series_field.first + series_field.count
             above = [after] if after in unconformities else []  # what lies on it was folded with it
-            for number in (*own.numbers, *above):
+            for number in (*series_field.numbers, *above):
                 polygons = np.flatnonzero(beneath == first + number)
                 rows = _runs(offsets, polygons)
                 where = np.repeat(model.cell_compartment[cells[polygons]], np.diff(offsets)[polygons])
                 points = model.vertices[corners[rows]]
-                layer = SeriesLayer.of(own, number, local, points, where)
-                share, known = layer.shares(points, where)
-                height[rows[known]] = share[known]
-                thickness[rows[known]] = layer.thickness
+                layer = SeriesLayer.of(series_field, number, local, points, where)
+                share, is_known = layer.shares(points, where)
+                height[rows[is_known]] = share[is_known]
+                thickness[rows[is_known]] = layer.thickness
                 layers[first + number] = layer
         first += len(entry.rock.surfaces)
-    return replace(found, height=height, thickness=thickness), layers
+    return replace(bedding, height=height, thickness=thickness), layers
 
 
 def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:

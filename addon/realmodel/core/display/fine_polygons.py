@@ -39,21 +39,21 @@ class FinePolygons:
         pairs = pairs[order]
         rank = np.argsort(pairs)
         begin = int(np.count_nonzero(pairs % _HIGH < self.given))
-        known, row = np.unique(_pairs(np.arange(len(offsets) - 1), offsets, corners), return_index=True)
-        found = np.empty((len(pairs), values.shape[1]), values.dtype)
-        found[:begin] = values[row[np.searchsorted(known, pairs[:begin])]]
+        old_pairs, row = np.unique(_pairs(np.arange(len(offsets) - 1), offsets, corners), return_index=True)
+        pair_values = np.empty((len(pairs), values.shape[1]), values.dtype)
+        pair_values[:begin] = values[row[np.searchsorted(old_pairs, pairs[:begin])]]
         polygon, vertex = pairs[begin:] // _HIGH, pairs[begin:] % _HIGH
         parents = polygon[:, None] * _HIGH + self.parents[vertex - self.given]
-        _fill_halves(found, rank[np.searchsorted(pairs, parents, sorter=rank)], begin)
+        _fill_halves(pair_values, rank[np.searchsorted(pairs, parents, sorter=rank)], begin)
         place = np.empty(len(order), np.int64)
         place[order] = np.arange(len(order))
-        return found[place[number.ravel()]]
+        return pair_values[place[number.ravel()]]
 
     def extended(self, values: np.ndarray) -> np.ndarray:
         """Values (V, ...) of the given vertices, and after them those of the new ones, by halves."""
-        found = np.concatenate([values, np.zeros((len(self.parents), *values.shape[1:]), values.dtype)])
-        _fill_halves(found, self.parents, len(values))
-        return found
+        all_values = np.concatenate([values, np.zeros((len(self.parents), *values.shape[1:]), values.dtype)])
+        _fill_halves(all_values, self.parents, len(values))
+        return all_values
 
 
 def fine_polygons(
@@ -69,21 +69,21 @@ def fine_polygons(
     polygon = np.repeat(np.flatnonzero(chosen), np.diff(begins))
     triangles, polygon, parents = _halved(triangles.astype(np.int64), polygon, positions, longest)
     others = np.flatnonzero(~chosen)
-    kept, of_kept = _with_corners(
+    other_corners, of_others = _with_corners(
         corners[np.repeat(~chosen, counts)].astype(np.int64),
         np.repeat(others, counts[others]),
         parents,
         len(positions),
     )
     piece = np.concatenate([others, polygon])
-    sizes = np.append(np.bincount(of_kept, minlength=len(counts))[others], np.full(len(polygon), 3))
+    sizes = np.append(np.bincount(of_others, minlength=len(counts))[others], np.full(len(polygon), 3))
     order = np.argsort(piece, kind="stable")
     ends = np.cumsum(sizes[order])
     shift = (np.cumsum(sizes) - sizes)[order] - (ends - sizes[order])
     rows = np.repeat(shift, sizes[order]) + np.arange(ends[-1] if len(ends) else 0)
-    found = np.append(kept, triangles.ravel())[rows]
+    new_corners = np.append(other_corners, triangles.ravel())[rows]
     offsets = np.append(0, ends).astype(np.int32)
-    return FinePolygons(offsets, found.astype(np.int32), piece[order], len(positions), parents)
+    return FinePolygons(offsets, new_corners.astype(np.int32), piece[order], len(positions), parents)
 
 
 def _halved(
@@ -110,7 +110,8 @@ def _halved(
         a, b, c = (triangles[rows, (side + step) % 3] for step in range(3))
         split, middle = halved[number], new[number]
         a, b, c, middle = (
-            np.concatenate([each[~split], each[split], each[split]]) for each in (a, b, c, middle)
+            np.concatenate([vertices[~split], vertices[split], vertices[split]])
+            for vertices in (a, b, c, middle)
         )
         whole, parts = np.count_nonzero(~split), np.count_nonzero(split)
         b[whole : whole + parts] = middle[whole : whole + parts]
@@ -118,12 +119,12 @@ def _halved(
         triangles = np.column_stack([a, b, c])
         polygon = np.concatenate([polygon[~split], polygon[split], polygon[split]])
     empty = np.empty((0, 3), np.int64), np.empty(0, np.int64)
-    found, of = (np.concatenate(parts) for parts in zip(empty, *done, strict=True))
-    return found, of, np.concatenate([np.empty((0, 2), np.int64), *parents])
+    pieces, of = (np.concatenate(parts) for parts in zip(empty, *done, strict=True))
+    return pieces, of, np.concatenate([np.empty((0, 2), np.int64), *parents])
 
 
 def _with_corners(
-    corners: np.ndarray, polygon: np.ndarray, parents: np.ndarray, given: int
+    corners: np.ndarray, polygon: np.ndarray, parents: np.ndarray, vertex_count: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rings of corners, the polygon of each corner beside it, with the new vertices on their edges."""
     keys = _keys(parents[:, 0], parents[:, 1])
@@ -139,7 +140,7 @@ def _with_corners(
         if not is_halved.any():
             break
         after = np.flatnonzero(is_halved) + 1
-        corners = np.insert(corners, after, given + order[at[is_halved]])
+        corners = np.insert(corners, after, vertex_count + order[at[is_halved]])
         polygon = np.insert(polygon, after, polygon[is_halved])
     return corners, polygon
 
@@ -156,7 +157,7 @@ def _pairs(polygon: np.ndarray, offsets: np.ndarray, corners: np.ndarray) -> np.
 def _fill_halves(values: np.ndarray, parents: np.ndarray, begin: int) -> None:
     """Sets the values of vertices from `begin` on, wave by wave of those whose parents are known."""
     while begin < len(values):
-        own = parents[len(parents) - (len(values) - begin) :]
-        ready = np.append(own.max(axis=1) >= begin, True).argmax()
-        values[begin : begin + ready] = (values[own[:ready, 0]] + values[own[:ready, 1]]) / 2
+        pending = parents[len(parents) - (len(values) - begin) :]
+        ready = np.append(pending.max(axis=1) >= begin, True).argmax()
+        values[begin : begin + ready] = (values[pending[:ready, 0]] + values[pending[:ready, 1]]) / 2
         begin += int(ready)

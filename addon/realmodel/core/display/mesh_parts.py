@@ -101,25 +101,34 @@ class _Triangles(NamedTuple):
 
 
 def _triangles_of(
-    found: Intersection, rows: np.ndarray, is_turned: np.ndarray, operands: tuple[Operand, Operand]
+    intersection: Intersection, rows: np.ndarray, is_turned: np.ndarray, operands: tuple[Operand, Operand]
 ) -> _Triangles:
-    source, origin = found.source[rows], found.source_triangle[rows]
+    source, origin = intersection.source[rows], intersection.source_triangle[rows]
     count = len(rows)
     polygon, is_whole = np.empty(count, np.int64), np.zeros(count, bool)
     between, on_edge = np.empty((count, 3), np.int64), np.empty((count, 3), np.int64)
     of = _Triangles(
-        found.triangles[rows], source, origin, polygon, np.empty((count, 3, 3)), between, on_edge, is_whole
+        intersection.triangles[rows],
+        source,
+        origin,
+        polygon,
+        np.empty((count, 3, 3)),
+        between,
+        on_edge,
+        is_whole,
     )
     for number, operand in enumerate(operands):
-        own = source == number
-        of.weights[own] = _barycentric(
-            found.vertices[of.triangles[own]], operand.vertices[operand.triangles[origin[own]]]
+        mask = source == number
+        of.weights[mask] = _barycentric(
+            intersection.vertices[of.triangles[mask]], operand.vertices[operand.triangles[origin[mask]]]
         )
-        polygon[own] = operand.triangle_polygons[origin[own]]
-        between[own] = operand.triangle_corners[origin[own]]
-        pieces = np.bincount(found.source_triangle[found.source == number], minlength=len(operand.triangles))
-        on_edge[own] = _edges_of(found, number, rows[own], pieces, of.weights[own], operand)
-        is_whole[own] = _whole_polygons(operand, origin[own], pieces, polygon[own], is_turned[own])
+        polygon[mask] = operand.triangle_polygons[origin[mask]]
+        between[mask] = operand.triangle_corners[origin[mask]]
+        pieces = np.bincount(
+            intersection.source_triangle[intersection.source == number], minlength=len(operand.triangles)
+        )
+        on_edge[mask] = _edges_of(intersection, number, rows[mask], pieces, of.weights[mask], operand)
+        is_whole[mask] = _whole_polygons(operand, origin[mask], pieces, polygon[mask], is_turned[mask])
     return of
 
 
@@ -144,8 +153,8 @@ def mesh_of_parts(
     turned = is_turned[faces] ^ mirror
     sizes = np.full(len(faces), 3, np.int64)
     for number, operand in enumerate(operands):
-        there = is_whole[faces] & (source[faces] == number)
-        sizes[there] = np.diff(operand.offsets)[polygon[faces[there]]]
+        whole_faces = is_whole[faces] & (source[faces] == number)
+        sizes[whole_faces] = np.diff(operand.offsets)[polygon[faces[whole_faces]]]
     offsets, corner_face, within, within_edge = _corners_of(sizes, turned)
 
     row = faces[corner_face]
@@ -170,10 +179,10 @@ def mesh_of_parts(
         corner_of[large] = (begin + at)[:, None]
         corner_weights[large, 0] = 1.0
         corner_edge[large] = operand.corner_edges[begin + at_edge]
-        there = (source == number) & is_whole
+        whole = (source == number) & is_whole
         vertex = np.full(len(operand.vertices), -1, np.int64)
-        nearest = np.argmax(weights[there], axis=2)
-        vertex[np.take_along_axis(operand.triangles[origin[there]], nearest, axis=1)] = triangles[there]
+        nearest = np.argmax(weights[whole], axis=2)
+        vertex[np.take_along_axis(operand.triangles[origin[whole]], nearest, axis=1)] = triangles[whole]
         corners[large] = vertex[operand.corner_vertices[begin + at]]
 
     used, corners = np.unique(corners, return_inverse=True)
@@ -184,15 +193,15 @@ def mesh_of_parts(
     def source_of(number: int, operand: Operand) -> OperandElements:
         at = np.flatnonzero(source[row] == number)
         vertices, first_at = np.unique(corners[at], return_index=True)
-        known = at[corner_edge[at] >= 0]
-        own_edges, first_edge = np.unique(edge_of_corner[known], return_index=True)
+        with_edge = at[corner_edge[at] >= 0]
+        own_edges, first_edge = np.unique(edge_of_corner[with_edge], return_index=True)
         own_faces = np.flatnonzero(source[faces] == number)
         return OperandElements(
             vertices,
             operand.corner_vertices[corner_of[at[first_at]]],
             corner_weights[at[first_at]],
             own_edges,
-            corner_edge[known[first_edge]],
+            corner_edge[with_edge[first_edge]],
             own_faces,
             polygon[faces[own_faces]],
             at,
@@ -224,8 +233,8 @@ def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -
     total = np.zeros(())
     for corner in range(3):
         weight = weights[:, corner].reshape(-1, *[1] * (values.ndim - 1))
-        there = values[between[:, corner]].astype(np.float64)
-        total = total + np.where(weight == 0.0, 0.0, weight * np.where(weight == 0.0, 0.0, there))
+        corner_values = values[between[:, corner]].astype(np.float64)
+        total = total + np.where(weight == 0.0, 0.0, weight * np.where(weight == 0.0, 0.0, corner_values))
     if values.dtype.kind == "b":
         return total >= 0.5
     return (total if values.dtype.kind == "f" else np.rint(total)).astype(values.dtype)
@@ -247,21 +256,21 @@ def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
     a, b, c = seen(a), seen(b), seen(c)
-    found = np.empty((len(places), 3, 3))
+    weights = np.empty((len(places), 3, 3))
     for corner in range(3):
         p = seen(places[:, corner])
         parts = np.stack([area(p, b, c), area(p, c, a), area(p, a, b)], axis=1)
         whole = parts.sum(axis=1, keepdims=True)
         share = np.divide(parts, whole, out=np.full_like(parts, 1 / 3), where=whole != 0)
         share = np.clip(share, 0.0, 1.0)
-        found[:, corner] = share / share.sum(axis=1, keepdims=True)
+        weights[:, corner] = share / share.sum(axis=1, keepdims=True)
         for k, at in enumerate((a, b, c)):
-            found[(p == at).all(axis=1), corner] = np.eye(3)[k]
-    return found
+            weights[(p == at).all(axis=1), corner] = np.eye(3)[k]
+    return weights
 
 
 def _edges_of(
-    found: Intersection,
+    intersection: Intersection,
     number: int,
     rows: np.ndarray,
     pieces: np.ndarray,
@@ -273,13 +282,13 @@ def _edges_of(
     An edge of a piece is on the border of the triangle that it is part of where no other piece of it has the
     edge; no distances are compared."""
     on_border = np.ones((len(rows), 3), bool)
-    divided = pieces[found.source_triangle[rows]] > 1
+    divided = pieces[intersection.source_triangle[rows]] > 1
     if divided.any():
-        own = np.flatnonzero(found.source == number)
-        everything = own[pieces[found.source_triangle[own]] > 1]
-        corners = found.triangles[everything]
+        of_operand = np.flatnonzero(intersection.source == number)
+        everything = of_operand[pieces[intersection.source_triangle[of_operand]] > 1]
+        corners = intersection.triangles[everything]
         ends = np.sort(np.stack([corners, corners[:, _ONWARD]], axis=2), axis=2)
-        origin = np.repeat(found.source_triangle[everything], 3)
+        origin = np.repeat(intersection.source_triangle[everything], 3)
         keys = np.column_stack([origin, ends.reshape(-1, 2)])
         _, same, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
         single = (count[same.ravel()] == 1).reshape(-1, 3)
@@ -287,7 +296,7 @@ def _edges_of(
     beyond = np.maximum(weights, weights[:, _ONWARD]).argmin(
         axis=2
     )  # the corner that the edge is opposite to
-    triangle = operand.triangle_corners[found.source_triangle[rows]]
+    triangle = operand.triangle_corners[intersection.source_triangle[rows]]
     one = np.take_along_axis(triangle, _ONWARD[beyond], axis=1)
     other = np.take_along_axis(triangle, _ONWARD[_ONWARD[beyond]], axis=1)
     following = np.arange(len(operand.corner_vertices)) + 1
@@ -305,7 +314,7 @@ def _whole_polygons(
     count = len(operand.offsets) - 1
     needed = np.bincount(operand.triangle_polygons, minlength=count)
     undivided = pieces[origin] == 1
-    there = np.bincount(polygon[undivided], minlength=count)
+    present = np.bincount(polygon[undivided], minlength=count)
     turned = np.bincount(polygon[undivided & is_turned], minlength=count)
-    whole = (there == needed) & ((turned == 0) | (turned == needed)) & (np.diff(operand.offsets) > 3)
+    whole = (present == needed) & ((turned == 0) | (turned == needed)) & (np.diff(operand.offsets) > 3)
     return undivided & whole[polygon]

@@ -59,10 +59,10 @@ def of_surfaces(model: ModelData, origin: np.ndarray) -> list[PolygonMesh | None
     eroded. origin: as for `of_blocks`."""
     order = np.argsort(model.face_surface, kind="stable")
     begin = np.searchsorted(model.face_surface[order], np.arange(len(model.surface_names) + 1))
-    found: list[PolygonMesh | None] = []
+    meshes: list[PolygonMesh | None] = []
     for first, last in pairwise(begin.tolist()):
         if first == last:
-            found.append(None)
+            meshes.append(None)
             continue
         faces = order[first:last]
         # The cell that a face is numbered for lies below it or above; seen from above all turn the same way.
@@ -71,8 +71,8 @@ def of_surfaces(model: ModelData, origin: np.ndarray) -> list[PolygonMesh | None
         coordinates = (model.vertices[used] - origin).astype(np.float32)
         offsets, corners = offsets.astype(np.int32), corners.astype(np.int32).ravel()
         edges, corner_edges = native_module().polygon_edges(offsets, corners, len(used))
-        found.append(PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges))
-    return found
+        meshes.append(PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges))
+    return meshes
 
 
 def of_blocks(
@@ -95,13 +95,13 @@ def of_blocks(
     shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks), other)
     numbers = _numbers(model, compartments)
     if numbers is None:
-        return [None if found is None else found[0] for found in shapes]
+        return [None if shell is None else shell[0] for shell in shapes]
     made: list[PolygonMesh | None] = []
-    for block, found in enumerate(shapes):
-        if found is None:
+    for block, shell in enumerate(shapes):
+        if shell is None:
             made.append(None)
             continue
-        shape, faces = found
+        shape, faces = shell
         cells = model.face_cells[faces]
         inside = np.append(model.cell_block, np.int32(-1))[cells] == block
         cell = np.where(inside[:, 0], cells[:, 0], cells[:, 1])
@@ -123,11 +123,11 @@ def of_cells(
     numbers = _numbers(model, compartments)
     if numbers is None:
         shapes = _shells(model, origin, shrink, threads, cancel, model.cell_block, len(model.blocks))
-        return [None if found is None else found[0] for found in shapes]
+        return [None if shell is None else shell[0] for shell in shapes]
     count = int(model.cell_compartment.max()) + 1
     label = (model.cell_block * count + model.cell_compartment).astype(np.int32)
     shapes = _shells(model, origin, shrink, threads, cancel, label, len(model.blocks) * count)
-    parts = [None if found is None else found[0] for found in shapes]
+    parts = [None if shell is None else shell[0] for shell in shapes]
     return [
         _joined(parts[begin : begin + count], numbers) for begin in range(0, len(model.blocks) * count, count)
     ]
@@ -145,39 +145,39 @@ def moved_apart(shape: PolygonMesh, shifts: np.ndarray) -> PolygonMesh:
 
 def _numbers(model: ModelData, names: Sequence[str] | None) -> np.ndarray | None:
     """The numbers by which the compartments of a model are named; None where it has only one."""
-    own = model.compartment_names
-    names = list(own if names is None else names)
-    if max(len(own), len(names)) < 2:
+    model_names = model.compartment_names
+    names = list(model_names if names is None else names)
+    if max(len(model_names), len(names)) < 2:
         return None
-    names += [name for name in own if name not in names]
-    return np.array([names.index(name) for name in own], np.int32)
+    names += [name for name in model_names if name not in names]
+    return np.array([names.index(name) for name in model_names], np.int32)
 
 
 def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh | None:
     """The parts of a block in each compartment as one mesh."""
-    given = [(part, number) for part, number in zip(parts, numbers, strict=False) if part is not None]
-    if not given:
+    pairs = [(part, number) for part, number in zip(parts, numbers, strict=False) if part is not None]
+    if not pairs:
         return None
     vertices, edges, corners = 0, 0, 0
-    found: dict[str, list] = {key: [] for key in ("offsets", "corners", "edges", "corner_edges")}
-    for part, _ in given:
+    arrays: dict[str, list] = {key: [] for key in ("offsets", "corners", "edges", "corner_edges")}
+    for part, _ in pairs:
         assert part.edges is not None and part.corner_edges is not None  # of_cells has made it
-        found["offsets"].append(part.offsets[:-1] + corners)
-        found["corners"].append(part.corners + vertices)
-        found["edges"].append(part.edges + vertices)
-        found["corner_edges"].append(part.corner_edges + edges)
+        arrays["offsets"].append(part.offsets[:-1] + corners)
+        arrays["corners"].append(part.corners + vertices)
+        arrays["edges"].append(part.edges + vertices)
+        arrays["corner_edges"].append(part.corner_edges + edges)
         vertices, edges = vertices + len(part.coordinates), edges + len(part.edges)
         corners += len(part.corners)
-    found["offsets"].append(np.array([corners]))
+    arrays["offsets"].append(np.array([corners]))
     return PolygonMesh(
-        coordinates=np.concatenate([part.coordinates for part, _ in given]),
-        offsets=np.concatenate(found["offsets"]).astype(np.int32),
-        corners=np.concatenate(found["corners"]).astype(np.int32),
-        edges=np.concatenate(found["edges"]).astype(np.int32),
-        corner_edges=np.concatenate(found["corner_edges"]).astype(np.int32),
-        face_surface=np.concatenate([part.face_surface for part, _ in given]),
-        face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in given]),
-        bedding=Bedding.joined([part.bedding for part, _ in given]),
+        coordinates=np.concatenate([part.coordinates for part, _ in pairs]),
+        offsets=np.concatenate(arrays["offsets"]).astype(np.int32),
+        corners=np.concatenate(arrays["corners"]).astype(np.int32),
+        edges=np.concatenate(arrays["edges"]).astype(np.int32),
+        corner_edges=np.concatenate(arrays["corner_edges"]).astype(np.int32),
+        face_surface=np.concatenate([part.face_surface for part, _ in pairs]),
+        face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in pairs]),
+        bedding=Bedding.joined([part.bedding for part, _ in pairs]),
     )
 
 
@@ -202,30 +202,32 @@ def _shells(
             tuple(float(value) for value in origin),
             shrink,
         )
-        there = [arrays for arrays in shells if arrays is not None]
-        if not there or model.lacks_project is not None:
+        present = [arrays for arrays in shells if arrays is not None]
+        if not present or model.lacks_project is not None:
             return shells, None
-        faces, is_second = (np.concatenate([arrays[n] for arrays in there]) for n in (3, 4))
+        faces, is_second = (np.concatenate([arrays[n] for arrays in present]) for n in (3, 4))
         return shells, bedding_of(work, model, faces, is_second)
 
-    shells, known = run(task, cancel=cancel, threads=threads)
-    bedding, layers = known or (None, {})
-    found: list[tuple[PolygonMesh, np.ndarray] | None] = []
+    shells, bedding_and_layers = run(task, cancel=cancel, threads=threads)
+    bedding, layers = bedding_and_layers or (None, {})
+    meshes: list[tuple[PolygonMesh, np.ndarray] | None] = []
     corner, polygon = 0, 0
     for arrays in shells:
         if arrays is None:
-            found.append(None)
+            meshes.append(None)
             continue
         coordinates, offsets, corners, faces, is_second, edges, corner_edges = arrays
         ends = corner + len(corners), polygon + len(faces)
-        own = bedding and bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
+        shell_bedding = bedding and bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
         corner, polygon = ends
         surface = model.face_surface[faces]
-        shape = PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges, bedding=own)
+        shape = PolygonMesh(
+            coordinates, offsets, corners, surface, edges, corner_edges, bedding=shell_bedding
+        )
         if layers and shrink is None:
             shape, faces = _with_fine_bedding(model, shape, faces, is_second, layers)
-        found.append((shape, faces))
-    return found
+        meshes.append((shape, faces))
+    return meshes
 
 
 def _with_fine_bedding(
@@ -247,7 +249,7 @@ def _with_fine_bedding(
     positions = np.zeros((len(shape.coordinates), 3))
     positions[shape.corners] = model.vertices[model.face_corners(faces, is_second)[1]]
     begins, longest = shape.offsets[:-1], layer.longest
-    extent = [each.reduceat(positions[shape.corners], begins) for each in (np.maximum, np.minimum)]
+    extent = [ufunc.reduceat(positions[shape.corners], begins) for ufunc in (np.maximum, np.minimum)]
     chosen = np.square(extent[0] - extent[1]).sum(axis=1) > longest**2
     if layer.has_top:
         chosen &= shape.face_surface != surface
@@ -259,18 +261,18 @@ def _with_fine_bedding(
     coordinates, polygon = fine.extended(shape.coordinates), fine.polygon
     edges, corner_edges = native_module().polygon_edges(fine.offsets, fine.corners, len(coordinates))
     of_corner = np.repeat(polygon, np.diff(fine.offsets))
-    given = shape.bedding
+    coarse = shape.bedding
     height, thickness, depth = np.ascontiguousarray(
         fine.of_corners(
-            shape.offsets, shape.corners, np.column_stack([given.height, given.thickness, given.depth])
+            shape.offsets, shape.corners, np.column_stack([coarse.height, coarse.thickness, coarse.depth])
         ).T
     )
     asked = np.flatnonzero((fine.corners >= len(positions)) & chosen[of_corner])
-    share, known = layer.shares(
+    share, is_known = layer.shares(
         fine.extended(positions)[fine.corners[asked]], model.cell_compartment[cells[of_corner[asked]]]
     )
-    height[asked[known]] = share[known]
-    bedding = Bedding(height, thickness, depth, given.is_top[polygon], given.age[polygon])
+    height[asked[is_known]] = share[is_known]
+    bedding = Bedding(height, thickness, depth, coarse.is_top[polygon], coarse.age[polygon])
     made = PolygonMesh(
         coordinates,
         fine.offsets,

@@ -27,9 +27,9 @@ DRAWINGS = (
 def save_drawing(drawing: Drawing, path: str | Path) -> None:
     """Writes a drawing to an SVG, DXF, or PNG file, which appears whole or not at all. Raises UsageError,
     OutputFailed."""
-    known = by_ending(path, DRAWINGS, "drawings are not written as {}")
+    drawing_format = by_ending(path, DRAWINGS, "drawings are not written as {}")
     with Outputs() as outputs, outputs.file(path) as file:
-        known.write(drawing, file, no_step)
+        drawing_format.write(drawing, file, no_step)
 
 
 __all__ = ["Drawing", "save_drawing"]

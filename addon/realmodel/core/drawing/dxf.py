@@ -111,8 +111,8 @@ class _Pairs:
 
 def _escaped(text: str) -> str:
     """The text with AutoCAD's codes for letters that the file's code page lacks."""
-    known = text.encode(_CODE_PAGE, "ignore").decode(_CODE_PAGE)
-    return "".join(letter if letter in known else f"\\U+{ord(letter):04X}" for letter in text)
+    encodable = text.encode(_CODE_PAGE, "ignore").decode(_CODE_PAGE)
+    return "".join(letter if letter in encodable else f"\\U+{ord(letter):04X}" for letter in text)
 
 
 def layer_name(layer: str, taken: Collection[str]) -> str:

@@ -70,9 +70,9 @@ class Eye:
         """(N, 2): the positions of places of the world (N, 3) in the picture, in points; NaN for places
         behind the eye."""
         places = np.asarray(places, np.float64).reshape(-1, 3)
-        found = np.column_stack([places, np.ones(len(places))]) @ self.projection.T
-        ahead = np.where(found[:, 3:] > 1e-12, found[:, 3:], np.nan)
-        return (found[:, :2] / ahead + 1.0) / 2.0 * self.size
+        projected = np.column_stack([places, np.ones(len(places))]) @ self.projection.T
+        ahead = np.where(projected[:, 3:] > 1e-12, projected[:, 3:], np.nan)
+        return (projected[:, :2] / ahead + 1.0) / 2.0 * self.size
 
 
 @dataclass(frozen=True)
@@ -176,8 +176,8 @@ def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, ends: tuple[float, floa
     left, right = ends
     middle = shown.world((shown.low + shown.high) / 2)[0]
     step = 1e-3 * float(np.linalg.norm(shown.high - shown.low)) or 1.0
-    here, there = eye.at([middle, middle + step * eye.right])
-    scale = float(np.hypot(*(there - here))) / step
+    here, beside = eye.at([middle, middle + step * eye.right])
+    scale = float(np.hypot(*(beside - here))) / step
     most = min(160.0, right - left - 8 * _MARGIN)
     if not (np.isfinite(scale) and scale > 0.0 and most > 40.0):
         return

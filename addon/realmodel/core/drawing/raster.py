@@ -94,13 +94,13 @@ def _closed_stroke(ring: np.ndarray, width: float) -> list[np.ndarray]:
 def _dashes(points: np.ndarray, length: float) -> list[np.ndarray]:
     steps = np.hypot(*np.diff(points, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
-    found = []
+    dashes = []
     for begin in np.arange(0.0, along[-1], 2 * length):
         end = min(begin + length, along[-1])
         inner = along[(along > begin) & (along < end)]
         at = np.concatenate([[begin], inner, [end]])
-        found.append(np.column_stack([np.interp(at, along, points[:, axis]) for axis in range(2)]))
-    return found
+        dashes.append(np.column_stack([np.interp(at, along, points[:, axis]) for axis in range(2)]))
+    return dashes
 
 
 def _fill(pixels: np.ndarray, rings: list[np.ndarray], color: np.ndarray) -> None:
@@ -131,10 +131,10 @@ def _fill(pixels: np.ndarray, rings: list[np.ndarray], color: np.ndarray) -> Non
     x = np.clip(begin[edge, 0] + share * step[edge, 0], 0.0, columns)
     direction = np.sign(step[edge, 1])
     column = np.floor(x).astype(np.int64)
-    own = 1.0 - (x - column)
+    covered = 1.0 - (x - column)
     at = row * (columns + 2) + column
     size = rows * _SUBROWS * (columns + 2)
-    sums = np.bincount(at, direction * own, size) + np.bincount(at + 1, direction * (1.0 - own), size)
+    sums = np.bincount(at, direction * covered, size) + np.bincount(at + 1, direction * (1.0 - covered), size)
     lines = np.cumsum(sums.reshape(rows * _SUBROWS, columns + 2), axis=1)[:, :columns]
     inside = np.minimum(np.abs(lines), 1.0).reshape(rows, _SUBROWS, columns).mean(axis=1)
     amount = (inside * color[3]).astype(np.float32)[..., None]

@@ -81,26 +81,26 @@ class Exporter:
         """Its formats, one of each ending, in the order of the table."""
         chosen: dict[str, Format] = {}
         for view in self.views:
-            for known in FORMATS:
-                if view in known.takes:
-                    chosen.setdefault(known.ending, known)
-        return [known for known in FORMATS if known is chosen.get(known.ending)]
+            for file_format in FORMATS:
+                if view in file_format.takes:
+                    chosen.setdefault(file_format.ending, file_format)
+        return [file_format for file_format in FORMATS if file_format is chosen.get(file_format.ending)]
 
     def endings(self, option: str) -> list[str]:
         """Those of the formats in which a setting has an effect."""
-        return [known.ending for known in self.formats() if option in known.options]
+        return [file_format.ending for file_format in self.formats() if option in file_format.options]
 
     def format(self, path: str | Path) -> Format:
         """The format of the path's ending. Raises UsageError, where its library is missing, too."""
-        known = by_ending(path, self.formats(), self.refusal)
-        if known.needs is not None:
-            require_extra(*known.needs, f"writing {known.label}")
-        return known
+        file_format = by_ending(path, self.formats(), self.refusal)
+        if file_format.needs is not None:
+            require_extra(*file_format.needs, f"writing {file_format.label}")
+        return file_format
 
     def target(self, path: str | Path) -> Path:
         """The path, links followed, where an output will stand. Raises UsageError, OutputFailed."""
-        known = self.format(path)
-        return writable_folder(path, known.folder) if known.folder else writable_target(path)
+        file_format = self.format(path)
+        return writable_folder(path, file_format.folder) if file_format.folder else writable_target(path)
 
     def view(self, known: Format, content: Any, options: dict) -> Any:
         """What a format takes of content; options that say how it is made are removed."""
@@ -111,24 +111,24 @@ class Exporter:
     ) -> None:
         """Writes content in the format of the path's ending; it appears with the other outputs. options: by
         name; a format takes those that have an effect on it. Raises UsageError, OutputFailed."""
-        path, known = Path(path), self.format(path)
+        path, file_format = Path(path), self.format(path)
         if self.unit is not None:
             options["unit"] = self.unit(content)
-        options = {name: value for name, value in options.items() if name in known.options}
-        content = self.view(known, content, options)
-        if known.folder:
-            with outputs.folder(path, known.folder) as folder:
-                known.write(content, folder, step)
-        elif known.has_files:
-            known.write(content, path, outputs, step, **options)
-        elif known.has_each and _EACH_PART in path.name:
+        options = {name: value for name, value in options.items() if name in file_format.options}
+        content = self.view(file_format, content, options)
+        if file_format.folder:
+            with outputs.folder(path, file_format.folder) as folder:
+                file_format.write(content, folder, step)
+        elif file_format.has_files:
+            file_format.write(content, path, outputs, step, **options)
+        elif file_format.has_each and _EACH_PART in path.name:
             for part, word in zip(content, solver_names(part.name for part in content), strict=True):
                 with outputs.file(path.with_name(path.name.replace(_EACH_PART, word))) as file:
-                    known.write([part], file, no_step, **options)
+                    file_format.write([part], file, no_step, **options)
             step(1.0)
         else:
             with outputs.file(path) as file:
-                known.write(content, file, step, **options)
+                file_format.write(content, file, step, **options)
 
     def save(self, content: Any, path: str | Path, step: Step = no_step, **options: Any) -> None:
         """Writes content as the only output, whole or not at all. Raises UsageError, OutputFailed."""
@@ -176,9 +176,9 @@ SAMPLES = {
 
 def check_tolerance(path: str | Path, tolerance: float | None) -> None:
     """Raises UsageError where models have no such format, or it has no cells that a tolerance would clean."""
-    known = MODEL.format(path)
-    if tolerance is not None and "tolerance" not in known.options:
-        raise UsageError(f"{path}: {known.label} has no polyhedral cells: it takes no tolerance")
+    file_format = MODEL.format(path)
+    if tolerance is not None and "tolerance" not in file_format.options:
+        raise UsageError(f"{path}: {file_format.label} has no polyhedral cells: it takes no tolerance")
 
 
 def save_mesh(

@@ -33,10 +33,10 @@ def write_planned_hole(hole: PlannedHoleData, file: BinaryIO, _step: Step) -> No
     averaged over the interval."""
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")
-    found = hole.rows()
+    intervals = hole.rows()
     blocks = [] if hole.probability is None else distinct_names(hole.block_names)
     rows.writerow([*COLUMNS, *(f"probability {name}" for name in blocks)])
-    for row in found:
+    for row in intervals:
         values = [
             "" if value is None else repr(value) if isinstance(value, float) else value
             for value in row.values()

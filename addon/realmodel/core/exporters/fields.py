@@ -27,15 +27,17 @@ def write_fields(
     fields: list[tuple[ScalarField, int, int]] = []
     number = 0
     for rock in fields_of_rocks:
-        for own in rock:
-            fields += [(field, number, compartments[0]) for field, compartments in own.distinct().items()]
+        for series_field in rock:
+            fields += [
+                (field, number, compartments[0]) for field, compartments in series_field.distinct().items()
+            ]
             number += 1
     if not fields:
         raise UsageError("the model has no field: none of its series is of the kind 'field'")
     tetrahedra = [field.lattice.tetrahedra().astype("<i8") for field, _, _ in fields]
     begin = np.cumsum([0, *(field.lattice.nodes for field, _, _ in fields)])
-    counts = [len(each) for each in tetrahedra]
-    corners = np.concatenate([each + first for each, first in zip(tetrahedra, begin[:-1], strict=True)])
+    counts = [len(nodes) for nodes in tetrahedra]
+    corners = np.concatenate([nodes + first for nodes, first in zip(tetrahedra, begin[:-1], strict=True)])
     write_grid(
         file,
         [
@@ -44,7 +46,7 @@ def write_fields(
             ("Cells", "offsets", 4 * np.arange(1, len(corners) + 1, dtype="<i8")),
             ("Cells", "types", np.full(len(corners), _TETRAHEDRON, np.uint8)),
             ("PointData", "field", np.concatenate([field.values for field, _, _ in fields]).astype("<f8")),
-            ("CellData", "series", np.repeat(np.array([each[1] for each in fields], "<i4"), counts)),
-            ("CellData", "compartment", np.repeat(np.array([each[2] for each in fields], "<i4"), counts)),
+            ("CellData", "series", np.repeat(np.array([entry[1] for entry in fields], "<i4"), counts)),
+            ("CellData", "compartment", np.repeat(np.array([entry[2] for entry in fields], "<i4"), counts)),
         ],
     )

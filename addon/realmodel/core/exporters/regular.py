@@ -32,14 +32,14 @@ def write_block_table(model: ModelData, file: BinaryIO, step: Step, cell_size: C
     shares = cells.shares
     names = distinct_names(block.name for block in model.blocks)
     z, y, x = np.nonzero(shares.sum(axis=0) > 0)
-    own = shares[:, z, y, x]
+    rock_shares = shares[:, z, y, x]
     center = cells.origin + cells.size * (np.column_stack([x, y, z]) + 0.5)
     columns = ["x", "y", "z", "dx", "dy", "dz", "block", *(f"share {name}" for name in names)]
     quoted = [_quoted(name) for name in names]
-    largest = np.array(quoted, object)[own.argmax(axis=0)] if len(names) else np.empty(0, object)
+    largest = np.array(quoted, object)[rock_shares.argmax(axis=0)] if len(names) else np.empty(0, object)
     file.write((",".join(map(_quoted, columns)) + "\n").encode())
     form = "%r,%r,%r,%r,%r,%r,%s" + ",%.9g" * len(names)
-    rows = center, np.tile(cells.size, (len(center), 1)), largest, own.T
+    rows = center, np.tile(cells.size, (len(center), 1)), largest, rock_shares.T
     write_rows(file, form, *rows, step=lambda share: step(0.5 + 0.5 * share))
     step(1.0)
 

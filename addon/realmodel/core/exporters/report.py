@@ -65,8 +65,10 @@ def _rows(entry: dict) -> list[dict]:
         if not (isinstance(inner, list) and inner and isinstance(inner[0], dict)):
             rows = [{**row, key: value} for row in rows]
             continue
-        own = [{f"{key}.{name}": each for name, each in row.items()} for one in inner for row in _rows(one)]
-        rows = [{**row, **more} for row in rows for more in own]
+        inner_rows = [
+            {f"{key}.{name}": cell for name, cell in row.items()} for one in inner for row in _rows(one)
+        ]
+        rows = [{**row, **more} for row in rows for more in inner_rows]
     return rows
 
 
@@ -168,10 +170,10 @@ def _erosion(model: ModelData, erosion: Erosion) -> dict:
         "bodies": [
             {
                 "name": body.name,
-                "taken": float(own.sum()),
-                "blocks": [{"block": names[b], "taken": float(own[b])} for b in np.flatnonzero(own)],
+                "taken": float(taken.sum()),
+                "blocks": [{"block": names[b], "taken": float(taken[b])} for b in np.flatnonzero(taken)],
             }
-            for body, own in zip(model.structures.bodies, erosion.taken, strict=True)
+            for body, taken in zip(model.structures.bodies, erosion.taken, strict=True)
         ]
         if len(erosion.taken)
         else [],
@@ -189,35 +191,35 @@ def _compartments(model: ModelData) -> list[dict]:
     return [
         {
             "name": name,
-            "volume": float(own.sum()),
+            "volume": float(block_volumes.sum()),
             "blocks": [
-                {"block": model.blocks[number].name, "volume": float(own[number])}
-                for number in np.flatnonzero(own).tolist()
+                {"block": model.blocks[number].name, "volume": float(block_volumes[number])}
+                for number in np.flatnonzero(block_volumes).tolist()
             ],
         }
-        for name, own in zip(model.compartment_names, volumes, strict=True)
+        for name, block_volumes in zip(model.compartment_names, volumes, strict=True)
     ]
 
 
 def _faults(model: ModelData) -> list[dict]:
     """Throw and heave along each fault: their means, and the largest values; whether a throw is found; and
     the length of the cutoff lines below it along which the surface is on both sides."""
-    found = displacements(model)
+    all_displacements = displacements(model)
     return [
         {
             **fault_entry(fault),
             "surfaces": [
                 {
-                    "rock": each.rock,
-                    "surface": each.surface,
-                    "throw": _mean_and_largest(each.throw, each.mean_throw),
-                    "throw_deviation": each.deviation,
-                    "throw_found": each.is_found,
-                    "heave": _mean_and_largest(each.heave, each.mean_heave),
-                    "length": float(each.length.sum()),
+                    "rock": displacement.rock,
+                    "surface": displacement.surface,
+                    "throw": _mean_and_largest(displacement.throw, displacement.mean_throw),
+                    "throw_deviation": displacement.deviation,
+                    "throw_found": displacement.is_found,
+                    "heave": _mean_and_largest(displacement.heave, displacement.mean_heave),
+                    "length": float(displacement.length.sum()),
                 }
-                for each in found
-                if each.fault == fault.name
+                for displacement in all_displacements
+                if displacement.fault == fault.name
             ],
         }
         for fault in model.structures.faults
@@ -260,12 +262,12 @@ def _block(model: ModelData, number: int, total: float, deviation: float) -> dic
 def observation_entries(found: Observed) -> dict[str, list[dict]]:
     """What became of the observations of a model, as lists of the report."""
     return {
-        "observations": [vars(each) for each in found.blocks],
-        "contacts": [{**vars(each), "place": list(each.place)} for each in found.contacts],
-        "violated_bounds": [{**vars(each), "place": list(each.place)} for each in found.violated],
+        "observations": [vars(block) for block in found.blocks],
+        "contacts": [{**vars(contact), "place": list(contact.place)} for contact in found.contacts],
+        "violated_bounds": [{**vars(bound), "place": list(bound.place)} for bound in found.violated],
         "left_out": [
-            {"rock": rock, **vars(each), "place": None if each.place is None else list(each.place)}
-            for rock, each in found.left_out
+            {"rock": rock, **vars(entry), "place": None if entry.place is None else list(entry.place)}
+            for rock, entry in found.left_out
         ],
     }
 
@@ -273,7 +275,10 @@ def observation_entries(found: Observed) -> dict[str, list[dict]]:
 def hole_entries(found: HoleValidation) -> dict[str, list[dict]]:
     """What models say of holes without knowing them, as a list of the report."""
     holes = [
-        {**vars(hole), "contacts": [{**vars(each), "place": list(each.place)} for each in hole.contacts]}
+        {
+            **vars(hole),
+            "contacts": [{**vars(contact), "place": list(contact.place)} for contact in hole.contacts],
+        }
         for hole in found.holes
     ]
     return {"left_out_holes": holes}
@@ -318,15 +323,15 @@ def surface_entries(model: UsedSurfaces) -> list[dict]:
 
 def versions() -> dict[str, str]:
     """The versions of all software that affects the result."""
-    found = {
+    software = {
         "realmodel": native_module().VERSION,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "system": platform.platform(),
     }
     if "bpy" in sys.modules:
-        found["blender"] = sys.modules["bpy"].app.version_string
-    return found
+        software["blender"] = sys.modules["bpy"].app.version_string
+    return software
 
 
 def _peak_memory() -> int | None:

@@ -39,20 +39,20 @@ def write_samples_csv(asked: Asked, file: BinaryIO, _step: Step) -> None:
     """A row for each place where there may be rock: x, y, z, the distance along a section, the name of the
     likeliest block, entropy, and the probability of each block; the depth along a planned hole."""
     samples, probabilities = asked
-    kept = np.flatnonzero(probabilities.probability.sum(axis=1) > 0)
-    names, columns = distinct_names(probabilities.block_names), [samples.places[kept]]
+    in_rock = np.flatnonzero(probabilities.probability.sum(axis=1) > 0)
+    names, columns = distinct_names(probabilities.block_names), [samples.places[in_rock]]
     headings = ["x", "y", "z"]
     if isinstance(samples, SectionSamples):
         headings.append("distance")
-        columns.append(samples.distance[kept])
+        columns.append(samples.distance[in_rock])
     if isinstance(samples, HoleSamples):
         headings.append("depth")
-        columns.append(samples.depths[kept])
+        columns.append(samples.depths[in_rock])
     quoted = np.array([_cell(name) for name in [*probabilities.block_names, ""]], object)
     columns += [
-        quoted[probabilities.likeliest()[kept]],
-        probabilities.entropy()[kept],
-        probabilities.probability[kept],
+        quoted[probabilities.likeliest()[in_rock]],
+        probabilities.entropy()[in_rock],
+        probabilities.probability[in_rock],
     ]
     headings += ["block", "entropy", *(f"probability {name}" for name in names)]
     file.write((",".join(map(_cell, headings)) + "\n").encode())

@@ -53,13 +53,13 @@ def write_section_obj(section: SectionData, file: BinaryIO, _step: Step) -> None
     write_rows(file, "v %r %r %r", section.vertices)
     sizes = np.diff(section.offsets)
     for block in np.unique(section.block).tolist():
-        own = section.block == block
+        in_block = section.block == block
         name = re.sub(r"\s+", "_", section.block_names[block].strip())
         group = f"block_{block}_{name}"
-        material = f"property_{section.property[own][0]}"
+        material = f"property_{section.property[in_block][0]}"
         file.write(f"o {group}\ng {group}\nusemtl {material}\n".encode())
-        offsets = np.concatenate([[0], np.cumsum(sizes[own])])
-        part = Part(name, section.vertices, offsets, section.polygon_vertices[np.repeat(own, sizes)])
+        offsets = np.concatenate([[0], np.cumsum(sizes[in_block])])
+        part = Part(name, section.vertices, offsets, section.polygon_vertices[np.repeat(in_block, sizes)])
         write_rows(file, "f %d %d %d", part.triangles + 1)
 
 

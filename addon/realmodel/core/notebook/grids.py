@@ -107,10 +107,10 @@ def polyhedron_grid(
 
 def blocks_of_meshes(meshes: Iterable[tuple[str, pyvista.DataSet]]) -> pyvista.MultiBlock:
     """Meshes with their names."""
-    found = _pyvista().MultiBlock()
+    multi_block = _pyvista().MultiBlock()
     for name, mesh in meshes:
-        found.append(mesh, name)
-    return found
+        multi_block.append(mesh, name)
+    return multi_block
 
 
 def _grid(points: np.ndarray) -> Any:

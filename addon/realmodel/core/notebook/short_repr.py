@@ -16,8 +16,8 @@ class ShortRepr:
     length."""
 
     def __repr__(self) -> str:
-        shown = (each for each in fields(self) if each.repr)  # type: ignore[arg-type]
-        parts = (f"{each.name}={_short(getattr(self, each.name))}" for each in shown)
+        shown = (field for field in fields(self) if field.repr)  # type: ignore[arg-type]
+        parts = (f"{field.name}={_short(getattr(self, field.name))}" for field in shown)
         return f"{type(self).__name__}({', '.join(parts)})"
 
 
@@ -25,7 +25,7 @@ def _short(value: Any) -> str:
     if isinstance(value, np.ndarray) and value.size > _LONG:
         return f"<{value.dtype} {value.shape}>"
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key!r}: {_short(each)}" for key, each in value.items()) + "}"
+        return "{" + ", ".join(f"{key!r}: {_short(entry)}" for key, entry in value.items()) + "}"
     if isinstance(value, list) and len(value) > _LONG:
         return f"<list of {len(value)}>"
     if isinstance(value, list):

@@ -37,16 +37,16 @@ def read_boreholes(
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
-        found = read_borehole_tables(given, step, scale, units, plan_step)
+        picks = read_borehole_tables(given, step, scale, units, plan_step)
         files = (given.collars, given.survey, given.picks, given.intervals)
         for file, columns in zip(files, (COLLARS, SURVEY, COLLARS, INTERVALS), strict=True):
             if file is not None:
-                found.warnings += other_units_in(given, Path(file), columns, model_unit)
-        return found
+                picks.warnings += other_units_in(given, Path(file), columns, model_unit)
+        return picks
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    found = read_hole_objects(given, scale, units, plan_step)
+    picks = read_hole_objects(given, scale, units, plan_step)
     step(1.0)
-    return found
+    return picks

@@ -42,8 +42,8 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
     """The different values of a column, or attribute, in the order of the file. Raises InputRefused."""
     holds = _holds(file)
     if holds == OBJECTS:
-        found = read_object(file, layer, OF_POINTS).columns.get(column, np.empty(0))
-        return list(dict.fromkeys(str(value) for value in found.tolist() if value != ""))
+        values = read_object(file, layer, OF_POINTS).columns.get(column, np.empty(0))
+        return list(dict.fromkeys(str(value) for value in values.tolist() if value != ""))
     if holds == SHAPES:
         return list(_nothing_selected(file, layer, column).values)
     table = open_table(file, Expected(None, (column,), KNOWN))
@@ -54,11 +54,11 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
 def layer_names(file: Path) -> list[str]:
     """The layers of a GeoPackage, the objects of an OMF or geoh5 file; none of other files. Raises
     InputRefused."""
-    known = format_of(file, OBJECTS, SHAPES)
-    if known is None or not known.has_layers:
+    file_format = format_of(file, OBJECTS, SHAPES)
+    if file_format is None or not file_format.has_layers:
         return []
-    if known.holds == OBJECTS:
-        return [each.name for each in objects_in(file)]
+    if file_format.holds == OBJECTS:
+        return [obj.name for obj in objects_in(file)]
     try:
         with closing(connect(file)) as base:
             return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]
@@ -67,14 +67,14 @@ def layer_names(file: Path) -> list[str]:
 
 
 def _holds(file: Path) -> str | None:
-    known = format_of(file, RASTER, OBJECTS, SHAPES)
-    return None if known is None else known.holds
+    file_format = format_of(file, RASTER, OBJECTS, SHAPES)
+    return None if file_format is None else file_format.holds
 
 
 def _nothing_selected(file: Path, layer: str | None, attribute: str) -> NothingSelected:
     """The error of a layer that has no matching feature; geometries are not read."""
     try:
         read_shapes(MapLayer(file, layer, {attribute: _NOTHING}))
-    except NothingSelected as found:
-        return found
+    except NothingSelected as error:
+        return error
     return NothingSelected("it has no features")

@@ -46,11 +46,11 @@ def read_fault_points(
     return _table_sticks(given, file, column, model_unit)
 
 
-def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str | None:
+def _stick_column(source: PointFile, file: Path, stick: str | int | None) -> str | None:
     """The column of sticks as `where` of a PointFile names it; None where there is none."""
     wanted = () if stick is None else (stick,)
     table = open_table(
-        file, Expected(given.separator, (*(given.columns or ()), *wanted, *given.where), KNOWN)
+        file, Expected(source.separator, (*(source.columns or ()), *wanted, *source.where), KNOWN)
     )
     if stick is not None:
         return str(table.column(stick) + 1)
@@ -59,14 +59,14 @@ def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str 
 
 
 def _table_sticks(
-    given: PointFile, file: Path, column: str, model_unit: str
+    source: PointFile, file: Path, column: str, model_unit: str
 ) -> tuple[list[np.ndarray], list[str]]:
-    table = open_table(file, Expected(given.separator, (*(given.columns or ()), *given.where), KNOWN))
+    table = open_table(file, Expected(source.separator, (*(source.columns or ()), *source.where), KNOWN))
     at = int(column) - 1
     names = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
     sticks, warnings = [], []
     for name in names:
-        points, texts = read_point_file(replace(given, where={**given.where, column: name}), model_unit)
+        points, texts = read_point_file(replace(source, where={**source.where, column: name}), model_unit)
         sticks.append(points)
         warnings += texts
     return sticks, list(dict.fromkeys(warnings))

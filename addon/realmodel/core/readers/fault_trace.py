@@ -48,24 +48,24 @@ class FaultLines:
         return self._value("dip_direction", _direction)
 
     def _value(self, key: str, read: Callable[[Mapping, Sequence[float]], Any]) -> Any:
-        found: dict[object, str] = {}
-        for item, given in self.attributes.items():
+        features: dict[object, str] = {}
+        for feature, attributes in self.attributes.items():
             try:
-                value = read(given, self.missing)
+                value = read(attributes, self.missing)
             except OptionRefused as error:
                 raise InputRefused(
-                    error.what, file=self.file, item=item or None, advice=error.advice
+                    error.what, file=self.file, item=feature or None, advice=error.advice
                 ) from error
             if value is not None:
-                found.setdefault(value, item)
-        if len(found) > 1:
-            (one, first), (other, second) = list(found.items())[:2]
+                features.setdefault(value, feature)
+        if len(features) > 1:
+            (one, first), (other, second) = list(features.items())[:2]
             raise InputRefused(
                 f"its lines differ in '{key}': it is {one} in {first} and {other} in {second}",
                 file=self.file,
                 advice=f"set {key} = ..., or choose the lines of one fault with where = {{ ... }}",
             )
-        return next(iter(found), None)
+        return next(iter(features), None)
 
 
 def read_fault_trace(
@@ -83,8 +83,11 @@ def read_fault_trace(
     lines = _lines(shapes, file)
     for line in lines:
         line[np.isin(line[:, 2], missing), 2] = np.nan
-    known = shapes.attributes or {}
-    attributes = {name: known.get(name, {}) for name in (_feature(known, item) for item, _ in shapes.lines)}
+    all_attributes = shapes.attributes or {}
+    attributes = {
+        name: all_attributes.get(name, {})
+        for name in (_feature(all_attributes, line_name) for line_name, _ in shapes.lines)
+    }
     lines = [in_model(line, given, model_unit) for line in lines]
     return FaultLines(lines, file, attributes, (*missing, *OFTEN_NO_VALUE))
 
@@ -99,9 +102,9 @@ def _lines(shapes: Shapes, file: Path | None) -> list[np.ndarray]:
     return lines
 
 
-def _feature(known: Mapping, item: str) -> str:
+def _feature(attributes: Mapping, line_name: str) -> str:
     """The name of the feature that a line is of; a line of a collection has a longer one."""
-    return next((name for name in (item, item.partition(",")[0]) if name in known), "")
+    return next((name for name in (line_name, line_name.partition(",")[0]) if name in attributes), "")
 
 
 def _dip(attributes: Mapping, missing: Sequence[float]) -> float | None:

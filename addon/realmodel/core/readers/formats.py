@@ -110,17 +110,17 @@ def format_of(file: str | Path, *holds: str) -> FileFormat | None:
     with reading(file), file.open("rb") as opened:
         head = opened.read(_HEAD)
         size = opened.seek(0, os.SEEK_END)
-    able = [known for known in FORMATS if known.holds in holds]
-    by_ending = (known for known in able if known.by_ending and file.suffix.lower() in known.endings)
-    return next((known for known in able if known.begins(head, size)), next(by_ending, None))
+    able = [entry for entry in FORMATS if entry.holds in holds]
+    by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)
+    return next((entry for entry in able if entry.begins(head, size)), next(by_ending, None))
 
 
 def endings(*holds: str) -> tuple[str, ...]:
     """Of the names of files that hold these things."""
-    able = [known for what in holds for known in FORMATS if known.holds == what]
-    return tuple(dict.fromkeys(ending for known in able for ending in known.endings))
+    able = [entry for what in holds for entry in FORMATS if entry.holds == what]
+    return tuple(dict.fromkeys(ending for entry in able for ending in entry.endings))
 
 
 def labels(*holds: str) -> str:
     """The names of formats of files that hold these things, for messages."""
-    return ", ".join(known.label for what in holds for known in FORMATS if known.holds == what)
+    return ", ".join(entry.label for what in holds for entry in FORMATS if entry.holds == what)

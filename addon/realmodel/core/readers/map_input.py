@@ -35,22 +35,25 @@ def read_shapes(
     return shapes.scaled(factor(given.units, model_unit))
 
 
-def _refuse_degrees(given: MapLayer, shapes: Shapes) -> None:
+def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
     """Raises InputRefused where a file says that its coordinates are degrees, and they may be: as lengths
     they would be a few meters."""
     rings = [ring for polygon in shapes.polygons for ring in polygon.rings]
     places = [*rings, *(line for _, line in shapes.lines), *(place for _, place in shapes.points)]
-    if any(np.abs(np.asarray(each, np.float64)[..., :2]).max(initial=0.0) > _MOST_DEGREES for each in places):
+    if any(
+        np.abs(np.asarray(corners, np.float64)[..., :2]).max(initial=0.0) > _MOST_DEGREES
+        for corners in places
+    ):
         return
-    file = Path(given.file)
+    file = Path(layer.file)
     if file.suffix.lower() == ".shp":
         named = (file.with_suffix(ending) for ending in (".prj", ".PRJ"))
-        system = next((each.read_text("latin-1") for each in named if each.is_file()), "")
+        system = next((path.read_text("latin-1") for path in named if path.is_file()), "")
     elif file.suffix.lower() == ".gpkg":
-        system = system_of(file, given.layer)
+        system = system_of(file, layer.layer)
     else:
-        found = _CRS.search(read_bytes(file)[:_FIRST])
-        system = "" if found is None else found[1].decode("latin-1")
+        match = _CRS.search(read_bytes(file)[:_FIRST])
+        system = "" if match is None else match[1].decode("latin-1")
     if is_in_degrees(system):
         raise InputRefused(
             "its coordinates are degrees of longitude and latitude, as it says itself",
@@ -59,15 +62,15 @@ def _refuse_degrees(given: MapLayer, shapes: Shapes) -> None:
         )
 
 
-def _read(given: MapLayer, step: Step, heights: Heights | None) -> Shapes:
-    file = Path(given.file)
-    known = format_of(file, SHAPES)
-    if given.layer is not None and (known is None or not known.has_layers):
-        what = f"it is not a GeoPackage, so it has no layer '{given.layer}'"
+def _read(layer: MapLayer, step: Step, heights: Heights | None) -> Shapes:
+    file = Path(layer.file)
+    file_format = format_of(file, SHAPES)
+    if layer.layer is not None and (file_format is None or not file_format.has_layers):
+        what = f"it is not a GeoPackage, so it has no layer '{layer.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     if file.suffix.lower() in _BESIDE_SHAPEFILE:
         raise InputRefused("this is only a part of a shapefile", file=file, advice="name the .shp beside it")
-    return (known.read if known is not None else read_wkt)(given, step, heights)
+    return (file_format.read if file_format is not None else read_wkt)(layer, step, heights)
 
 
 def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:
@@ -76,11 +79,11 @@ def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str
 
     Raises InputRefused naming the file and the line, or the feature.
     """
-    given = file if isinstance(file, MapLayer) else MapLayer(file)
-    shapes = read_shapes(given)
-    require_polygons(shapes, Path(given.file))
+    layer = file if isinstance(file, MapLayer) else MapLayer(file)
+    shapes = read_shapes(layer)
+    require_polygons(shapes, Path(layer.file))
     rings = [ring for polygon in shapes.polygons for ring in polygon.rings]
-    return rings, shapes.without_area(Path(given.file))
+    return rings, shapes.without_area(Path(layer.file))
 
 
 def require_polygons(shapes: Shapes, file: Path | None) -> None:

@@ -29,15 +29,15 @@ def read_map_points(
     places += [ring for polygon in shapes.polygons for ring in polygon.rings]
     if not sum(map(len, places)):
         raise InputRefused("there are no points in it", file=file)
-    found = np.concatenate(places)
-    known = found[np.isfinite(found[:, 2]) & ~np.isin(found[:, 2], missing)]
-    points = gather([known], np.empty((0, 3)))
+    positions = np.concatenate(places)
+    with_height = positions[np.isfinite(positions[:, 2]) & ~np.isin(positions[:, 2], missing)]
+    points = gather([with_height], np.empty((0, 3)))
     if not len(points):
         what = "its positions have no height"
         if given.height is not None:
             what = f"attribute '{given.height}' has no heights"
         advice = 'name the attribute with the height: height = "ELEVATION"'
         raise HeightsMissing(what, file=file, advice=advice if given.height is None else None)
-    left_out = len(found) - len(points)
+    left_out = len(positions) - len(points)
     warnings = [f"{file}: left out: {counted(left_out, 'point')} without a value"] if left_out else []
     return points, warnings

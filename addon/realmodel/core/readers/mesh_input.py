@@ -27,15 +27,15 @@ def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows 
     and line."""
     layer = file.layer if isinstance(file, MeshFile) else None
     file = Path(file.file if isinstance(file, MeshFile) else file)
-    known = format_of(file, OBJECTS, MESH)
-    if known is not None and known.holds == OBJECTS:
+    file_format = format_of(file, OBJECTS, MESH)
+    if file_format is not None and file_format.holds == OBJECTS:
         surface = read_object(file, layer, (SURFACE,))
         assert surface.triangles is not None
         return mesh_of_faces(file, surface.vertices, surface.triangles)
     if layer is not None:
         what = f"it is not a file of objects ({', '.join(endings(OBJECTS))}), so it has no '{layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
-    if known is None:
+    if file_format is None:
         what = f"neither its content nor its extension is that of a mesh ({labels(MESH, OBJECTS)})"
         raise InputRefused(what, file=file)
-    return known.read(file, step, rows) if known.in_pieces else known.read(file, step)
+    return file_format.read(file, step, rows) if file_format.in_pieces else file_format.read(file, step)

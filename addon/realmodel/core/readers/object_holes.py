@@ -38,23 +38,23 @@ def read_hole_objects(
     picks = Picks()
     for file in dict.fromkeys(given.files):
         kinds = (HOLE,) if given.layer is None else _KINDS
-        found = read_objects(file, given.layer, kinds)
+        objects = read_objects(file, given.layer, kinds)
         if given.picks is not None and Path(given.picks) == file:
-            _add_picks(picks, found, given, scale, units)
+            _add_picks(picks, objects, given, scale, units)
         if given.intervals is not None and Path(given.intervals) == file:
-            _add_intervals(picks, found, given, scale, (units, plan_step))
+            _add_intervals(picks, objects, given, scale, (units, plan_step))
     for _, places in picks.holes.values():
         places.sort(key=lambda pick: -pick[1][2])
     return picks
 
 
 def _add_picks(
-    picks: Picks, found: list[GeoObject], given: Boreholes, scale: np.ndarray, units: UnitNames
+    picks: Picks, objects: list[GeoObject], boreholes: Boreholes, scale: np.ndarray, units: UnitNames
 ) -> None:
     points: dict[str, list[np.ndarray]] = {}
     missing = 0
-    for each in found:
-        for code, hole, place in _picks_of(each, given):
+    for obj in objects:
+        for code, hole, place in _picks_of(obj, boreholes):
             surface = units.surface(code)
             if units.says_nothing(code) or not surface:
                 continue
@@ -62,25 +62,25 @@ def _add_picks(
                 missing += 1
                 continue
             points.setdefault(surface, []).append(place * scale)
-            picks.holes.setdefault(hole, (_collar(each, scale), []))[1].append((surface, place * scale))
+            picks.holes.setdefault(hole, (_collar(obj, scale), []))[1].append((surface, place * scale))
     picks.points.update((surface, np.array(places)) for surface, places in points.items())
     if not points:
-        raise InputRefused("there are no picks in it", file=given.picks)
+        raise InputRefused("there are no picks in it", file=boreholes.picks)
     if missing:
-        picks.warnings.append(f"{given.picks}: left out: {counted(missing, 'pick')} without a place")
+        picks.warnings.append(f"{boreholes.picks}: left out: {counted(missing, 'pick')} without a place")
 
 
-def _picks_of(found: GeoObject, given: Boreholes) -> Iterator[tuple[str, str, np.ndarray]]:
+def _picks_of(obj: GeoObject, boreholes: Boreholes) -> Iterator[tuple[str, str, np.ndarray]]:
     """The name of the surface, the hole and the place (3,) of each pick of an object."""
     aliases = (*PICKS["surface"], *INTERVALS["block"])
-    values, column = _table(found, found.values, given, "surface", aliases)
-    names, holes = _texts(values.columns[column]), _holes(found, values, given)
+    values, column = _table(obj, obj.values, boreholes, "surface", aliases)
+    names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
     before = ("", "")
-    for name, own, place in zip(names, holes, values.places, strict=True):
-        repeats = values.ends is not None and (name, own) == before
-        before = (name, own)
+    for name, hole, place in zip(names, holes, values.places, strict=True):
+        repeats = values.ends is not None and (name, hole) == before
+        before = (name, hole)
         if not repeats:
-            yield name, own, place
+            yield name, hole, place
 
 
 @dataclass
@@ -94,24 +94,24 @@ class _Log:
 
     def place(self, depth: float) -> np.ndarray:
         """(3,) the place of a depth, on straight lines between the known ones."""
-        known, first = np.unique(self.depths, return_index=True)
+        depths, first = np.unique(self.depths, return_index=True)
         places = np.array(self.places)[first]
-        return np.array([np.interp(depth, known, column) for column in places.T])
+        return np.array([np.interp(depth, depths, column) for column in places.T])
 
 
 def _add_intervals(
     picks: Picks,
-    found: list[GeoObject],
-    given: Boreholes,
+    objects: list[GeoObject],
+    boreholes: Boreholes,
     scale: np.ndarray,
     meaning: tuple[UnitNames, float | None],
 ) -> None:
     units, plan_step = meaning
     logs: dict[str, _Log] = {}
-    for each in found:
-        _read_log(logs, picks, each, given, scale, units)
+    for obj in objects:
+        _read_log(logs, picks, obj, boreholes, scale, units)
     if not logs:
-        raise InputRefused("there are no intervals in it", file=given.intervals)
+        raise InputRefused("there are no intervals in it", file=boreholes.intervals)
     if plan_step is None:
         plan_step = plan_step_of(np.array([log.places[0][:2] for log in logs.values()]))
     parts = []
@@ -124,25 +124,25 @@ def _add_intervals(
 def _read_log(
     logs: dict[str, _Log],
     picks: Picks,
-    found: GeoObject,
-    given: Boreholes,
+    obj: GeoObject,
+    boreholes: Boreholes,
     scale: np.ndarray,
     units: UnitNames,
 ) -> None:
-    tables = [values for values in found.values if values.ends is not None]
-    values, column = _table(found, tables, given, "block", INTERVALS["block"])
-    names, holes = _texts(values.columns[column]), _holes(found, values, given)
+    tables = [values for values in obj.values if values.ends is not None]
+    values, column = _table(obj, tables, boreholes, "block", INTERVALS["block"])
+    names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
     assert values.ends is not None
     begins, ends = values.places * scale, values.ends * scale
     depths = _depths(begins, ends, holes) if values.depths is None else values.depths * scale[2]
     for code, hole, (low, high), begin, end in zip(names, holes, depths.tolist(), begins, ends, strict=True):
-        log = logs.setdefault(hole, _Log(_collar(found, scale)))
+        log = logs.setdefault(hole, _Log(_collar(obj, scale)))
         if not (np.isfinite(begin).all() and np.isfinite(end).all()):
             what = f"an interval of hole '{hole}' has no place"
-            raise InputRefused(what, file=given.intervals, item=f"object '{found.name}'")
+            raise InputRefused(what, file=boreholes.intervals, item=f"object '{obj.name}'")
         log.depths += [low, high]
         log.places += [begin, end]
-        where = f"object '{found.name}', hole '{hole}' at {low:.9g}, '{code}'"
+        where = f"object '{obj.name}', hole '{hole}' at {low:.9g}, '{code}'"
         if not units.says_nothing(code):
             interval = known_interval((low, high, code), hole, where, units, picks.left_out)
             log.intervals += [] if interval is None else [interval]
@@ -161,19 +161,19 @@ def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarra
 
 
 def _table(
-    found: GeoObject, tables: list[Values], given: Boreholes, meaning: str, aliases: Iterable[str]
+    obj: GeoObject, tables: list[Values], boreholes: Boreholes, meaning: str, aliases: Iterable[str]
 ) -> tuple[Values, str]:
     """The data of an object that name surfaces or blocks, and under which name."""
-    said = given.columns.get(meaning)
+    said = boreholes.columns.get(meaning)
     for values in tables:
         column = _column(values, said, aliases)
         if column is not None:
             return values, column
-    there = [name for values in tables for name in values.columns]
+    names = [name for values in tables for name in values.columns]
     what = f"it has no data '{said or meaning}'"
-    advice = f"it has {names_shown(there)}: " if there else ""
+    advice = f"it has {names_shown(names)}: " if names else ""
     advice += f'name it: columns = {{ {meaning} = "..." }}'
-    raise InputRefused(what, file=given.files[-1], item=f"object '{found.name}'", advice=advice)
+    raise InputRefused(what, file=boreholes.files[-1], item=f"object '{obj.name}'", advice=advice)
 
 
 def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
@@ -184,13 +184,13 @@ def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
     return next((plain[alias] for alias in aliases if alias in plain), None)
 
 
-def _holes(found: GeoObject, values: Values, given: Boreholes) -> list[str]:
-    column = _column(values, given.columns.get("hole"), PICKS["hole"])
-    return [found.name] * len(values.places) if column is None else _texts(values.columns[column])
+def _holes(obj: GeoObject, values: Values, boreholes: Boreholes) -> list[str]:
+    column = _column(values, boreholes.columns.get("hole"), PICKS["hole"])
+    return [obj.name] * len(values.places) if column is None else _texts(values.columns[column])
 
 
-def _collar(found: GeoObject, scale: np.ndarray) -> np.ndarray | None:
-    return None if found.collar is None else found.collar * scale
+def _collar(obj: GeoObject, scale: np.ndarray) -> np.ndarray | None:
+    return None if obj.collar is None else obj.collar * scale
 
 
 def _texts(column: np.ndarray) -> list[str]:

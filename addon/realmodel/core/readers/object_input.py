@@ -23,42 +23,42 @@ def is_object_file(file: Path) -> bool:
 def objects_in(file: Path) -> list[ObjectName]:
     """The objects of a file that are read; none of another file. Raises InputRefused, UsageError where the
     library is missing."""
-    known = format_of(file, OBJECTS)
-    if known is None:
+    file_format = format_of(file, OBJECTS)
+    if file_format is None:
         return []
-    with _opened(file, known) as opened:
+    with _opened(file, file_format) as opened:
         return opened.names()
 
 
 def read_object(file: Path, layer: str | None, kinds: Collection[str]) -> GeoObject:
     """The object of this name, or the only one of these kinds. Raises InputRefused, UsageError where the
     library is missing."""
-    (found,) = read_objects(file, layer, kinds, several=False)
-    return found
+    (geo_object,) = read_objects(file, layer, kinds, several=False)
+    return geo_object
 
 
 def read_objects(
     file: Path, layer: str | None, kinds: Collection[str], several: bool = True
 ) -> list[GeoObject]:
     """The object of this name, or those of these kinds, if there may be several. Raises as read_object."""
-    known = format_of(file, OBJECTS)
-    assert known is not None
-    with _opened(file, known) as opened:
-        return [opened.read(each) for each in _chosen(file, opened.names(), layer, kinds, several)]
+    file_format = format_of(file, OBJECTS)
+    assert file_format is not None
+    with _opened(file, file_format) as opened:
+        return [opened.read(obj) for obj in _chosen(file, opened.names(), layer, kinds, several)]
 
 
 def _chosen(
-    file: Path, found: list[ObjectName], layer: str | None, kinds: Collection[str], several: bool
+    file: Path, objects: list[ObjectName], layer: str | None, kinds: Collection[str], several: bool
 ) -> list[ObjectName]:
-    fitting = [each for each in found if each.kind in kinds]
+    fitting = [obj for obj in objects if obj.kind in kinds]
     said = " or ".join(_PLURALS[kind] for kind in kinds)
-    there = f"it has {names_shown([each.name for each in found])}" if found else None
+    listed = f"it has {names_shown([obj.name for obj in objects])}" if objects else None
     if layer is not None:
-        named = [each for each in found if each.name == layer]
-        named = named or [each for each in found if each.name.lower() == layer.lower()]
+        named = [obj for obj in objects if obj.name == layer]
+        named = named or [obj for obj in objects if obj.name.lower() == layer.lower()]
         if not named:
-            raise InputRefused(f"it has no object '{layer}'", file=file, advice=there)
-        fitting = [each for each in named if each.kind in kinds]
+            raise InputRefused(f"it has no object '{layer}'", file=file, advice=listed)
+        fitting = [obj for obj in named if obj.kind in kinds]
         if not fitting:
             what = f"'{layer}' is of the kind {named[0].kind}, and {said} are needed"
             raise InputRefused(what, file=file)
@@ -66,21 +66,21 @@ def _chosen(
             advice = "give each object another name"
             raise InputRefused(f"it has {len(fitting)} objects '{layer}'", file=file, advice=advice)
     if not fitting:
-        raise InputRefused(f"it has no {said}", file=file, advice=there)
+        raise InputRefused(f"it has no {said}", file=file, advice=listed)
     if len(fitting) > 1 and not several:
-        advice = f'say which: layer = "..."; it has {names_shown([each.name for each in fitting])}'
+        advice = f'say which: layer = "..."; it has {names_shown([obj.name for obj in fitting])}'
         raise InputRefused(f"it has {len(fitting)} {said}", file=file, advice=advice)
     return fitting
 
 
 @contextmanager
-def _opened(file: Path, known: FileFormat) -> Iterator[OpenFile]:
+def _opened(file: Path, file_format: FileFormat) -> Iterator[OpenFile]:
     """Raises InputRefused in the place of whatever a library raises for a damaged file."""
     try:
-        with known.read(file) as opened:
+        with file_format.read(file) as opened:
             yield opened
     except RealModelError:
         raise
     except Exception as error:
-        what = f"not a file of {known.label} that can be read: {error or type(error).__name__}"
+        what = f"not a file of {file_format.label} that can be read: {error or type(error).__name__}"
         raise InputRefused(what, file=file) from error

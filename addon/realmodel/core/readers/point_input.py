@@ -45,24 +45,24 @@ def read_point_file(
     Raises InputRefused naming the file, and the line where it has lines.
     """
     file = Path(given.file)
-    kept = _InModel(given, model_unit, gather)
-    known = format_of(file, RASTER, ARRAY, OBJECTS, SHAPES, TABLE)
-    assert known is not None
-    if known.holds == RASTER:
-        points, warnings = _raster_points(given, file, known, step, gather, kept)
-    elif known.holds == ARRAY:
+    gather_in_model = _InModel(given, model_unit, gather)
+    file_format = format_of(file, RASTER, ARRAY, OBJECTS, SHAPES, TABLE)
+    assert file_format is not None
+    if file_format.holds == RASTER:
+        points, warnings = _raster_points(given, file, file_format, step, gather, gather_in_model)
+    elif file_format.holds == ARRAY:
         chosen = ["where"] if given.where else []
         refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
-        points, warnings = known.read(file, kept), []
-    elif known.holds == OBJECTS:
+        points, warnings = file_format.read(file, gather_in_model), []
+    elif file_format.holds == OBJECTS:
         refuse_keys(file, "has objects", given.only_for_tables)
-        points, warnings = read_object_points(given, kept)
-    elif known.holds == SHAPES:
+        points, warnings = read_object_points(given, gather_in_model)
+    elif file_format.holds == SHAPES:
         refuse_keys(file, "has shapes", given.only_for_tables)
-        points, warnings = read_map_points(given, step, kept)
+        points, warnings = read_map_points(given, step, gather_in_model)
     else:
         refuse_keys(file, "is a table", given.only_for_shapes)
-        rows = known.read(given, step, kept)
+        rows = file_format.read(given, step, gather_in_model)
         points, warnings = rows.points, _other_units(given, file, rows.columns, model_unit)
         if rows.taken_for_xyz:
             names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
@@ -72,13 +72,13 @@ def read_point_file(
             )
         if rows.missing:
             warnings.append(f"{file}: left out: {counted(rows.missing, 'point')} without a value")
-    warnings += [f"{file}: {text}" for text in kept.heights.like_no_value()]
+    warnings += [f"{file}: {text}" for text in gather_in_model.heights.like_no_value()]
     return points, warnings
 
 
-def _other_units(given: PointFile, file: Path, columns: Sequence[str], model_unit: str) -> list[str]:
+def _other_units(source: PointFile, file: Path, columns: Sequence[str], model_unit: str) -> list[str]:
     """The warnings about units in the header of a table. columns: the names of x, y and z, if it has them."""
-    units = (given.plan_unit, given.plan_unit, given.height_unit)
+    units = (source.plan_unit, source.plan_unit, source.height_unit)
     return other_units(file, dict(zip(columns, units, strict=True)) if columns else {}, model_unit)
 
 
@@ -164,26 +164,31 @@ def read_raster_heights(
     """(N,) heights of a raster at places in plan (N, 2), in the model's unit, NaN where there are none; None:
     the file is no raster. Raises InputRefused."""
     file = Path(given.file)
-    known = format_of(file, RASTER)
-    if known is None:
+    file_format = format_of(file, RASTER)
+    if file_format is None:
         return None
-    raster = _raster(given, file, known, no_step, in_memory)
+    raster = _raster(given, file, file_format, no_step, in_memory)
     z = raster.heights_at(plan / factor(given.plan_unit, model_unit))
     return in_model(np.column_stack([plan, z]), replace(given, units={"z": given.height_unit}), model_unit)[
         :, 2
     ]
 
 
-def _raster(given: PointFile, file: Path, known: FileFormat, step: Step, gather: JoinPieces) -> Raster:
-    chosen = ["where"] if given.where else []
-    refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
-    nodata = [value for value in given.nodata_values if not isinstance(value, str)]
-    return known.read(file, nodata, step, gather)
+def _raster(source: PointFile, file: Path, file_format: FileFormat, step: Step, gather: JoinPieces) -> Raster:
+    chosen = ["where"] if source.where else []
+    refuse_keys(file, "is a raster", [*source.only_for_tables, *chosen, *source.only_for_shapes])
+    nodata = [value for value in source.nodata_values if not isinstance(value, str)]
+    return file_format.read(file, nodata, step, gather)
 
 
 def _raster_points(
-    given: PointFile, file: Path, known: FileFormat, step: Step, gather: JoinPieces, kept: JoinPieces
+    source: PointFile,
+    file: Path,
+    file_format: FileFormat,
+    step: Step,
+    gather: JoinPieces,
+    gather_in_model: JoinPieces,
 ) -> tuple[np.ndarray, list[str]]:
-    raster = _raster(given, file, known, step, gather)
-    warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]
-    return raster.points(file, kept), warnings
+    raster = _raster(source, file, file_format, step, gather)
+    warnings = [] if source.units else [f"{file}: {text}" for text in raster.warnings]
+    return raster.points(file, gather_in_model), warnings

@@ -39,17 +39,17 @@ def read_unit_polygons(
         advice = "a map needs polygons: Polygon or MultiPolygon"
         raise InputRefused("there is no polygon in it", file=given.file, advice=advice)
     units = _units(shapes, given)
-    found, warnings = [], []
+    unit_polygons, warnings = [], []
     for polygon in shapes.polygons:
-        item = polygon.item.partition(",")[0]
+        feature = polygon.item.partition(",")[0]
         rings = [_corners(ring) for ring in polygon.rings]
         flat = [len(ring) < 3 for ring in rings]
         if any(flat):
             warnings.append(f"{given.file}, {polygon.item}: a ring with fewer than three corners is left out")
-        kept = [ring for ring, is_flat in zip(rings, flat, strict=True) if not is_flat]
-        if kept and not (flat[0] and polygon.has_roles):
-            found.append(UnitPolygon(item, units[item], kept, polygon.has_roles))
-    if not found:
+        sound_rings = [ring for ring, is_flat in zip(rings, flat, strict=True) if not is_flat]
+        if sound_rings and not (flat[0] and polygon.has_roles):
+            unit_polygons.append(UnitPolygon(feature, units[feature], sound_rings, polygon.has_roles))
+    if not unit_polygons:
         raise InputRefused("no polygon in it has an area", file=given.file)
     lines = [line[:, :2] for _, line in shapes.lines]
     if lines:
@@ -57,7 +57,7 @@ def read_unit_polygons(
             f"{given.file}: {counted(len(lines), 'line')} beside its polygons: taken for faults, along which"
         )
         warnings.append(f"{text} no contact is seen; if they are something else, leave them out by 'where'")
-    return found, lines, warnings
+    return unit_polygons, lines, warnings
 
 
 def _corners(ring: np.ndarray) -> np.ndarray:
@@ -67,22 +67,24 @@ def _corners(ring: np.ndarray) -> np.ndarray:
     return plan if len(np.unique(plan, axis=0)) > 2 else plan[:0]
 
 
-def _units(shapes: Shapes, given: MapFile) -> dict[str, str]:
+def _units(shapes: Shapes, source: MapFile) -> dict[str, str]:
     """What the attribute says of each feature, by its name in messages."""
     if shapes.attributes is None:
         what = "well-known text has no attributes, so no unit is known"
-        raise InputRefused(what, file=given.file, advice="save it as GeoJSON or a GeoPackage")
-    found, known = {}, {}
+        raise InputRefused(what, file=source.file, advice="save it as GeoJSON or a GeoPackage")
+    units, names = {}, {}
     has_any = False
     for polygon in shapes.polygons:
-        item = polygon.item.partition(",")[0]
-        attributes: Mapping = shapes.attributes.get(item, {})
-        known.update(dict.fromkeys(map(str, attributes)))
-        key = of_name(given.block, attributes)
+        feature = polygon.item.partition(",")[0]
+        attributes: Mapping = shapes.attributes.get(feature, {})
+        names.update(dict.fromkeys(map(str, attributes)))
+        key = of_name(source.block, attributes)
         has_any |= key is not None
         value = None if key is None else attributes[key]
-        found[item] = "" if value is None else str(value).strip()
+        units[feature] = "" if value is None else str(value).strip()
     if not has_any:
-        advice = f"they have {names_shown(list(known))}" if known else "they have no attributes"
-        raise InputRefused(f"its features have no attribute '{given.block}'", file=given.file, advice=advice)
-    return found
+        advice = f"they have {names_shown(list(names))}" if names else "they have no attributes"
+        raise InputRefused(
+            f"its features have no attribute '{source.block}'", file=source.file, advice=advice
+        )
+    return units

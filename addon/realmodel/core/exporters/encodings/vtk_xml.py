@@ -47,7 +47,7 @@ def write_image(
     """Writes a whole file of type ImageData. origin, size, counts: as of RegularCells. arrays: of the cells,
     by name, x fastest, of little-endian int32 or float64; programs color by the first."""
     extent = " ".join(f"0 {count}" for count in counts)
-    corner, spacing = (" ".join(map(repr, given.tolist())) for given in (origin, size))
+    corner, spacing = (" ".join(map(repr, vector.tolist())) for vector in (origin, size))
     tags, at = [], 0
     for name, values in arrays:
         kind = _TYPES[values.dtype.str[1:]]
@@ -86,7 +86,7 @@ def write_header(file: BinaryIO, points: int, cells: int, arrays: Sequence[Array
             f'<DataArray {named} format="appended" offset="{at}"/>'
         )
         at += 8 + size
-    body = "\n".join("\n".join([*found, f"</{element}>"]) for element, found in lines.items())
+    body = "\n".join("\n".join([*tags, f"</{element}>"]) for element, tags in lines.items())
     file.write(
         f"""<?xml version="1.0"?>
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">

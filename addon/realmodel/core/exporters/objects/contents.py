@@ -72,13 +72,13 @@ class Hole:
     @property
     def strata(self) -> list[tuple[int, int]]:
         """The first and the last place of each interval: of one block, with no surface in between."""
-        found: list[tuple[int, int]] = []
+        intervals: list[tuple[int, int]] = []
         for at, block in enumerate(self.blocks):
-            if found and self.blocks[at - 1] == block and not self.surfaces[at]:
-                found[-1] = (found[-1][0], at + 1)
+            if intervals and self.blocks[at - 1] == block and not self.surfaces[at]:
+                intervals[-1] = (intervals[-1][0], at + 1)
             else:
-                found.append((at, at + 1))
-        return found
+                intervals.append((at, at + 1))
+        return intervals
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +109,11 @@ class Contents:
         count = len(model.surface_names)
         blocks = []
         for number, part in zip(existing, parts, strict=True):
-            own, _ = triangles.around(number)
-            surface = model.face_surface[triangles.face[own]]
+            of_block, _ = triangles.around(number)
+            surface = model.face_surface[triangles.face[of_block]]
             surface = np.where(surface < 0, count + len(_OF_NO_SURFACE) + surface, surface)
             block_names[number] = part.name
-            sides = triangles.blocks[own]
+            sides = triangles.blocks[of_block]
             neighbor = np.where(sides[:, 0] == number, sides[:, 1], sides[:, 0])
             entry = library.get(part.property) if library else None
             blocks.append(BlockShell(number, part, surface, neighbor, entry))
@@ -141,7 +141,7 @@ def _known_values(model: ModelData, number: int) -> dict[str, np.ndarray]:
 
 def _holes(model: ModelData) -> list[Hole]:
     """The boreholes of all rock masses: as they were logged; of those without intervals their picks."""
-    found, first = [], 0
+    holes, first = [], 0
     number_of = {block.surface: number for number, block in enumerate(model.blocks) if block.cells}
     bodies = {
         model.surface_names[surface]: number
@@ -157,10 +157,10 @@ def _holes(model: ModelData) -> list[Hole]:
             if name in logs:
                 numbers = BlockNumbers(rock, list(bodies)).of(logs[name].blocks)
                 blocks = np.array([*beneath, *bodies.values(), -1])[numbers]
-                found.append(_logged(rock, logs[name], blocks.tolist(), collar, picks))
+                holes.append(_logged(rock, logs[name], blocks.tolist(), collar, picks))
             elif (hole := _picked(rock, name, beneath, collar, picks)) is not None:
-                found.append(hole)
-    return found
+                holes.append(hole)
+    return holes
 
 
 def _picked(
@@ -256,8 +256,8 @@ def stable_uuid(*words: str) -> uuid.UUID:
 
 def largest_share(shares: np.ndarray) -> np.ndarray:
     """(N,) int64: the block with the largest of the shares (B, N) of each cell, -1 where there is none."""
-    found = np.full(shares.shape[1], -1, np.int64)
+    largest = np.full(shares.shape[1], -1, np.int64)
     filled = shares.sum(axis=0) > 0
     if len(shares):
-        found[filled] = shares[:, filled].argmax(axis=0)
-    return found
+        largest[filled] = shares[:, filled].argmax(axis=0)
+    return largest

@@ -165,27 +165,27 @@ class _Objects:
         names = self._contents.block_names
         shares = cells.shares.transpose(0, 2, 3, 1).reshape(len(names), -1)
         self._named(made, "block", "CELL", largest_share(shares), names)
-        for name, own in zip(names, shares, strict=True):
-            self._number(made, f"share {name}", "CELL", own)
+        for name, share in zip(names, shares, strict=True):
+            self._number(made, f"share {name}", "CELL", share)
 
-    def _number(self, item: Any, name: str, where: str, values: np.ndarray) -> None:
-        self._add(item, name, where, np.asarray(values, np.float64), {"primitive_type": "FLOAT"})
+    def _number(self, obj: Any, name: str, where: str, values: np.ndarray) -> None:
+        self._add(obj, name, where, np.asarray(values, np.float64), {"primitive_type": "FLOAT"})
 
     def _named(
-        self, item: Any, name: str, where: str, numbers: Sequence[int] | np.ndarray, names: Sequence[str]
+        self, obj: Any, name: str, where: str, numbers: Sequence[int] | np.ndarray, names: Sequence[str]
     ) -> None:
         """Numbers in a list of names; -1 is what is not known."""
         values = np.asarray(numbers, np.int64) + 1
         names_by_number = {_OUTSIDE: "Unknown"} | dict(enumerate(names, 1))
         kind = {"primitive_type": "REFERENCED", "value_map": names_by_number}
-        self._add(item, name, where, values.astype(np.int32), kind)
+        self._add(obj, name, where, values.astype(np.int32), kind)
 
-    def _add(self, item: Any, name: str, where: str, values: Any, kind: dict) -> None:
-        words = ("geoh5", "data", item.parent.name, item.name, name)
+    def _add(self, obj: Any, name: str, where: str, values: Any, kind: dict) -> None:
+        words = ("geoh5", "data", obj.parent.name, obj.name, name)
         self._workspace.create_entity(
             self._data.Data,
             entity={
-                "parent": item,
+                "parent": obj,
                 "association": where,
                 "name": name,
                 "values": values,

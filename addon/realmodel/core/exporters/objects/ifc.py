@@ -65,12 +65,12 @@ class _Writer:
 
     def _stratum(self, shell: BlockShell, geomodel: Any) -> Any:
         entities, block = self.entities, self._model.blocks[shell.number]
-        own, corners = self._triangles.around(shell.number)
-        cells = self._model.face_cells[self._triangles.face[own]]
-        second = self._triangles.blocks[own, 1] == shell.number
+        of_block, corners = self._triangles.around(shell.number)
+        cells = self._model.face_cells[self._triangles.face[of_block]]
+        second = self._triangles.blocks[of_block, 1] == shell.number
         component = self._model.cell_component[np.where(second, cells[:, 1], cells[:, 0])]
         style = entities.style(shell.part.material, shell.part.color)
-        items = [entities.triangles(corners[component == each], True, style) for each in np.unique(component)]
+        items = [entities.triangles(corners[component == part], True, style) for part in np.unique(component)]
         made = entities.product("IfcGeotechnicalStratum", "stratum", shell.part.name, geomodel)
         made.PredefinedType = "SOLID"
         entities.show(made, "Body", "Tessellation", items)
@@ -82,14 +82,14 @@ class _Writer:
         entities, block = self.entities, self._model.blocks[shell.number]
         color = rgb_bytes(np.array(shell.part.color)).tobytes().hex()
         entities.properties(made, "Pset_GeotechnicalStratumCommon", {"StratumColour": f"#{color}"})
-        known = {
+        values = {
             "RockMass": self._model.project.rocks[block.rock].name,
             "Surface": self._model.surface_names[block.surface],
             "Property": block.property,
             "Components": block.components,
         }
-        known |= {f"Property{key.capitalize()}": value for key, value in shell.known.items()}
-        entities.properties(made, "RealModel_Block", known)
+        values |= {f"Property{key.capitalize()}": value for key, value in shell.known.items()}
+        entities.properties(made, "RealModel_Block", values)
         entities.volume(made, "Qto_VolumetricStratumBaseQuantities", block.volume)
 
     def _borders(self, strata: dict, geomodel: Any) -> list:
@@ -102,13 +102,13 @@ class _Writer:
         style = entities.style("boundary", (0.7, 0.7, 0.7))
         borders = []
         for on, a, b in np.unique(keys, axis=0).tolist():
-            own = (surface == on) & (low == a) & (high == b)
+            mask = (surface == on) & (low == a) & (high == b)
             between = [self._contents.block_names[block] for block in (a, b) if block >= 0]
             name = f"{names[on if on >= 0 else len(names) + on]}: {' / '.join(between)}"
             made = entities.product("IfcVirtualElement", f"border {on} {a} {b}", name, geomodel)
             made.PredefinedType = "BOUNDARY"
             entities.show(
-                made, "Surface", "Tessellation", [entities.triangles(triangles.corners[own], False, style)]
+                made, "Surface", "Tessellation", [entities.triangles(triangles.corners[mask], False, style)]
             )
             if a >= 0:
                 entities.connect(strata[a], strata[b], made, name)
@@ -138,8 +138,8 @@ class _Writer:
             )
             if block >= 0:
                 self._materials.setdefault(self._model.blocks[block].property, []).append(stratum)
-            known = {"From": depths[first], "To": depths[last]}
-            entities.properties(stratum, "RealModel_Interval", {**known, "Top": hole.surfaces[first]})
+            limits = {"From": depths[first], "To": depths[last]}
+            entities.properties(stratum, "RealModel_Interval", {**limits, "Top": hole.surfaces[first]})
             strata.append(stratum)
         entities.aggregate(made, strata)
         return made

@@ -76,10 +76,10 @@ class Entities:
 
     def _units(self, unit: str) -> list:
         """The model's unit of lengths, and its square and cube; radians."""
-        make, found = self.file.create_entity, []
+        make, units = self.file.create_entity, []
         for kind, name, power in _KINDS:
             if unit in _PREFIXES:
-                found.append(make("IfcSIUnit", None, kind, _PREFIXES[unit], name))
+                units.append(make("IfcSIUnit", None, kind, _PREFIXES[unit], name))
                 continue
             exponents = make("IfcDimensionalExponents", power, 0, 0, 0, 0, 0, 0)
             factor = make(
@@ -88,8 +88,8 @@ class Entities:
                 make("IfcSIUnit", None, kind, None, name),
             )
             words = ("", "square ", "cubic ")[power - 1] + UNIT_NAMES[unit].lower()
-            found.append(make("IfcConversionBasedUnit", exponents, kind, words, factor))
-        return [*found, make("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN")]
+            units.append(make("IfcConversionBasedUnit", exponents, kind, words, factor))
+        return [*units, make("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN")]
 
     def _place_site(self, context: Any) -> Any:
         """Where the site is: at the origin of a map conversion, where the project names its system, or else
@@ -122,14 +122,14 @@ class Entities:
         make = self.file.create_entity
         used, numbers = np.unique(corners, return_inverse=True)
         points = make("IfcCartesianPointList3D", self._vertices[used].tolist())
-        item = make(
+        face_set = make(
             "IfcTriangulatedFaceSet",
             Coordinates=points,
             Closed=is_closed,
             CoordIndex=(numbers.reshape(-1, 3) + 1).tolist(),
         )
-        make("IfcStyledItem", item, [style])
-        return item
+        make("IfcStyledItem", face_set, [style])
+        return face_set
 
     def line(self, places: np.ndarray) -> Any:
         """A line through places (N, 3) in model coordinates."""
@@ -140,9 +140,9 @@ class Entities:
     def tube(self, places: np.ndarray, radius: float, style: Any) -> Any:
         """A round rod along places. radius: in meters."""
         scaled = radius / float(METERS[self._model.project.units])
-        item = self.file.create_entity("IfcSweptDiskSolid", self.line(places), scaled)
-        self.file.create_entity("IfcStyledItem", item, [style])
-        return item
+        solid = self.file.create_entity("IfcSweptDiskSolid", self.line(places), scaled)
+        self.file.create_entity("IfcStyledItem", solid, [style])
+        return solid
 
     def style(self, name: str, color: Iterable[float]) -> Any:
         """The surface style of a color, sRGB from 0 to 1."""
@@ -196,13 +196,13 @@ class Entities:
         """A set of properties: texts as labels, numbers as they are; those that are None are left out."""
         make = self.file.create_entity
         kinds = {str: "IfcLabel", int: "IfcInteger", float: "IfcReal"}
-        found = [
+        entries = [
             make("IfcPropertySingleValue", key, None, make(kinds[type(value)], value))
             for key, value in values.items()
             if value is not None
         ]
         self._define(
-            element, make("IfcPropertySet", self._guid(name, element.GlobalId), None, name, None, found)
+            element, make("IfcPropertySet", self._guid(name, element.GlobalId), None, name, None, entries)
         )
 
     def volume(self, element: Any, name: str, volume: float) -> None:

@@ -36,17 +36,17 @@ def write_omf(model: ModelData, path: Path, outputs: Outputs, step: Step, cell_s
     step(0.2)
     with quiet():
         elements = _Elements(omf, model, contents)
-        found = elements.all()
+        omf_elements = elements.all()
         step(0.4)
         if cell_size is not None:
             cells = regular_cells(model, cell_size, lambda share: step(0.4 + 0.3 * share))
-            found.append(elements.cells(cells))
+            omf_elements.append(elements.cells(cells))
         step(0.7)
         project = omf.Project(
             name=model.project.name,
             description=f"RealModel, in {crs}" if (crs := model.project.crs) else "RealModel",
             units=model.project.units,
-            elements=found,
+            elements=omf_elements,
         )
         project.validate()
         _date(project, "project")
@@ -69,9 +69,9 @@ def _date(entity: Any, *words: str) -> None:
     entity._backend.update(uid=stable_uuid("omf", *words), date_created=_LONG_AGO, date_modified=_LONG_AGO)
     for name, value in list(entity._backend.items()):
         inner = value if isinstance(value, list) else [value]
-        for number, each in enumerate(inner):
-            if hasattr(each, "_backend") and isinstance(each._backend.get("uid"), uuid.UUID):
-                _date(each, *words, name, str(number))
+        for number, member in enumerate(inner):
+            if hasattr(member, "_backend") and isinstance(member._backend.get("uid"), uuid.UUID):
+                _date(member, *words, name, str(number))
 
 
 class _Elements:
@@ -84,13 +84,13 @@ class _Elements:
     def all(self) -> list:
         """All but the cells."""
         contents = self._contents
-        found = [self._block(shell) for shell in contents.blocks]
-        found += [self._surface(shape) for shape in contents.surfaces]
+        elements = [self._block(shell) for shell in contents.blocks]
+        elements += [self._surface(shape) for shape in contents.surfaces]
         if any(hole.blocks for hole in contents.holes):
-            found.append(self._boreholes([hole for hole in contents.holes if hole.blocks]))
+            elements.append(self._boreholes([hole for hole in contents.holes if hole.blocks]))
         if contents.holes:
-            found.append(self._picks(contents.holes))
-        return found
+            elements.append(self._picks(contents.holes))
+        return elements
 
     def _block(self, shell: BlockShell) -> Any:
         block = self._model.blocks[shell.number]
@@ -199,8 +199,8 @@ class _Elements:
         }
         data = [self._mapped("block", "cells", largest, self._block_names)]
         data += [
-            omf.ScalarData(name=f"share {name}", location="cells", array=omf.ScalarArray(own))
-            for name, own in zip(self._block_names, shares, strict=True)
+            omf.ScalarData(name=f"share {name}", location="cells", array=omf.ScalarArray(share))
+            for name, share in zip(self._block_names, shares, strict=True)
         ]
         return omf.VolumeElement(
             name="cells",

@@ -79,11 +79,11 @@ class FaceTriangles:
     def around(self, block: int) -> tuple[np.ndarray, np.ndarray]:
         """Of one block the numbers of its triangles, and their corners (N, 3), counter-clockwise seen from
         outside of it."""
-        own = np.flatnonzero((self.blocks == block).any(axis=1))
-        corners = self.corners[own]
-        turned = self.blocks[own, 1] == block
+        numbers = np.flatnonzero((self.blocks == block).any(axis=1))
+        corners = self.corners[numbers]
+        turned = self.blocks[numbers, 1] == block
         corners[turned] = corners[turned, ::-1]
-        return own, corners
+        return numbers, corners
 
 
 def _once_each(corners: np.ndarray, face: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -94,8 +94,8 @@ def _once_each(corners: np.ndarray, face: np.ndarray, blocks: np.ndarray) -> tup
     if not len(several):
         return corners, face, blocks
     several = several[np.argsort(same.ravel()[several], kind="stable")]
-    corners, blocks, kept = corners.copy(), blocks.copy(), np.ones(len(corners), bool)
-    kept[several] = False
+    corners, blocks, is_kept = corners.copy(), blocks.copy(), np.ones(len(corners), bool)
+    is_kept[several] = False
     for group in np.split(several, np.cumsum(counts[counts > 1])[:-1]):
         first, between = corners[group[0]], Counter[int]()
         for triangle in group.tolist():
@@ -106,8 +106,8 @@ def _once_each(corners: np.ndarray, face: np.ndarray, blocks: np.ndarray) -> tup
             between[int(above)] -= 1
         sides = sorted((+between).elements()), sorted((-between).elements())
         for triangle, below, above in zip(group.tolist(), *sides, strict=False):
-            kept[triangle], corners[triangle], blocks[triangle] = True, first, (below, above)
-    return corners[kept], face[kept], blocks[kept]
+            is_kept[triangle], corners[triangle], blocks[triangle] = True, first, (below, above)
+    return corners[is_kept], face[is_kept], blocks[is_kept]
 
 
 def model_parts(model: ModelData, triangles: FaceTriangles | None = None) -> list[Part]:
@@ -158,15 +158,15 @@ def section_parts(section: SectionData) -> list[Part]:
     sizes = np.diff(section.offsets)
     parts = []
     for block in np.unique(section.block).tolist():
-        own = section.block == block
-        corners = section.polygon_vertices[np.repeat(own, sizes)]
+        in_block = section.block == block
+        corners = section.polygon_vertices[np.repeat(in_block, sizes)]
         used, corners = np.unique(corners, return_inverse=True)
-        prop = int(section.property[own][0])
+        prop = int(section.property[in_block][0])
         parts.append(
             Part(
                 names[block],
                 section.vertices[used],
-                np.concatenate([[0], np.cumsum(sizes[own])]).astype(np.int64),
+                np.concatenate([[0], np.cumsum(sizes[in_block])]).astype(np.int64),
                 corners.ravel().astype(np.int32),
                 prop,
                 f"property {prop}",
@@ -182,23 +182,23 @@ def distinct_names(given: Iterable[str]) -> list[str]:
     names = []
     for name in given:
         base = " ".join(name.split()) or "unnamed"
-        found, number = base, 1
-        while found in taken:
+        free, number = base, 1
+        while free in taken:
             number += 1
-            found = f"{base} ({number})"
-        taken.add(found)
-        names.append(found)
+            free = f"{base} ({number})"
+        taken.add(free)
+        names.append(free)
     return names
 
 
 def plain_words(names: Sequence[str]) -> list[str]:
     """Names for formats without blanks: characters other than letters, digits, - and . become _."""
     words = ["".join(c if c.isalnum() or c in "-._" else "_" for c in name) for name in names]
-    found: list[str] = []
+    unique: list[str] = []
     for word in words:
         number, free = 1, word
-        while free in found:
+        while free in unique:
             number += 1
             free = f"{word}_{number}"
-        found.append(free)
-    return found
+        unique.append(free)
+    return unique

@@ -51,8 +51,8 @@ def write_cdb(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     names = solver_names([*(mesh.block_names[k] for k in present), *sets], longest=_LONGEST_NAME)
     for number, name in zip(present, names, strict=False):
         _component(file, name, "ELEM", np.flatnonzero(block == number) + 1)
-    for found, name in zip(sets.values(), names[len(present) :], strict=True):
-        corners = [part.ravel() for own in found for part in own.corners.values()]
+    for face_sets, name in zip(sets.values(), names[len(present) :], strict=True):
+        corners = [part.ravel() for face_set in face_sets for part in face_set.corners.values()]
         _component(file, name, "NODE", np.unique(np.concatenate(corners)) + 1)
     file.write(b"FINISH\n")
     step(1.0)

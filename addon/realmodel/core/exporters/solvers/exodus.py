@@ -71,11 +71,11 @@ def _add_elements(netcdf: NetcdfFile, mesh: VolumeMesh) -> None:
         of = mesh.element_block[kind]
         kind_of[first : first + len(elements)] = at
         for block in np.unique(of).tolist():
-            own = np.flatnonzero(of == block)
+            of_block = np.flatnonzero(of == block)
             names.append(words[block])
-            rows.append((kind, elements[own]))
-            number[first + own] = written + np.arange(len(own))
-            written += len(own)
+            rows.append((kind, elements[of_block]))
+            number[first + of_block] = written + np.arange(len(of_block))
+            written += len(of_block)
         first += len(elements)
     _add_blocks(netcdf, solver_names(names, _LONGEST_NAME))
     for k, (kind, elements) in enumerate(rows, 1):
@@ -92,9 +92,9 @@ def _add_elements(netcdf: NetcdfFile, mesh: VolumeMesh) -> None:
     table = np.zeros((len(mesh.elements), 6), np.int32)
     for at, kind in enumerate(mesh.elements):
         table[at, : len(_SIDES[kind])] = _SIDES[kind]
-    for k, found in enumerate(sets, 1):
-        element = np.concatenate(list(found.element.values()))
-        side = np.concatenate(list(found.side.values()))
+    for k, side_set in enumerate(sets, 1):
+        element = np.concatenate(list(side_set.element.values()))
+        side = np.concatenate(list(side_set.side.values()))
         netcdf.dimensions[f"num_side_ss{k}"] = len(element)
         netcdf.add(f"elem_ss{k}", (f"num_side_ss{k}",), number[element].astype(np.int32))
         netcdf.add(f"side_ss{k}", (f"num_side_ss{k}",), table[kind_of[element], side])
@@ -118,8 +118,8 @@ def _add_polyhedra(netcdf: NetcdfFile, mesh: PolyhedralMesh) -> None:
     netcdf.add("fbconn1", ("num_nod_per_fa1",), corners, elem_type="nsided")
     netcdf.add("fbepecnt1", ("num_fa_in_blk1",), np.diff(mesh.face_offsets).astype(np.int32))
     for k, block in enumerate(present, 1):
-        own = mesh.cell_block == block
-        used = cells.face[np.repeat(own, faces)]
-        netcdf.dimensions |= {f"num_el_in_blk{k}": int(own.sum()), f"num_fac_per_el{k}": len(used)}
+        in_block = mesh.cell_block == block
+        used = cells.face[np.repeat(in_block, faces)]
+        netcdf.dimensions |= {f"num_el_in_blk{k}": int(in_block.sum()), f"num_fac_per_el{k}": len(used)}
         netcdf.add(f"facconn{k}", (f"num_fac_per_el{k}",), (used + 1).astype(np.int32), elem_type="nfaced")
-        netcdf.add(f"ebepecnt{k}", (f"num_el_in_blk{k}",), faces[own].astype(np.int32))
+        netcdf.add(f"ebepecnt{k}", (f"num_el_in_blk{k}",), faces[in_block].astype(np.int32))

@@ -46,16 +46,16 @@ def write_f3grid(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]
     sets = ElementFaces(mesh).sets()
     file.write(b"* FACES\n")
     first, groups = 1, []
-    for found in sets:
+    for face_set in sets:
         begin = first
-        for shape, corners in found.corners.items():
+        for shape, corners in face_set.corners.items():
             numbers = np.arange(first, first + len(corners))
             write_rows(file, f"F {_FACES[shape]} %d" + " %d" * corners.shape[1], numbers, corners + 1)
             first += len(corners)
         groups.append(np.arange(begin, first))
     file.write(b"* FACE GROUPS\n")
-    for found, numbers in zip(sets, groups, strict=True):
-        _group(file, "FGROUP", found.name, numbers)
+    for face_set, numbers in zip(sets, groups, strict=True):
+        _group(file, "FGROUP", face_set.name, numbers)
     step(1.0)
 
 

@@ -36,9 +36,9 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
             pyramids = _Halves(elements)
             rows, of, label = pyramids.tetrahedra, np.repeat(of, 2), "tetrahedron"
         for block in np.unique(of).tolist():
-            own = np.flatnonzero(of == block)
+            of_block = np.flatnonzero(of == block)
             file.write(f"*ELEMENT, TYPE={_TYPES[label]}, ELSET={names[block]}\n".encode())
-            write_rows(file, "%d" + ", %d" * rows.shape[1], written + own, rows[own] + 1)
+            write_rows(file, "%d" + ", %d" * rows.shape[1], written + of_block, rows[of_block] + 1)
         numbers.append(written + np.arange(len(elements)) * (len(rows) // max(len(elements), 1)))
         written += len(rows)
     file.write(b"*ELSET, ELSET=all_elements, GENERATE\n1, %d, 1\n" % (written - 1))
@@ -54,13 +54,13 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     joint = joint_sets(sets)
     set_names = solver_names([*taken, *joint])[len(taken) :]
     for parts, name in zip(joint.values(), set_names, strict=True):
-        corners = [part.ravel() for own in parts for part in own.corners.values()]
+        corners = [part.ravel() for face_set in parts for part in face_set.corners.values()]
         file.write(f"*NSET, NSET={name}_nodes\n".encode())
         write_rows(file, "%d,", np.unique(np.concatenate(corners)) + 1)
-    for found, name in zip(sets, set_names, strict=False):
+    for face_set, name in zip(sets, set_names, strict=False):
         file.write(f"*SURFACE, NAME={name}, TYPE=ELEMENT\n".encode())
-        for shape in found.corners:
-            element, side = found.element[shape], found.side[shape].astype(np.int64)
+        for shape in face_set.corners:
+            element, side = face_set.element[shape], face_set.side[shape].astype(np.int64)
             rows, sides = number[element], side + 1
             if pyramids is not None:
                 at = element - first_pyramid

@@ -178,8 +178,8 @@ def _write_disu(mesh: PolyhedralMesh, file: BinaryIO, blocks: BinaryIO, step: St
         reach.append(np.where(is_beside, across, thickness[cell] / 2))
     least = np.minimum(plan[low], plan[high])
     is_wide = size > _NARROWEST * np.where(is_beside, np.sqrt(least), least)
-    low, high, size, is_beside = (each[is_wide] for each in (low, high, size, is_beside))
-    reach = [each[is_wide] for each in reach]
+    low, high, size, is_beside = (column[is_wide] for column in (low, high, size, is_beside))
+    reach = [distance[is_wide] for distance in reach]
     top, bottom = center[:, 2] + thickness / 2, center[:, 2] - thickness / 2
     overlap = (top[high] - bottom[low])[~is_beside].max(initial=0.0)
     step(0.5)

@@ -114,11 +114,11 @@ def _rises(mesh: PolyhedralMesh, faces: np.ndarray) -> np.ndarray:
     sizes = np.diff(mesh.face_offsets)[faces]
     rises = np.zeros(len(faces))
     for size in np.unique(sizes).tolist():
-        own = np.flatnonzero(sizes == size)
-        at = mesh.face_offsets[faces[own], None] + np.arange(size)
+        of_size = np.flatnonzero(sizes == size)
+        at = mesh.face_offsets[faces[of_size], None] + np.arange(size)
         x, y, _ = mesh.points[mesh.face_vertices[at]].transpose(2, 0, 1)
         x, y = x - x[:, :1], y - y[:, :1]
-        rises[own] = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+        rises[of_size] = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
     return rises
 
 
@@ -139,20 +139,20 @@ def _write_zones(mesh: PolyhedralMesh, poly: Path, order: np.ndarray, turned: np
     with _file(poly, "cellZones", "regIOobject") as file:
         zones = _zones(mesh.cell_block)
         file.write(b"%d\n(\n" % len(zones))
-        for block, own in zones:
+        for block, labels in zones:
             file.write(f"{names[block]}\n{{\ntype cellZone;\ncellLabels List<label> ".encode())
-            _list(file, own)
+            _list(file, labels)
             file.write(b";\n}\n")
         file.write(b")\n")
     names = solver_names(mesh.surface_names)
     with _file(poly, "faceZones", "regIOobject") as file:
         zones = _zones(mesh.face_surface[order])
         file.write(b"%d\n(\n" % len(zones))
-        for number, own in zones:
+        for number, labels in zones:
             file.write(f"{names[number]}\n{{\ntype faceZone;\nfaceLabels List<label> ".encode())
-            _list(file, own)
+            _list(file, labels)
             file.write(b";\nflipMap List<bool> ")
-            _list(file, turned[own])
+            _list(file, turned[labels])
             file.write(b";\n}\n")
         file.write(b")\n")
 
@@ -160,11 +160,11 @@ def _write_zones(mesh: PolyhedralMesh, poly: Path, order: np.ndarray, turned: np
 def _zones(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
     """The elements with each number from 0, ascending, as labels; negative numbers are left out."""
     with_one = np.flatnonzero(number >= 0)
-    own = number[with_one]
+    numbers = number[with_one]
     # NumPy sorts short numbers by counting
-    short = own.astype(np.uint16) if own.max(initial=0) < 2**16 else own
+    short = numbers.astype(np.uint16) if numbers.max(initial=0) < 2**16 else numbers
     order = np.argsort(short, kind="stable")
-    ends = np.cumsum(np.bincount(own)) if len(own) else np.empty(0, np.int64)
+    ends = np.cumsum(np.bincount(numbers)) if len(numbers) else np.empty(0, np.int64)
     parts = np.split(with_one[order].astype("<i4"), ends)
     return [(k, part) for k, part in enumerate(parts) if len(part)]
 

@@ -68,7 +68,7 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
     for start in range(0, count, _CELLS_AT_ONCE):
         end = min(count, start + _CELLS_AT_ONCE)
         stream, vertices, corners[start:end], lengths[start:end] = cells.described(start, end)
-        stream, vertices = (found.astype(dtype, copy=False) for found in (stream, vertices))
+        stream, vertices = (array.astype(dtype, copy=False) for array in (stream, vertices))
         file.seek(faces_at)
         file.write(stream)
         file.seek(next_corners_at)

@@ -68,8 +68,8 @@ def _parsed(text: str) -> Any:
 
 
 def _after_blanks(text: str, at: int) -> int:
-    found = _BETWEEN.match(text, at)
-    return found.end() if found else at
+    match = _BETWEEN.match(text, at)
+    return match.end() if match else at
 
 
 class _NotANumberError(ValueError):
@@ -138,20 +138,20 @@ class _Walk:
     def polygon(self, rings: Any, item: str) -> None:
         if not isinstance(rings, list):
             raise self.refuse("the coordinates of a Polygon must be a list of rings", item)
-        found = []
+        ring_positions = []
         for number, ring in enumerate(rings, 1):
             where = f"{item}, ring {number}" if item else f"ring {number}"
             if not isinstance(ring, list) or len(ring) < 3:
                 raise self.refuse("a ring needs at least 3 corners", where)
-            found.append(self.positions(ring, where, 3))
-        self.shapes.add_polygon(item, found)
+            ring_positions.append(self.positions(ring, where, 3))
+        self.shapes.add_polygon(item, ring_positions)
 
     def positions(self, places: Any, item: str, least: int) -> np.ndarray:
         """(N, 2) float64 of a list of at least so many positions; (N, 3) where heights are wanted."""
         if not isinstance(places, list) or len(places) < least:
             raise self.refuse(f"a list of at least {least} positions is needed", item)
-        found = [self.position(place, item, number) for number, place in enumerate(places, 1)]
-        return np.array(found, np.float64).reshape(-1, self.shapes.ordinates)
+        coordinates = [self.position(place, item, number) for number, place in enumerate(places, 1)]
+        return np.array(coordinates, np.float64).reshape(-1, self.shapes.ordinates)
 
     def position(self, position: Any, item: str, number: int) -> tuple[float, ...]:
         count = self.shapes.ordinates

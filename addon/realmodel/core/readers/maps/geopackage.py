@@ -115,16 +115,16 @@ def _read(
         attributes = {name: value for name, value in zip(names, row, strict=True) if name != layers[table]}
         if not selection.takes(attributes) or row[at] is None:
             continue
-        item, before = f"feature {number}", shapes.counts()
+        feature, before = f"feature {number}", shapes.counts()
         try:
-            _geometry(bytes(row[at]), item, shapes)
+            _geometry(bytes(row[at]), feature, shapes)
         except (ValueError, struct.error, IndexError, TypeError) as error:
             what = f"its geometry cannot be read: {error}"
-            raise InputRefused(what, file=file, item=f"layer '{table}', {item}") from error
+            raise InputRefused(what, file=file, item=f"layer '{table}', {feature}") from error
         if shapes.attributes is not None:
-            shapes.attributes[item] = attributes
+            shapes.attributes[feature] = attributes
         if heights and heights.attribute is not None:
-            shapes.set_height(before, selection.height(attributes, heights.attribute, item))
+            shapes.set_height(before, selection.height(attributes, heights.attribute, feature))
     selection.require_some()
     return shapes
 
@@ -133,7 +133,7 @@ def _quoted(name: str) -> str:
     return '"' + name.replace('"', '""') + '"'
 
 
-def _geometry(blob: bytes, item: str, shapes: Shapes) -> None:
+def _geometry(blob: bytes, feature: str, shapes: Shapes) -> None:
     """A geometry as a GeoPackage has it: a header, then well-known binary."""
     if blob[:2] != b"GP":
         raise ValueError("it does not begin with GP")
@@ -146,7 +146,7 @@ def _geometry(blob: bytes, item: str, shapes: Shapes) -> None:
             return
         raise ValueError("an unknown envelope")
     reader = _WellKnownBinary(blob, 8 + _ENVELOPES[envelope])
-    reader.geometry(item, shapes, 0)
+    reader.geometry(feature, shapes, 0)
 
 
 class _WellKnownBinary:
@@ -165,8 +165,8 @@ class _WellKnownBinary:
         numbers = np.frombuffer(self.blob, f"{order}f8", count * size, self.at)
         self.at += 8 * count * size
         places = np.full((count, ordinates), np.nan)
-        kept = min(ordinates, 3 if has_z else 2)
-        places[:, :kept] = numbers.reshape(count, size)[:, :kept]
+        stored = min(ordinates, 3 if has_z else 2)
+        places[:, :stored] = numbers.reshape(count, size)[:, :stored]
         if not np.isfinite(places[:, :2]).all():
             raise ValueError("a position is not finite")
         return places

@@ -65,12 +65,12 @@ def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | Non
                     step(1 - _STEP / (number + _STEP))
                 attributes = next(records).as_dict() if records is not None else {}
                 if selection.takes(attributes):
-                    item, before = f"feature {number}", shapes.counts()
-                    _add(shape, item, shapes)
+                    feature, before = f"feature {number}", shapes.counts()
+                    _add(shape, feature, shapes)
                     if shapes.attributes is not None:
-                        shapes.attributes[item] = attributes
+                        shapes.attributes[feature] = attributes
                     if attribute is not None:
-                        shapes.set_height(before, selection.height(attributes, attribute, item))
+                        shapes.set_height(before, selection.height(attributes, attribute, feature))
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise InputRefused(what, file=file, advice="check the path") from error
@@ -108,25 +108,25 @@ class _opened:
             self.file.close()
 
 
-def _add(shape: Any, item: str, shapes: Shapes) -> None:
+def _add(shape: Any, feature: str, shapes: Shapes) -> None:
     if shape.shapeType == 0:  # a feature without a shape
         return
     places = np.array([point[:2] for point in shape.points], np.float64).reshape(-1, 2)
     if not np.isfinite(places).all():
-        raise ValueError(f"{item} has a position that is not finite")
+        raise ValueError(f"{feature} has a position that is not finite")
     if shapes.has_heights:
         z = np.full(len(places), np.nan)
         if shape.shapeType in _WITH_Z:
             z[:] = shape.z
         places = np.column_stack([places, z])
     if shape.shapeType in (*_POINTS, *_MULTIPOINTS):
-        shapes.points += [(item, place) for place in places]
+        shapes.points += [(feature, place) for place in places]
         return
     starts = [*shape.parts, len(places)]
     parts = [places[begin:end] for begin, end in pairwise(starts) if end > begin]
     if shape.shapeType in _LINES:
-        shapes.lines += [(item, part) for part in parts]
+        shapes.lines += [(feature, part) for part in parts]
     elif shape.shapeType in _POLYGONS:
-        shapes.add_polygon(item, parts, has_roles=False)
+        shapes.add_polygon(feature, parts, has_roles=False)
     else:
-        raise ValueError(f"{item} is of kind {shape.shapeTypeName}, which is not read")
+        raise ValueError(f"{feature} is of kind {shape.shapeTypeName}, which is not read")

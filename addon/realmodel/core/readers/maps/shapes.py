@@ -78,15 +78,15 @@ class Shapes:
             polygons=[
                 Polygon(p.item, [ring * scale for ring in p.rings], p.has_roles) for p in self.polygons
             ],
-            lines=[(item, line * scale) for item, line in self.lines],
-            points=[(item, point * scale) for item, point in self.points],
+            lines=[(feature, line * scale) for feature, line in self.lines],
+            points=[(feature, point * scale) for feature, point in self.points],
         )
 
     def without_area(self, file: Path) -> list[str]:
         """Warnings about lines and points, which bound no region."""
-        said = [(item, "LineString") for item, _ in self.lines] + [(item, "Point") for item, _ in self.points]
+        said = [(name, "LineString") for name, _ in self.lines] + [(name, "Point") for name, _ in self.points]
         items = dict.fromkeys(said)
-        return [f"{file}: {item or 'it'} is a {kind}, which bounds no area: left out" for item, kind in items]
+        return [f"{file}: {name or 'it'} is a {kind}, which bounds no area: left out" for name, kind in items]
 
 
 @dataclass(frozen=True)
@@ -119,8 +119,8 @@ class Selection:
         """The height that an attribute of a feature holds; NaN where it holds nothing."""
         key = of_name(name, attributes)
         if key is None:
-            there = names_shown(list(attributes)) if attributes else "no attributes"
-            raise self._no_height(f"it has no attribute '{name}'", item, f"it has {there}")
+            attribute_names = names_shown(list(attributes)) if attributes else "no attributes"
+            raise self._no_height(f"it has no attribute '{name}'", item, f"it has {attribute_names}")
         value = attributes[key]
         if value is None or (isinstance(value, str) and not value.strip()):
             return float("nan")
@@ -131,8 +131,8 @@ class Selection:
         except (TypeError, ValueError) as error:
             raise self._no_height(f"its attribute '{key}' is not a number: {value!r:.40}", item) from error
 
-    def _no_height(self, what: str, item: str, advice: str | None = None) -> InputRefused:
-        return InputRefused(what, file=self.file, item=item or self.item, advice=advice)
+    def _no_height(self, what: str, feature: str, advice: str | None = None) -> InputRefused:
+        return InputRefused(what, file=self.file, item=feature or self.item, advice=advice)
 
     def takes(self, attributes: Mapping) -> bool:
         self.features += 1
@@ -163,8 +163,8 @@ class Selection:
                     advice=f"they have {names_shown(list(self.known))}" if self.known else None,
                 )
         said = ", ".join(f"{name} = {value!r}" for name, value in self.where.items())
-        there = "; ".join(f"{name} is {names_shown(list(values))}" for name, values in self.seen.items())
-        raise self._nothing(f"no feature has {said}", file=self.file, item=self.item, advice=there)
+        advice = "; ".join(f"{name} is {names_shown(list(values))}" for name, values in self.seen.items())
+        raise self._nothing(f"no feature has {said}", file=self.file, item=self.item, advice=advice)
 
     def _nothing(self, what: str, **where: Any) -> NothingSelected:
         error = NothingSelected(what, **where)

@@ -89,10 +89,10 @@ class _Parser:
         return match.group().strip()
 
     def expect(self, wanted: str) -> None:
-        found = self.peek()
-        if found != wanted:
+        word = self.peek()
+        if word != wanted:
             raise self.refuse(
-                f"'{wanted}' is expected, there is '{found:.20}'" if found else "it ends too early"
+                f"'{wanted}' is expected, there is '{word:.20}'" if word else "it ends too early"
             )
         self.next()
 
@@ -162,10 +162,10 @@ class _Parser:
             except ValueError as error:
                 raise self.refuse(f"'{entry.strip():.40}' is no position x y") from error
         self.at = close + 1
-        found = np.array(places, np.float64).reshape(-1, self.shapes.ordinates)
-        if not np.isfinite(found[:, :2]).all():
+        coordinates = np.array(places, np.float64).reshape(-1, self.shapes.ordinates)
+        if not np.isfinite(coordinates[:, :2]).all():
             raise self.refuse("a position is not finite")
-        return found
+        return coordinates
 
     def ordinates(self, numbers: list[str]) -> list[float]:
         """The coordinates of a position that are used."""

@@ -49,7 +49,7 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     section = b"Nodes"
     try:
         both = [raw[slice(*sections[name])] for name in (b"Nodes", b"Elements")]
-        read = [_Bytes(each, order) if is_binary else _Words(each) for each in both]
+        read = [_Bytes(content, order) if is_binary else _Words(content) for content in both]
         old = version.startswith("2")
         tags, places = (_nodes_2 if old else _nodes_4)(read[0])
         step(0.5)
@@ -119,9 +119,9 @@ class _Bytes:
         row = _row(self._order, kinds)
         if not 0 <= count <= len(self._raw) or self.at + count * row.itemsize > len(self._raw):
             raise ValueError(f"{count} entries are announced, the file is cut off")
-        found = np.frombuffer(self._raw, row, count, self.at)
-        self.at += found.nbytes
-        return np.stack([found[name].astype(np.float64) for name in row.names or ()], axis=1)
+        entries = np.frombuffer(self._raw, row, count, self.at)
+        self.at += entries.nbytes
+        return np.stack([entries[name].astype(np.float64) for name in row.names or ()], axis=1)
 
     def line(self) -> int:
         """A number on a line of text."""

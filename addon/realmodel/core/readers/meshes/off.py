@@ -66,18 +66,18 @@ class _Lines:
     def some(self, most: int) -> tuple[list[str], list[int]]:
         """The next lines, not more than `most`, and their numbers; none at the end."""
         while self._at == len(self._lines):
-            number, given, share = next(self._pieces, (0, None, 1.0))
-            if given is None:
+            number, piece, share = next(self._pieces, (0, None, 1.0))
+            if piece is None:
                 return [], []
-            said = ((n, line.partition("#")[0].strip()) for n, line in enumerate(given, number))
+            said = ((n, line.partition("#")[0].strip()) for n, line in enumerate(piece, number))
             self._lines, self._at = [line for line in said if line[1]], 0
             self._share = share
         end = min(self._at + min(most, LINES_AT_ONCE), len(self._lines))
-        found, self._at = self._lines[self._at : end], end
+        numbered_lines, self._at = self._lines[self._at : end], end
         self._step(self._share)
-        self.taken += len(found)
-        self.last = found[-1][0]
-        return [line for _, line in found], [number for number, _ in found]
+        self.taken += len(numbered_lines)
+        self.last = numbered_lines[-1][0]
+        return [line for _, line in numbered_lines], [number for number, _ in numbered_lines]
 
     def begin(self) -> None:
         """The header ends here."""
@@ -89,11 +89,11 @@ class _Lines:
             if not self.some(vertices + faces + 1 - self.taken)[0]:
                 break
         if self.taken < vertices + faces:
-            part, announced, found = "faces", faces, self.taken - vertices
-            if found < 0:
-                part, announced, found = "vertices", vertices, self.taken
+            part, announced, count = "faces", faces, self.taken - vertices
+            if count < 0:
+                part, announced, count = "vertices", vertices, self.taken
             raise InputRefused(
-                f"{announced} {part} are announced, there are {found}",
+                f"{announced} {part} are announced, there are {count}",
                 file=self._file,
                 line=self.last,
                 advice="the file is cut off or its counts are wrong",

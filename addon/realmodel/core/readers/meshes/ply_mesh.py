@@ -56,12 +56,12 @@ def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
         if not (kind and begins) or not {"vertex", "face"} <= elements.keys():
             raise ValueError("its header has no format, vertices or faces")
         body = _Numbers(raw, begins, rows) if kind == "ascii" else _Bytes(raw, begins)
-        at, found = 0, set()
+        at, names_read = 0, set()
         for name, (count, properties) in elements.items():
             if name in ("vertex", "face"):
                 at = (_vertices if name == "vertex" else _faces)(body, at, count, properties, mesh, step)
-                found.add(name)
-            elif len(found) == 2:
+                names_read.add(name)
+            elif len(names_read) == 2:
                 break
             else:
                 at += count * np.dtype([(key, form) for key, _, form in properties]).itemsize

@@ -83,17 +83,17 @@ class MeshRows:
         if not len(faces):
             return
         if isinstance(faces, np.ndarray):
-            sizes, given = np.full(len(faces), faces.shape[1]), faces.ravel()
+            sizes, numbers = np.full(len(faces), faces.shape[1]), faces.ravel()
         else:
             sizes = np.array([len(face) for face in faces])
-            given = np.array(list(itertools.chain.from_iterable(faces)))
+            numbers = np.array(list(itertools.chain.from_iterable(faces)))
         for face in np.flatnonzero(sizes < 3)[:1]:
             line = None if lines is None else lines[face]
             raise InputRefused("a face of 2 corners", file=self._file, line=line)
         with np.errstate(invalid="ignore"):
-            is_number = (given >= 0) & (given <= _MOST_VERTICES)
-            corners = np.where(is_number, given, -1).astype(np.int32)
-            corners[corners != given] = -1
+            is_number = (numbers >= 0) & (numbers <= _MOST_VERTICES)
+            corners = np.where(is_number, numbers, -1).astype(np.int32)
+            corners[corners != numbers] = -1
         triangles, owner = fanned(np.append(0, np.cumsum(sizes)), corners)
         self._lowest = min(self._lowest, int(corners.min()))
         self._highest = max(self._highest, int(corners.max()))
@@ -138,11 +138,11 @@ def mesh_of_faces(
 ) -> TriangleMesh:
     """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
     InputRefused."""
-    found = MeshRows(file)
+    mesh_rows = MeshRows(file)
     if len(faces):  # without faces another error is reported
-        found.add_vertices(vertices)
-    found.add_faces(faces, lines)
-    return found.mesh()
+        mesh_rows.add_vertices(vertices)
+    mesh_rows.add_faces(faces, lines)
+    return mesh_rows.mesh()
 
 
 def mesh_of_corners(file: Path, corners: ArrayLike, sizes: Sequence[int] = (3,)) -> TriangleMesh:

@@ -47,10 +47,10 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
     file = Path(file)
     raw = read_bytes(file)
     appended = _Body(b"", False)
-    if found := _APPENDED.search(raw):
+    if match := _APPENDED.search(raw):
         end = raw.rfind(b"</AppendedData>")
-        appended = _Body(raw[found.end() : end if end > 0 else len(raw)], found[1] == b"base64")
-        raw = raw[: found.start()] + b"</VTKFile>"
+        appended = _Body(raw[match.end() : end if end > 0 else len(raw)], match[1] == b"base64")
+        raw = raw[: match.start()] + b"</VTKFile>"
     root = parse_xml(file, raw, step)
     vertices: list[np.ndarray] = []
     faces: list[_Faces] = []
@@ -144,13 +144,13 @@ class _Body(NamedTuple):
 
     def part(self, begin: int, end: int) -> bytes:
         """Bytes begin..end. Raises ValueError where there are not so many."""
-        found = self.content[begin:end]
+        data = self.content[begin:end]
         if self.coded:
-            found = base64.b64decode(self.content[begin // 3 * 4 : -(-end // 3) * 4])
-            found = found[begin % 3 :][: end - begin]
-        if len(found) < end - begin:
+            data = base64.b64decode(self.content[begin // 3 * 4 : -(-end // 3) * 4])
+            data = data[begin % 3 :][: end - begin]
+        if len(data) < end - begin:
             raise ValueError("an array is cut off")
-        return found
+        return data
 
 
 class _Arrays:

@@ -48,7 +48,7 @@ class GeoObject:
     @property
     def columns(self) -> dict[str, np.ndarray]:
         """What is known of its vertices."""
-        return next((each.columns for each in self.values if each.ends is None), {})
+        return next((values.columns for values in self.values if values.ends is None), {})
 
 
 class OpenFile(Protocol):
@@ -63,6 +63,6 @@ class OpenFile(Protocol):
 
 def texts(numbers: np.ndarray, names: dict[int, str]) -> np.ndarray:
     """(N,) str: the names of numbers, "" for those that have none."""
-    found, index = np.unique(np.asarray(numbers, np.int64), return_inverse=True)
-    named = np.array([str(names.get(number, "")) for number in found.tolist()] or [""], object)
+    unique, index = np.unique(np.asarray(numbers, np.int64), return_inverse=True)
+    named = np.array([str(names.get(number, "")) for number in unique.tolist()] or [""], object)
     return named[index.ravel()]

@@ -39,81 +39,81 @@ class _Geoh5File:
 
     def names(self) -> list[ObjectName]:
         """As OpenFile."""
-        found = [(each, _kind(each)) for each in self._workspace.objects]
-        return [ObjectName(each.name, kind, each.uid) for each, kind in found if kind is not None]
+        with_kinds = [(obj, _kind(obj)) for obj in self._workspace.objects]
+        return [ObjectName(obj.name, kind, obj.uid) for obj, kind in with_kinds if kind is not None]
 
     def read(self, wanted: ObjectName) -> GeoObject:
         """As OpenFile."""
-        (item,) = self._workspace.get_entity(wanted.key)
+        (obj,) = self._workspace.get_entity(wanted.key)
         if wanted.kind == HOLE:
-            return _hole(item, wanted)
-        vertices = np.array(item.vertices, np.float64)
-        values = [Values(vertices, _columns(item, "VERTEX"))]
+            return _hole(obj, wanted)
+        vertices = np.array(obj.vertices, np.float64)
+        values = [Values(vertices, _columns(obj, "VERTEX"))]
         if wanted.kind == LINES:
-            values.append(_along(item, vertices))
-        triangles = np.array(item.cells) if wanted.kind == SURFACE else None
+            values.append(_along(obj, vertices))
+        triangles = np.array(obj.cells) if wanted.kind == SURFACE else None
         return GeoObject(wanted.name, wanted.kind, vertices, triangles, values)
 
 
-def _kind(item: Any) -> str | None:
+def _kind(obj: Any) -> str | None:
     from geoh5py.objects import Curve, Drillhole, Points, Surface
 
-    if isinstance(item, Drillhole):
+    if isinstance(obj, Drillhole):
         return HOLE
-    if isinstance(item, Surface):
+    if isinstance(obj, Surface):
         return SURFACE
-    if isinstance(item, Curve):
+    if isinstance(obj, Curve):
         return LINES
-    return POINTS if type(item) is Points else None
+    return POINTS if type(obj) is Points else None
 
 
-def _hole(item: Any, wanted: ObjectName) -> GeoObject:
-    collar = np.array(item.collar.tolist(), np.float64)
+def _hole(obj: Any, wanted: ObjectName) -> GeoObject:
+    collar = np.array(obj.collar.tolist(), np.float64)
     values = []
-    if item.vertices is not None:
-        vertices = np.array(item.vertices, np.float64)
-        values.append(Values(vertices, _columns(item, "VERTEX")))
-        if item.cells is not None:
-            values.append(_along(item, vertices))
+    if obj.vertices is not None:
+        vertices = np.array(obj.vertices, np.float64)
+        values.append(Values(vertices, _columns(obj, "VERTEX")))
+        if obj.cells is not None:
+            values.append(_along(obj, vertices))
     else:
         vertices = collar[None]
-        values = list(_tables(item))
+        values = list(_tables(obj))
     return GeoObject(wanted.name, HOLE, vertices, None, values, collar)
 
 
-def _along(item: Any, vertices: np.ndarray) -> Values:
+def _along(obj: Any, vertices: np.ndarray) -> Values:
     """The intervals between vertices, with the depths that a drillhole says."""
-    begins, ends = (vertices[np.array(item.cells)[:, end]] for end in (0, 1))
-    columns = _columns(item, "CELL")
-    known = [columns.pop(name) for name in ("FROM", "TO") if name in columns]
-    depths = np.column_stack(known) if len(known) == 2 else None
+    begins, ends = (vertices[np.array(obj.cells)[:, end]] for end in (0, 1))
+    columns = _columns(obj, "CELL")
+    depth_columns = [columns.pop(name) for name in ("FROM", "TO") if name in columns]
+    depths = np.column_stack(depth_columns) if len(depth_columns) == 2 else None
     return Values(begins, columns, ends, depths)
 
 
-def _tables(item: Any) -> Iterator[Values]:
+def _tables(obj: Any) -> Iterator[Values]:
     """The tables of a drillhole in a group of drillholes, each with depths of its own."""
-    for group in item.property_groups or ():
+    for group in obj.property_groups or ():
         limits = [getattr(group, name, None) for name in ("from_", "to_")]
-        depths = [each.values for each in limits if each is not None and each.values is not None]
+        depths = [limit.values for limit in limits if limit is not None and limit.values is not None]
         point = getattr(group, "depth_", None)
-        known = [item.workspace.get_entity(uid)[0] for uid in group.properties or ()]
-        known = [each for each in known if each is not None and each.name.upper() not in _DEPTHS]
-        columns = {each.name: column for each in known if (column := _column(each)) is not None}
+        members = [obj.workspace.get_entity(uid)[0] for uid in group.properties or ()]
+        members = [member for member in members if member is not None and member.name.upper() not in _DEPTHS]
+        columns = {member.name: column for member in members if (column := _column(member)) is not None}
         if len(depths) == 2:
-            yield Values(item.desurvey(depths[0]), columns, item.desurvey(depths[1]), np.column_stack(depths))
+            yield Values(obj.desurvey(depths[0]), columns, obj.desurvey(depths[1]), np.column_stack(depths))
         elif point is not None and point.values is not None:
-            yield Values(item.desurvey(point.values), columns)
+            yield Values(obj.desurvey(point.values), columns)
 
 
-def _columns(item: Any, where: str) -> dict[str, np.ndarray]:
+def _columns(obj: Any, where: str) -> dict[str, np.ndarray]:
     """The data of an object's vertices or cells, as texts or numbers."""
-    found = {}
-    for child in item.children:
+    columns = {}
+    for child in obj.children:
         if getattr(getattr(child, "association", None), "name", None) == where:
             column = _column(child)
             if column is not None:
-                found[child.name] = column
-    return found
+                columns[child.name] = column
+    return columns
 
 
 def _column(data: Any) -> np.ndarray | None:
@@ -127,7 +127,7 @@ def _column(data: Any) -> np.ndarray | None:
         named = {number: _plain(name) for number, name in names.items() if number}
         return texts(np.asarray(values), named)
     if isinstance(data, TextData):
-        return np.array([_plain(each) for each in np.atleast_1d(values)], object)
+        return np.array([_plain(text) for text in np.atleast_1d(values)], object)
     return np.asarray(values) if isinstance(data, NumericData) else None
 
 

@@ -37,12 +37,12 @@ class _OmfFile:
 
     def names(self) -> list[ObjectName]:
         """As OpenFile."""
-        found = []
+        objects = []
         for element in self._reader().get_project_overview().elements:
             kind = _kind(self._omf, element)
             if kind is not None:
-                found.append(ObjectName(element.name, kind, str(element.uid)))
-        return found
+                objects.append(ObjectName(element.name, kind, str(element.uid)))
+        return objects
 
     def read(self, wanted: ObjectName) -> GeoObject:
         """As OpenFile."""
@@ -86,8 +86,8 @@ def _kind(omf: Any, element: Any) -> str | None:
     return None
 
 
-def _array(given: Any) -> np.ndarray:
-    return np.asarray(given.array).view(np.ndarray)
+def _array(omf_array: Any) -> np.ndarray:
+    return np.asarray(omf_array.array).view(np.ndarray)
 
 
 def _grid(geometry: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -107,7 +107,7 @@ def _grid(geometry: Any) -> tuple[np.ndarray, np.ndarray]:
 def _column(omf: Any, data: Any) -> np.ndarray | None:
     """The values of data as texts or numbers; None of other kinds."""
     if isinstance(data, omf.MappedData):
-        legend = next((each for each in data.legends if isinstance(each.values, omf.StringArray)), None)
+        legend = next((entry for entry in data.legends if isinstance(entry.values, omf.StringArray)), None)
         if legend is None:
             return _array(data.array)
         return texts(_array(data.array), dict(enumerate(legend.values.array)))

@@ -88,13 +88,13 @@ def read_zmap_grid(
     none = []
     if null.lower() not in NO_HEIGHT_WORDS:
         none = header_numbers(file, null, of_none, 1, "the number for no height")
-    found = header_numbers(file, numbers, of_numbers, 6, "rows, columns, and the ends of x and y")
+    layout = header_numbers(file, numbers, of_numbers, 6, "rows, columns, and the ends of x and y")
     if by_gdal:  # which takes the edges of its pixels for the ends
-        for low, count in ((2, found[1]), (4, found[0])):
-            half = (found[low + 1] - found[low]) / max(count, 1.0) / 2
-            found[low], found[low + 1] = found[low] + half, found[low + 1] - half
+        for low, count in ((2, layout[1]), (4, layout[0])):
+            half = (layout[low + 1] - layout[low]) / max(count, 1.0) / 2
+            layout[low], layout[low + 1] = layout[low] + half, layout[low + 1] - half
     heights = GridText(file, raw, at, line + 1)
-    return _columns(heights, found, (of_numbers, of_numbers), [*none, *nodata], step, gather)
+    return _columns(heights, layout, (of_numbers, of_numbers), [*none, *nodata], step, gather)
 
 
 def _columns(

@@ -162,25 +162,25 @@ def _bands(file: Path, tifffile: Any, tiff: Any, page: Any, step: Step) -> Itera
         high, places = _divided(file, places, high, rows, wide * stored.itemsize)
     a_row = -(-columns // wide)
     for top in range(0, rows, high):
-        there = min(high, rows - top)
-        z = np.full((there, columns), np.nan)
+        band_rows = min(high, rows - top)
+        z = np.full((band_rows, columns), np.nan)
         first = top // high * a_row
         for number, (offset, size) in enumerate(places[first : first + a_row]):
             left = wide * number
             if not size:  # a part without bytes is all nodata
                 continue
-            expected = (high if page.is_tiled else there) * wide * stored.itemsize
+            expected = (high if page.is_tiled else band_rows) * wide * stored.itemsize
             tiff.filehandle.seek(offset)
             data = tiff.filehandle.read(min(size, tiff.filehandle.size))
             data = _decompressed(tifffile, page.compression, data, expected)
-            if len(data) < there * wide * stored.itemsize:
+            if len(data) < band_rows * wide * stored.itemsize:
                 raise _cut_off(file)
             data = data[: len(data) // (wide * stored.itemsize) * wide * stored.itemsize]
             part = _unpredicted(page.predictor, data, stored, wide)
             with np.errstate(invalid="ignore"):  # NaN of any kind is no height
-                z[:, left : left + wide] = part[:there, : columns - left]
+                z[:, left : left + wide] = part[:band_rows, : columns - left]
         yield z
-        step((top + there) / rows)
+        step((top + band_rows) / rows)
 
 
 def _divided(
@@ -192,14 +192,14 @@ def _divided(
         return high, places
     while high % lower:
         lower -= 1
-    found = []
+    parts = []
     for top, (offset, size) in zip(range(0, rows, high), places, strict=False):
-        there = min(high, rows - top)
-        if 0 < size < there * row:
+        strip_rows = min(high, rows - top)
+        if 0 < size < strip_rows * row:
             raise _cut_off(file)
-        for begin in range(0, there, lower):
-            found.append((offset + begin * row, size and min(lower, there - begin) * row))
-    return lower, found
+        for begin in range(0, strip_rows, lower):
+            parts.append((offset + begin * row, size and min(lower, strip_rows - begin) * row))
+    return lower, parts
 
 
 def _cut_off(file: Path) -> InputRefused:
@@ -253,8 +253,8 @@ def _scaled(z: np.ndarray, metadata: Any) -> np.ndarray:
     """Heights that GDAL stored as integers with a scale and an offset."""
     parts = {}
     for role in ("scale", "offset"):
-        given = re.search(rf'<Item [^>]*role="{role}"[^>]*>([^<]+)</Item>', str(metadata or ""))
-        parts[role] = float(given.group(1)) if given else None
+        match = re.search(rf'<Item [^>]*role="{role}"[^>]*>([^<]+)</Item>', str(metadata or ""))
+        parts[role] = float(match.group(1)) if match else None
     if parts["scale"] is not None:
         z = z * parts["scale"]
     return z if parts["offset"] is None else z + parts["offset"]

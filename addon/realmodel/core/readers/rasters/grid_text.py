@@ -40,16 +40,16 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
     words = "|".join(re.escape(word) for word in (*NO_HEIGHT_WORDS, text.none.lower()) if word)
     no_height = re.compile(rf"(?<!\S)(?:{words})(?!\S)".encode(), re.IGNORECASE)
     as_number = repr(_NONE).encode()
-    found, at = 0, body
+    count, at = 0, body
     while at < len(raw):
-        given = _to_blank(raw, at).translate(one_a_line)
-        piece = no_height.sub(as_number, given)
+        chunk = _to_blank(raw, at).translate(one_a_line)
+        piece = no_height.sub(as_number, chunk)
         try:
             numbers = native.read_numbers(piece, (" ", text.decimal), [0], [], ([], []))[0][:, 0]
         except native.InputError as error:
             begin, stop = error.items[2:4]
             entry = piece[begin:stop].decode("latin-1")
-            for word in no_height.finditer(given):  # back to the bytes of the file
+            for word in no_height.finditer(chunk):  # back to the bytes of the file
                 if word.start() >= begin:
                     break
                 begin -= len(as_number) - len(word.group())
@@ -57,14 +57,14 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
             advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
             what = f"not a height: '{entry:.40}'"
             raise InputRefused(what, file=file, line=number, advice=advice) from error
-        at += len(given)
-        found += len(numbers)
+        at += len(chunk)
+        count += len(numbers)
         numbers[numbers == _NONE] = np.nan
         yield numbers
         step(at / len(raw))
-    if found != rows * columns:
+    if count != rows * columns:
         raise InputRefused(
-            f"{columns} columns and {rows} rows need {rows * columns} heights; there are {found}",
+            f"{columns} columns and {rows} rows need {rows * columns} heights; there are {count}",
             file=file,
             advice="the file is cut off or its header is wrong",
         )
@@ -98,14 +98,14 @@ def header_numbers(file: Path, text: str, line: int, count: int, what: str) -> l
     """The first numbers of a line of a header. Raises InputRefused."""
     words = text.replace(",", " ").split()
     try:
-        found = [float(word) for word in words[:count]]
-        if len(found) < count or not np.isfinite(found).all():
+        numbers = [float(word) for word in words[:count]]
+        if len(numbers) < count or not np.isfinite(numbers).all():
             raise ValueError
     except ValueError as error:
         raise InputRefused(
             f"the header needs {what} here, not '{text.strip():.60}'", file=file, line=line
         ) from error
-    return found
+    return numbers
 
 
 def require_count(file: Path, value: float, name: str, line: int | None = None) -> int:

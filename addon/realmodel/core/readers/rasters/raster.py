@@ -45,7 +45,7 @@ class Raster:
         (ax, ay), (dx, dy) = self.across, self.down
         x, y = (plan - np.array(self.origin)).T
         area = ax * dy - ay * dx
-        found = np.zeros(len(plan))
+        heights = np.zeros(len(plan))
         places, low, shares = [], [], []
         for at, count in (
             ((ax * y - ay * x) / area, len(self.z)),
@@ -53,7 +53,7 @@ class Raster:
         ):
             # up to rounding
             on = np.where(np.abs(at - np.rint(at)) < _ON_CELL, np.rint(at), at)
-            found[(on < -0.5 - _ON_CELL) | (on > count - 0.5 + _ON_CELL)] = np.nan
+            heights[(on < -0.5 - _ON_CELL) | (on > count - 0.5 + _ON_CELL)] = np.nan
             on = np.clip(on, 0, count - 1)
             first = np.minimum(on.astype(np.int64), max(count - 2, 0))
             places.append(count)
@@ -63,8 +63,8 @@ class Raster:
             for j in (0, 1):
                 weight = np.abs(1 - i - shares[0]) * np.abs(1 - j - shares[1])
                 row, column = np.minimum(low[0] + i, places[0] - 1), np.minimum(low[1] + j, places[1] - 1)
-                found += np.where(weight > 0, weight * self.z[row, column], 0.0)
-        return found
+                heights += np.where(weight > 0, weight * self.z[row, column], 0.0)
+        return heights
 
     def _pieces(self) -> Iterator[np.ndarray]:
         height, width = self.z.shape
