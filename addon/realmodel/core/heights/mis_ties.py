@@ -25,8 +25,8 @@ def without_mis_ties(
     twentieth of the height range of all points, their mean replaces the first of them; larger contradictions
     are left in. zeros, gather: where arrays are kept.
     """
-    found = _Places(points, zeros, is_once=False)
-    return found.kept(gather), found.warning()
+    places = _Places(points, zeros, is_once=False)
+    return places.kept(gather), places.warning()
 
 
 def each_place_once(
@@ -34,8 +34,8 @@ def each_place_once(
 ) -> tuple[np.ndarray, str | None, bool]:
     """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
     larger contradictions are left in."""
-    found = _Places(points, zeros, is_once=True)
-    return found.kept(gather), found.warning(), not found.has_contradictions
+    places = _Places(points, zeros, is_once=True)
+    return places.kept(gather), places.warning(), not places.has_contradictions
 
 
 class _Places:
@@ -80,8 +80,8 @@ class _Places:
         return gather(self._pieces(), np.empty((0, self._points.shape[1])))
 
     def _pieces(self) -> Iterator[np.ndarray]:
-        numbers = np.concatenate([np.empty(0, np.int64), *(each for each, _ in self._changed)])
-        heights = np.concatenate([np.empty(0), *(each for _, each in self._changed)])
+        numbers = np.concatenate([np.empty(0, np.int64), *(part for part, _ in self._changed)])
+        heights = np.concatenate([np.empty(0), *(part for _, part in self._changed)])
         order = np.argsort(numbers)
         numbers, heights = numbers[order], heights[order]
         for begin in range(0, len(self._points), ROWS_AT_ONCE):
