@@ -38,9 +38,9 @@ def norm(vector: np.ndarray) -> np.ndarray:
 
 def begins_run(rows: np.ndarray) -> np.ndarray:
     """(N,) bool: the rows (N, ...) that are unlike the one before."""
-    found = np.ones(len(rows), bool)
-    found[1:] = (rows[1:] != rows[:-1]).any(axis=tuple(range(1, rows.ndim)))
-    return found
+    begins = np.ones(len(rows), bool)
+    begins[1:] = (rows[1:] != rows[:-1]).any(axis=tuple(range(1, rows.ndim)))
+    return begins
 
 
 def ascending(*columns: np.ndarray) -> np.ndarray:
@@ -51,8 +51,8 @@ def ascending(*columns: np.ndarray) -> np.ndarray:
 
 def are_among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
     """(N,) bool: the rows (N, K) that are rows of others (M, K)."""
-    known = set(map(tuple, others.tolist()))
-    return np.array([tuple(row) in known for row in rows.tolist()], bool)
+    members = set(map(tuple, others.tolist()))
+    return np.array([tuple(row) in members for row in rows.tolist()], bool)
 
 
 def ranks_in_runs(sizes: np.ndarray) -> np.ndarray:
@@ -84,9 +84,9 @@ def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             break
     spread = size * norm(np.array(columns))
     order = np.argsort(-spread, kind="stable")
-    found = np.array(axes)[order]
-    largest = found[np.arange(len(found)), np.abs(found).argmax(axis=1)]
-    return spread[order], found * np.where(largest < 0, -1.0, 1.0)[:, None]
+    directions = np.array(axes)[order]
+    largest = directions[np.arange(len(directions)), np.abs(directions).argmax(axis=1)]
+    return spread[order], directions * np.where(largest < 0, -1.0, 1.0)[:, None]
 
 
 def _turn(columns: list[np.ndarray], axes: list[np.ndarray], p: int, q: int) -> bool:

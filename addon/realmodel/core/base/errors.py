@@ -62,11 +62,11 @@ class InputRefused(RealModelError, ValueError):
 
     def within(self, item: str, *, file: str | Path | None = None, line: int | None = None) -> InputRefused:
         """The same error with the name of `item`; a file and line already known are kept."""
-        known = self.file is not None
+        has_file = self.file is not None
         return type(self)(
             self.what,
-            file=self.file if known else file,
-            line=self.line if known else line,
+            file=self.file if has_file else file,
+            line=self.line if has_file else line,
             item=item if self.item is None else f"{item}, {self.item}",
             advice=self.advice,
             triangles=self.triangles,

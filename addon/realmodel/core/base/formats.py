@@ -37,7 +37,7 @@ class Format:
 
 def by_ending(path: str | Path, formats: Iterable[Format], refusal: str) -> Format:
     """The format of the path's ending. refusal: a sentence with {} for another ending. Raises UsageError."""
-    endings = {known.ending: known for known in formats}
+    endings = {file_format.ending: file_format for file_format in formats}
     ending = Path(path).suffix.lower()
     if ending not in endings:
         what = refusal.format(f"'{ending}'") if ending else "the file name has no extension"

@@ -131,8 +131,8 @@ class MappedArrays:
             order[np.repeat(free, count) + ranks_in_runs(count)] = first + into
             free, first = free + count, first + len(piece)
         for begin, end in zip(ends - sizes, ends, strict=True):
-            own = order[begin:end]
-            order[begin:end] = own[ascending(*rows[own].T)]
+            numbers = order[begin:end]
+            order[begin:end] = numbers[ascending(*rows[numbers].T)]
         return order
 
     def zeros(self, shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
@@ -148,8 +148,8 @@ class MappedArrays:
 
     def place(self, array: np.ndarray) -> Path | np.ndarray:
         """A reference to an array for other processes: its file, or the array itself where it is empty."""
-        kept = self.keep(array)
-        return self._files[id(kept)][1] if kept.size else kept
+        stored = self.keep(array)
+        return self._files[id(stored)][1] if stored.size else stored
 
     def opened(self, place: Path | np.ndarray) -> np.ndarray:
         """The array of such a reference."""

@@ -73,7 +73,7 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
         python = f"python{version}" if "bpy" in sys.modules else sys.executable
         return f"{missing}; build it with scripts/build.sh {python}"
     if system is None:
-        names = ", ".join(each.name for each in SYSTEMS.values())
+        names = ", ".join(other.name for other in SYSTEMS.values())
         return (
             f"{missing}; there are zips for these only: {names}. Build RealModel from source for this system"
         )
@@ -96,4 +96,4 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
 def _versions(package: Path, system: System) -> list[str]:
     """The versions of Python that have modules for a system, e.g. ["3.11", "3.13"]."""
     named = [re.fullmatch(rf"_native\.{system.module}", path.name) for path in package.glob("_native.*")]
-    return [f"3.{minor}" for minor in sorted({int(found[1]) for found in named if found})]
+    return [f"3.{minor}" for minor in sorted({int(match[1]) for match in named if match})]

@@ -64,7 +64,7 @@ class StoredClasses:
         is stored in the place of a path or an object.
         """
         table: list[list] = []  # each entry after those that it names
-        known: dict[Any, int] = {}  # by the id of an object, or the name of an array
+        numbers: dict[Any, int] = {}  # by the id of an object, or the name of an array
 
         def number_of(value: Any) -> Any:
             """A plain value, or [number of its entry]."""
@@ -74,24 +74,24 @@ class StoredClasses:
                 return value.item()
             is_array = isinstance(value, np.ndarray)
             key = arrays.name_of(value) if is_array else id(value)
-            if key not in known:
+            if key not in numbers:
                 entry = [_ARRAY, key] if is_array else entry_of(value)
-                known[key] = len(table)
+                numbers[key] = len(table)
                 table.append(entry)
-            return [known[key]]
+            return [numbers[key]]
 
         def entry_of(value: Any) -> list:
             value = stored(value)
             name = type(value).__name__
             if self._kinds.get(name) is type(value):
-                return [name, [[key, number_of(each)] for key, each in _content(value)]]
+                return [name, [[key, number_of(part)] for key, part in _content(value)]]
             if isinstance(value, PurePath):
                 return [_PATH, value.as_posix()]
             if isinstance(value, (list, tuple)):
                 kind = _LIST if isinstance(value, list) else _TUPLE
-                return [kind, [number_of(each) for each in value]]
+                return [kind, [number_of(element) for element in value]]
             if isinstance(value, Mapping):
-                return [_DICT, [[number_of(key), number_of(each)] for key, each in value.items()]]
+                return [_DICT, [[number_of(key), number_of(element)] for key, element in value.items()]]
             raise TypeError(f"{type(value)} cannot be written")
 
         root = number_of(value)
@@ -99,15 +99,15 @@ class StoredClasses:
 
     def read(self, text: bytes, arrays: Mapping[str, np.ndarray]) -> Any:
         """The value of a table of `write`. Raises ValueError where it is something else."""
-        found: list[Any] = []
+        objects: list[Any] = []
 
-        def value_of(given: Any) -> Any:
-            return found[given[0]] if isinstance(given, list) else given
+        def value_of(reference: Any) -> Any:
+            return objects[reference[0]] if isinstance(reference, list) else reference
 
         try:
             table, root = json.loads(text)
             for kind, content in table:
-                found.append(self._made(kind, content, arrays, value_of))
+                objects.append(self._made(kind, content, arrays, value_of))
             return value_of(root)
         except (KeyError, IndexError, TypeError, AttributeError, RecursionError) as error:
             raise ValueError(f"a table of objects is damaged: {type(error).__name__} {error}") from error
@@ -119,12 +119,12 @@ class StoredClasses:
         if kind == _PATH:
             return Path(content)
         if kind in (_LIST, _TUPLE):
-            entries = [value_of(each) for each in content]
+            entries = [value_of(entry) for entry in content]
             return entries if kind == _LIST else tuple(entries)
         if kind == _DICT:
-            return {value_of(key): value_of(each) for key, each in content}
+            return {value_of(key): value_of(entry) for key, entry in content}
         made: Any = self._kinds[kind]
-        values = {key: value_of(each) for key, each in content}
+        values = {key: value_of(entry) for key, entry in content}
         if issubclass(made, tuple):
             return made(**_checked(made, values))
         instance = made.__new__(made)
@@ -137,7 +137,7 @@ class StoredClasses:
 def _content(value: Any) -> Iterable[tuple[str, Any]]:
     """What is stored of an object of a class, in order."""
     if is_dataclass(value):
-        names = [each.name for each in fields(value) if each.metadata != NOT_STORED]
+        names = [attribute.name for attribute in fields(value) if attribute.metadata != NOT_STORED]
     elif isinstance(value, tuple):
         names = list(value._fields)  # type: ignore[attr-defined]  # a NamedTuple
     else:
@@ -147,14 +147,14 @@ def _content(value: Any) -> Iterable[tuple[str, Any]]:
 
 def _defaults(kind: Any, values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of the fields of a dataclass that are not given."""
-    found = {}
-    for each in fields(kind):
-        if each.name not in values:
-            if each.default is MISSING and each.default_factory is MISSING:
-                raise ValueError(f"{kind.__name__} has no {each.name}")
-            made = each.default_factory
-            found[each.name] = each.default if made is MISSING else made()
-    return found
+    defaults = {}
+    for attribute in fields(kind):
+        if attribute.name not in values:
+            if attribute.default is MISSING and attribute.default_factory is MISSING:
+                raise ValueError(f"{kind.__name__} has no {attribute.name}")
+            made = attribute.default_factory
+            defaults[attribute.name] = attribute.default if made is MISSING else made()
+    return defaults
 
 
 def _checked(kind: Any, values: dict[str, Any]) -> dict[str, Any]:
@@ -175,7 +175,7 @@ def fits(value: Any, hint: Any) -> bool:
     """Whether a value has a declared type, with all that is in it. Arrays are sequences, too."""
     origin, of = get_origin(hint), get_args(hint)
     if origin in (Union, UnionType):
-        return any(fits(value, each) for each in of)
+        return any(fits(value, choice) for choice in of)
     if hint in (int, float):
         return isinstance(value, (int, hint)) and not isinstance(value, bool)
     if origin is None:
@@ -186,7 +186,7 @@ def fits(value: Any, hint: Any) -> bool:
     if not isinstance(value, origin):
         return False
     if isinstance(value, Mapping):
-        return all(fits(key, of[0]) and fits(each, of[1]) for key, each in value.items())
+        return all(fits(key, of[0]) and fits(element, of[1]) for key, element in value.items())
     if origin is tuple and of[-1] is not Ellipsis:
         return len(value) == len(of) and all(map(fits, value, of))
-    return all(fits(each, of[0]) for each in value)
+    return all(fits(element, of[0]) for element in value)

@@ -54,23 +54,23 @@ class FileBytes:
         return self._block[begin - self._begin : end - self._begin]
 
     def _read(self, begin: int, end: int) -> bytes:
-        found = bytearray()
+        content = bytearray()
         with reading(self._file), self._file.open("rb", buffering=0) as opened:
             opened.seek(begin)
-            while len(found) < end - begin and (more := opened.read(end - begin - len(found))):
-                found += more
-        if len(found) < end - begin:
+            while len(content) < end - begin and (more := opened.read(end - begin - len(content))):
+                content += more
+        if len(content) < end - begin:
             raise InputRefused("it became shorter while it was read", file=self._file)
-        return bytes(found)
+        return bytes(content)
 
     def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
         """The next position of a short text; -1 where there is none."""
         end = self._size if end is None else min(end, self._size)
         size = _BYTES_TO_FIND
         while begin < end:
-            found = self[begin : min(begin + size + len(text) - 1, end)].find(text)
-            if found >= 0:
-                return begin + found
+            position = self[begin : min(begin + size + len(text) - 1, end)].find(text)
+            if position >= 0:
+                return begin + position
             begin, size = begin + size, BYTES_AT_ONCE
         return -1
 

@@ -126,16 +126,16 @@ def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(N,) bool: the triangles of `first` (N, 3, 3) that an edge of one of `second` (M, 3, 3) passes, or
     whose own edge passes one of these; touching counts, up to rounding."""
     pairs = native_module().meeting_boxes(first, second)
-    found = np.zeros(len(first), bool)
+    is_met = np.zeros(len(first), bool)
     for start in range(0, len(pairs), 1 << 14):
         some = pairs[start : start + (1 << 14)]
         some = some[_straddles(first[some[:, 0]], second[some[:, 1]])]
         one, other = first[some[:, 0]], second[some[:, 1]]
-        begin = np.concatenate([each[:, i] for each in (other, one) for i, _ in _EDGES])
-        end = np.concatenate([each[:, j] for each in (other, one) for _, j in _EDGES])
+        begin = np.concatenate([corners[:, i] for corners in (other, one) for i, _ in _EDGES])
+        end = np.concatenate([corners[:, j] for corners in (other, one) for _, j in _EDGES])
         hit = segments_hit(begin, end, np.concatenate([one, one, one, other, other, other]))
-        found[some[hit.reshape(6, -1).any(axis=0), 0]] = True
-    return found
+        is_met[some[hit.reshape(6, -1).any(axis=0), 0]] = True
+    return is_met
 
 
 def _straddles(triangles: np.ndarray, others: np.ndarray) -> np.ndarray:

@@ -45,23 +45,23 @@ _WRITTEN = {
 
 def unit_of_column(name: str) -> str | None:
     """The unit of length that stands behind the name of a column in brackets; None where there is none."""
-    found = re.search(r"[\[(]\s*([^\])]*?)\s*[\])]\s*\"?\s*$", name.lower())
-    unit = None if found is None else _WRITTEN.get(found[1], found[1])
+    match = re.search(r"[\[(]\s*([^\])]*?)\s*[\])]\s*\"?\s*$", name.lower())
+    unit = None if match is None else _WRITTEN.get(match[1], match[1])
     return unit if unit in METERS else None
 
 
 def other_units(file: Path, columns: Mapping[str, str | None], model_unit: str = MODEL_UNIT) -> list[str]:
     """A warning for each unit that names of columns of a table say, and in which they are not read. columns:
     the unit of each by its name, None for that of the model."""
-    found: dict[tuple[str, str], list[str]] = {}
+    names_by_unit: dict[tuple[str, str], list[str]] = {}
     for name, unit in columns.items():
         said, read = unit_of_column(name), unit or model_unit
         if said is not None and said != ("ft" if read == "us-ft" else read):
-            found.setdefault((said, read), []).append(f"'{name.strip()}'")
+            names_by_unit.setdefault((said, read), []).append(f"'{name.strip()}'")
     return [
         f"{file}: the header says {said} for {number_list(names)}, but the unit is {read}: set units of this "
         "table or of the project, or correct the header"
-        for (said, read), names in found.items()
+        for (said, read), names in names_by_unit.items()
     ]
 
 

@@ -196,8 +196,8 @@ class Work:
             text = steps or self._text
             if self._works:
                 states = [work.state() for work in self._works]
-                share = max(share, sum(each for each, _ in states) / len(states))
-                text = next((text for each, text in states if text and each < 1.0), text)
+                share = max(share, sum(fraction for fraction, _ in states) / len(states))
+                text = next((text for fraction, text in states if text and fraction < 1.0), text)
             low, high = self._part
             share = self._start + (self._end - self._start) * share
             self._reported = max(self._reported, low + (high - low) * share)

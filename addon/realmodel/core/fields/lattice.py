@@ -70,9 +70,9 @@ class Lattice:
             start + step * np.arange(count)
             for start, step, count in zip(self.origin, self.spacing, self.counts, strict=True)
         )
-        found = np.empty((len(z), len(y), len(x), 3))
-        found[..., 0], found[..., 1], found[..., 2] = x, y[:, None], z[:, None, None]
-        return found.reshape(-1, 3)
+        nodes = np.empty((len(z), len(y), len(x), 3))
+        nodes[..., 0], nodes[..., 1], nodes[..., 2] = x, y[:, None], z[:, None, None]
+        return nodes.reshape(-1, 3)
 
     def tetrahedra(self) -> np.ndarray:
         """(6 cells, 4) int32 nodes, of positive volume, those of one cell together, cells in the order of
@@ -148,9 +148,9 @@ class ScalarField:
     def at(self, points: np.ndarray) -> np.ndarray:
         """(P,) f at points (P, 3); NaN outside the lattice."""
         if len(self.points):
-            lattice, values, own = self.native()
+            lattice, values, field_points = self.native()
             positions = np.ascontiguousarray(points, np.float64)
-            return native_module().field_at(lattice, values, own, positions)
+            return native_module().field_at(lattice, values, field_points, positions)
         nodes, weights = self.lattice.located(points)
         return (self.values[nodes] * weights).sum(axis=1)
 

@@ -83,13 +83,13 @@ def fields_with_contacts(
         off = (missed[1] > _BESIDE * np.ptp(made.values[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
         ends = made.halved(corners[off])
         if not len(ends):
-            found, _ = through(corners, weights, _ROUNDS)
-            ends = made.halved(corners[made.missed(made.fields_through(found, levels))])
+            values, _ = through(corners, weights, _ROUNDS)
+            ends = made.halved(corners[made.missed(made.fields_through(values, levels))])
         if not made.add_middles(ends):
             break
     corners, weights = made.tetrahedra()
-    found, _ = through(corners, weights, _ROUNDS)
-    joined = made.fields_through(found, levels)
+    values, _ = through(corners, weights, _ROUNDS)
+    joined = made.fields_through(values, levels)
     return joined if held is None else made.rising(joined, held)
 
 
@@ -108,8 +108,8 @@ class _Joined:
 
     def _numbers(self, field: int) -> np.ndarray:
         """Where the corners of a field, nodes and then middles, are in the array of all values."""
-        own = self.shared.same.size + np.flatnonzero(self.of_middles[field])
-        return np.concatenate([self.shared.same[field], own])
+        middles = self.shared.same.size + np.flatnonzero(self.of_middles[field])
+        return np.concatenate([self.shared.same[field], middles])
 
     def tetrahedra(self) -> tuple[np.ndarray, np.ndarray]:
         """(C, 4) the corners of the tetrahedra of the contacts, by their places in the array, and the weights
@@ -119,32 +119,32 @@ class _Joined:
         first = self.shared.has.argmax(axis=0)
         for number, field in enumerate(self.fields):
             numbers = self._numbers(number)
-            own, here = numbers[field.lattice.nodes :], np.flatnonzero(first == number)
+            of_middles, here = numbers[field.lattice.nodes :], np.flatnonzero(first == number)
             at = replace(
                 field,
                 values=self.values[numbers[: field.lattice.nodes]],
                 points=self.middles[self.of_middles[number]],
-                point_values=self.values[own],
+                point_values=self.values[of_middles],
             )
             lattice, values, points = at.native()
-            found = self.work.native(
+            tetrahedra = self.work.native(
                 native_module().tetrahedra_at, lattice, values, points, self.contacts[here]
             )
-            corners[here], weights[here] = numbers[found[0]], found[1]
+            corners[here], weights[here] = numbers[tetrahedra[0]], tetrahedra[1]
         return corners, weights
 
     def fields_through(self, values: np.ndarray, levels: np.ndarray) -> list:
         """The fields with these values, and contacts with levels (C,) as corners. A node that fields share is
         moved onto a level as the first of them has it."""
-        nodes, found = self.fields[0].lattice.nodes, []
+        nodes, moved_fields = self.fields[0].lattice.nodes, []
         moved = np.empty(self.shared.same.size)
         for number, field in enumerate(self.fields):
             numbers = self._numbers(number)
             has = self.shared.has[number]
             lattice, _, _ = field.native()
-            own = values[numbers[:nodes]]
-            moved[number * nodes :][:nodes] = native_module().moved_onto_levels(lattice, own, field.levels)
-            found.append(
+            nodal = values[numbers[:nodes]]
+            moved[number * nodes :][:nodes] = native_module().moved_onto_levels(lattice, nodal, field.levels)
+            moved_fields.append(
                 replace(
                     field,
                     values=moved[self.shared.same[number]],
@@ -152,34 +152,34 @@ class _Joined:
                     point_values=np.concatenate([values[numbers[nodes:]], levels[has]]),
                 )
             )
-        return found
+        return moved_fields
 
     def rising(self, fields: list, held: HeldData) -> list:
         """The fields with as few critical points as contacts, held data and nodes that they share allow."""
-        found, same, middles = [], self.shared.same, self.of_middles
+        rising_fields, same, middles = [], self.shared.same, self.of_middles
         is_shared = np.bincount(same.ravel(), minlength=same.size) > 1
         for number, field in enumerate(fields):
             lattice, values, points = field.native()
             fixed = np.ones(len(values) + len(field.points), np.uint8)
             fixed[: len(values)] = is_shared[same[number]]
-            own = middles[:, middles[number]]
-            fixed[len(values) :][: own.shape[1]] = own.sum(axis=0) > 1
+            has_middle = middles[:, middles[number]]
+            fixed[len(values) :][: has_middle.shape[1]] = has_middle.sum(axis=0) > 1
             solve = native_module().without_critical_points
             dips, bounds = (held.dips, held.normals), (held.bounds, held.signs, held.levels)
             values, of_points, left = self.work.native(solve, lattice, values, points, fixed, dips, bounds)
             values = native_module().moved_onto_levels(lattice, values, field.levels)
-            found.append(replace(field, values=values, point_values=of_points, critical_points=left))
-        return found
+            rising_fields.append(replace(field, values=values, point_values=of_points, critical_points=left))
+        return rising_fields
 
     def missed(self, fields: list) -> np.ndarray:
         """(C,) bool: the contacts that the level sets of some field do not pass through."""
-        found = np.zeros(len(self.contacts), bool)
+        is_missed = np.zeros(len(self.contacts), bool)
         for number, field in enumerate(fields):
             lattice, values, points = field.native()
             passed = self.work.native(native_module().points_between, lattice, values, points)
-            own = np.flatnonzero(self.shared.has[number])
-            found[own] |= passed[len(passed) - len(own) :] == 0
-        return found
+            numbers = np.flatnonzero(self.shared.has[number])
+            is_missed[numbers] |= passed[len(passed) - len(numbers) :] == 0
+        return is_missed
 
     def halved(self, tetrahedra: np.ndarray) -> np.ndarray:
         """(N, 2) the ends of the longest edges of tetrahedra (T, 4), each once, but of those that are
@@ -197,10 +197,10 @@ class _Joined:
         have = self.shared.have(ends.ravel(), self.of_middles).reshape(len(self.fields), -1, 2).all(axis=2)
         middles = np.concatenate([self.middles, self._positions(ends).mean(axis=1)])
         of_middles = np.concatenate([self.of_middles, have], axis=1)
-        for own in of_middles:  # of two in one place a field has the first
-            here = np.flatnonzero(own)
-            own[here] = False
-            own[here[np.unique(middles[here], axis=0, return_index=True)[1]]] = True
+        for has_middle in of_middles:  # of two in one place a field has the first
+            here = np.flatnonzero(has_middle)
+            has_middle[here] = False
+            has_middle[here[np.unique(middles[here], axis=0, return_index=True)[1]]] = True
         used = of_middles.any(axis=0)
         if used.sum() == len(self.middles):
             return False
@@ -218,10 +218,10 @@ class _Joined:
             [nodes // stride % count for stride, count in zip(lattice.strides, lattice.counts, strict=True)],
             -1,
         )
-        found = lattice.origin + np.multiply(lattice.spacing, steps)
+        positions = lattice.origin + np.multiply(lattice.spacing, steps)
         is_middle = corners >= self.shared.same.size
-        found[is_middle] = self.middles[corners[is_middle] - self.shared.same.size]
-        return found
+        positions[is_middle] = self.middles[corners[is_middle] - self.shared.same.size]
+        return positions
 
 
 def are_on(contacts: np.ndarray, level_set: Sheet) -> np.ndarray:
@@ -248,5 +248,5 @@ def level_solids(work: Work, field: ScalarField) -> list[LevelSolid]:
     """One for each level. No two of them cross in the lattice. Triangles turn counter-clockwise seen from
     where the field is greater. Raises native InputError."""
     lattice, values, points = field.native()
-    found = work.native(native_module().level_sets, lattice, values, points, field.levels)
-    return [LevelSolid(Sheet(vertices, triangles), count) for vertices, triangles, count in found]
+    solids = work.native(native_module().level_sets, lattice, values, points, field.levels)
+    return [LevelSolid(Sheet(vertices, triangles), count) for vertices, triangles, count in solids]

@@ -36,26 +36,26 @@ class SeriesField:
 
     def within(self, box: np.ndarray, compartments: Sequence[int]) -> SeriesField:
         """The fields of some compartments, by their numbers, around a box (2, 3)."""
-        some = {field: field.within(box) for field in {self.fields[each]: None for each in compartments}}
-        return replace(self, fields=[some[self.fields[each]] for each in compartments])
+        some = {field: field.within(box) for field in {self.fields[number]: None for number in compartments}}
+        return replace(self, fields=[some[self.fields[number]] for number in compartments])
 
     def distinct(self) -> dict[ScalarField, list[int]]:
         """The different fields, with the compartments of each."""
-        found: dict[ScalarField, list[int]] = {}
+        by_field: dict[ScalarField, list[int]] = {}
         for compartment, field in enumerate(self.fields):
-            found.setdefault(field, []).append(compartment)
-        return found
+            by_field.setdefault(field, []).append(compartment)
+        return by_field
 
     def excess(self, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
         """(N,) how much f is above the level of a surface at points (N, 3) in the compartments `where`; NaN
         outside the lattice, or where the compartment is below 0; infinite above all rock."""
-        found = np.full(len(points), np.nan)
+        excess = np.full(len(points), np.nan)
         for field, compartments in self.distinct().items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
-                found[here] = field.at(points[here]) - field.levels[surface - self.first]
-        found[points[:, 2] > self.top] = np.inf
-        return found
+                excess[here] = field.at(points[here]) - field.levels[surface - self.first]
+        excess[points[:, 2] > self.top] = np.inf
+        return excess
 
     def distances(self, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
         """(N,) about how far points are from a surface, positive on its younger side; else as `excess`."""

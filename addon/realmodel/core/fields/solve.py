@@ -54,7 +54,7 @@ class SlitData:
         return (
             count,
             sides,
-            *(np.ascontiguousarray(each, np.float64).ravel() for each in arrays),
+            *(np.ascontiguousarray(array, np.float64).ravel() for array in arrays),
             np.ascontiguousarray(self.normals, np.float64),
             np.ascontiguousarray(self.nodes, np.float64).ravel(),
             self.same.ravel(),
@@ -156,7 +156,7 @@ def solve_field(
     of_lattice = (lattice.origin, lattice.spacing, lattice.counts)
     with refused_as(lambda error: _refusal(error, data)) as native:
         with work.phase(0.0, 0.95, "fitting the field", has_steps=True):
-            found = work.native(
+            solution = work.native(
                 native.solve_field,
                 of_lattice,
                 (len(data.names), data.contacts, data.contact_surfaces, data.error),
@@ -166,7 +166,7 @@ def solve_field(
                 None if data.slits is None else data.slits.native(),
                 None if draw is None else draw.native(data),
             )
-        every = found["values"].reshape(-1, lattice.nodes)
+        every = solution["values"].reshape(-1, lattice.nodes)
         with work.phase(0.95, 1.0, "critical points of the field"):
             points = [
                 _NO_POINTS
@@ -174,26 +174,26 @@ def solve_field(
                 else lattice.positions()[work.native(native.critical_points, of_lattice, values)[0]]
                 for values in every
             ]
-    (axes, ratios), order, *_ = found["kind"]
+    (axes, ratios), order, *_ = solution["kind"]
     first = SolvedField(
         lattice=lattice,
         values=every[0],
-        levels=found["levels"],
+        levels=solution["levels"],
         anisotropy=Anisotropy(tuple(map(tuple, axes)), tuple(ratios)),
         order=order,
-        centers=found["centers"],
-        misfit=found["misfit"],
-        dips_missed=found["dips_missed"],
-        bounds_missed=found["bounds_missed"],
+        centers=solution["centers"],
+        misfit=solution["misfit"],
+        dips_missed=solution["dips_missed"],
+        bounds_missed=solution["bounds_missed"],
         critical_points=points[0],
-        kind=found["kind"],
-        contradicted=found["contradicted"],
-        plain_shares=found["plain_shares"],
+        kind=solution["kind"],
+        contradicted=solution["contradicted"],
+        plain_shares=solution["plain_shares"],
     )
     others = zip(every[1:], points[1:], strict=True)
     return replace(
         first,
-        others=tuple(replace(first, values=values, critical_points=own) for values, own in others),
+        others=tuple(replace(first, values=values, critical_points=places) for values, places in others),
     )
 
 

@@ -94,7 +94,7 @@ def choose(task: Task) -> tuple[Trial, str]:
         return _trial(task, Candidate("plane", {})), why
     native_module().mean_spacing(task.points)  # refuses points that contradict others, by their own numbers
     points = np.ascontiguousarray(task.points[np.sort(np.unique(task.points, axis=0, return_index=True)[1])])
-    able = [each for each in (_OF_FEW if len(places) < _FEW else _CANDIDATES) if _is_able(each, task)]
+    able = [entry for entry in (_OF_FEW if len(places) < _FEW else _CANDIDATES) if _is_able(entry, task)]
     if len(able) == 1:
         return _trial(task, able[0]), "there are few points, and it uses dips"
     trials = [_trial(task, candidate) for candidate in able]
@@ -133,7 +133,7 @@ def _is_able(candidate: Candidate, task: Task) -> bool:
 
 def _trial(task: Task, candidate: Candidate) -> Trial:
     settings = checked_options(candidate.method, candidate.options)
-    known = None
+    structure = None
     if "kriging" in candidate.method:
-        known = from_neighbours.structure(replace(task, settings=settings))
-    return Trial(candidate, settings, known)
+        structure = from_neighbours.structure(replace(task, settings=settings))
+    return Trial(candidate, settings, structure)

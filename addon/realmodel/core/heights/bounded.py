@@ -55,21 +55,21 @@ def interpolated(method: str, task: Task) -> Result:
     free = replace(task, bounds=None)
     if bounds is None or not len(bounds) or not METHODS[method].is_constrained:
         return run_method(method, free)
-    given = consistent(task.points, bounds)
+    limits = consistent(task.points, bounds)
     if METHODS[method].on_mesh:
-        kept = np.ones(len(bounds), bool)
-        kept[given.left_out] = False
-        result = run_method(method, replace(task, bounds=bounds.some(kept)))
-        return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, given.left_out)])
+        mask = np.ones(len(bounds), bool)
+        mask[limits.left_out] = False
+        result = run_method(method, replace(task, bounds=bounds.some(mask)))
+        return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, limits.left_out)])
     run = runner(method, task)
     give = MethodHeights(replace(free, left_out=False), run, METHODS[method].leaves_one_out)
-    active = active_bounds(task.work, task.points, given, give)
+    active = active_bounds(task.work, task.points, limits, give)
     result = run(replace(free, points=np.vstack([task.points, active])))
     if task.left_out:  # bounds are not left out
         count = len(task.points)
         variance = None if result.variance is None else result.variance[:count]
         result = replace(result, z=result.z[:count], variance=variance)
-    return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, given.left_out)])
+    return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, limits.left_out)])
 
 
 @dataclass(frozen=True)
@@ -108,12 +108,12 @@ def holds_bounds(method: str) -> bool:
 def runner(method: str, task: Task) -> Callable[[Task], Result]:
     """The method with what it finds from the points alone, and from whether there are bounds."""
     if "variogram" in task.settings:
-        known = from_neighbours.structure(task)
-        return lambda each: from_neighbours.krige(each, known)
+        structure = from_neighbours.structure(task)
+        return lambda other_task: from_neighbours.krige(other_task, structure)
     if method == "spline":
         spacing = native_module().mean_spacing(task.points)
-        return lambda each: from_neighbours.thin_plate(each, spacing)
-    return lambda each: run_method(method, each)
+        return lambda other_task: from_neighbours.thin_plate(other_task, spacing)
+    return lambda other_task: run_method(method, other_task)
 
 
 def consistent(points: np.ndarray, bounds: Bounds) -> Consistent:
@@ -126,21 +126,21 @@ def consistent(points: np.ndarray, bounds: Bounds) -> Consistent:
     tolerance = TOLERANCE * float(np.ptp(np.concatenate([points[:, 2], height])))
     every = np.vstack([bounds.places[:, :2], points[:, :2]]) + 0.0
     _, place = np.unique(every, axis=0, return_inverse=True)
-    own, of_points = np.split(place.reshape(-1), [len(bounds)])
+    of_bounds, of_points = np.split(place.reshape(-1), [len(bounds)])
     chosen = np.full(len(every), np.nan)  # of the point at each place, or one for bounds that contradict
     chosen[of_points] = points[:, 2]
     has_point = np.isfinite(chosen)
-    lower, upper = _extremes(height, is_lower, own, np.ones(len(bounds), bool), len(every))
+    lower, upper = _extremes(height, is_lower, of_bounds, np.ones(len(bounds), bool), len(every))
     for at in np.flatnonzero(~has_point & (lower > upper + tolerance)):
-        chosen[at] = _least_contradicted(height[own == at], is_lower[own == at])
+        chosen[at] = _least_contradicted(height[of_bounds == at], is_lower[of_bounds == at])
     with np.errstate(invalid="ignore"):
-        away = np.where(is_lower, height - chosen[own], chosen[own] - height)
+        away = np.where(is_lower, height - chosen[of_bounds], chosen[of_bounds] - height)
         wrong = away > tolerance  # not where nothing is chosen, NaN
-    lower, upper = _extremes(height, is_lower, own, ~wrong, len(every))
-    kept = np.flatnonzero(~wrong & ~has_point[own])
-    _, first = np.unique(own[kept], return_index=True)
-    numbers = kept[np.sort(first)]
-    low, high = lower[own[numbers]], upper[own[numbers]]
+    lower, upper = _extremes(height, is_lower, of_bounds, ~wrong, len(every))
+    usable = np.flatnonzero(~wrong & ~has_point[of_bounds])
+    _, first = np.unique(of_bounds[usable], return_index=True)
+    numbers = usable[np.sort(first)]
+    low, high = lower[of_bounds[numbers]], upper[of_bounds[numbers]]
     crossed = low > high  # by less than the tolerance
     low, high = np.where(crossed, high, low), np.where(crossed, high, high)
     positions = np.ascontiguousarray(bounds.places[numbers, :2])
@@ -148,12 +148,12 @@ def consistent(points: np.ndarray, bounds: Bounds) -> Consistent:
 
 
 def _extremes(
-    height: np.ndarray, is_lower: np.ndarray, own: np.ndarray, kept: np.ndarray, count: int
+    height: np.ndarray, is_lower: np.ndarray, of_bounds: np.ndarray, usable: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """The highest lower and the lowest upper bound at each of so many places."""
     lower, upper = np.full(count, -np.inf), np.full(count, np.inf)
-    np.maximum.at(lower, own[kept & is_lower], height[kept & is_lower])
-    np.minimum.at(upper, own[kept & ~is_lower], height[kept & ~is_lower])
+    np.maximum.at(lower, of_bounds[usable & is_lower], height[usable & is_lower])
+    np.minimum.at(upper, of_bounds[usable & ~is_lower], height[usable & ~is_lower])
     return lower, upper
 
 

@@ -45,17 +45,17 @@ class Alike:
 
     def data(self, own: np.ndarray, own_dips: Dips | None) -> tuple[list[np.ndarray], list[Dips | None]]:
         """The points and dips of each surface, with those of the Task."""
-        points = [without_mis_ties(each)[0] if len(each) else each for each in self.points]
-        dips = [None if each is None or not len(each) else each.merged()[0] for each in self.dips]
+        points = [without_mis_ties(part)[0] if len(part) else part for part in self.points]
+        dips = [None if slopes is None or not len(slopes) else slopes.merged()[0] for slopes in self.dips]
         points[self.own], dips[self.own] = own, own_dips
         return points, dips
 
     def fitted(self, of: tuple, arrays: Sequence[np.ndarray], fit: Callable[[], Fit]) -> Fit:
         """What `fit` finds in arrays, by settings `of`; found once."""
         key = hashlib.sha256(repr(of).encode())
-        for each in arrays:
-            key.update(repr(each.shape).encode())
-            key.update(np.ascontiguousarray(each))
+        for array in arrays:
+            key.update(repr(array.shape).encode())
+            key.update(np.ascontiguousarray(array))
         if key.digest() not in self.known:
             self.known[key.digest()] = fit()
         return self.known[key.digest()]
@@ -104,19 +104,19 @@ class JointData:
     ) -> JointData:
         order = [first, *(number for number in range(len(points)) if number != first)]
         parts = [points[number] - np.array([0, 0, offsets[number]]) for number in order]
-        given = [(number, dips[number]) for number in order]
-        known = [(number, each) for number, each in given if each is not None]
+        pairs = [(number, dips[number]) for number in order]
+        entries = [(number, slopes) for number, slopes in pairs if slopes is not None]
         return cls(
             np.concatenate([np.empty((0, 3)), *parts]),
-            np.repeat(order, [len(each) for each in parts]).astype(np.int32),
-            Dips.joined([each for _, each in known]) if known else None,
-            np.repeat([n for n, _ in known], [len(each) for _, each in known]).astype(np.int32),
+            np.repeat(order, [len(part) for part in parts]).astype(np.int32),
+            Dips.joined([slopes for _, slopes in entries]) if entries else None,
+            np.repeat([n for n, _ in entries], [len(slopes) for _, slopes in entries]).astype(np.int32),
         )
 
 
 def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
     """(P, 3) the points of all sheets around their offsets, the mean of those at one position."""
-    every = np.concatenate([each - np.array([0, 0, c]) for each, c in zip(points, offsets, strict=True)])
+    every = np.concatenate([part - np.array([0, 0, c]) for part, c in zip(points, offsets, strict=True)])
     return mean_heights(every + 0.0)
 
 
@@ -125,8 +125,8 @@ def likeliest(
 ) -> dict | None:
     """What native fit_sheets finds in the data of all sheets, in their order; None where they are
     too few. run, settings: of the Task. spacing: of points and dips."""
-    along, given = settings["anisotropy"], settings["variogram"]
-    variogram = None if given is None else Variogram.from_settings(given).native(along)
+    along, preset = settings["anisotropy"], settings["variogram"]
+    variogram = None if preset is None else Variogram.from_settings(preset).native(along)
     error = companions.error
     drift, anisotropy = settings.get("drift", "constant"), along and (along["ratio"], along["azimuth"])
     dips, of_dips, count = data.dips, data.of_dips, len(companions.points)
@@ -166,14 +166,14 @@ def plain_model(offsets: np.ndarray, variogram: Variogram) -> SheetModel:
 def first_offsets(work: Work, points: Sequence[np.ndarray]) -> np.ndarray:
     """(S,) what each sheet lies above that with the most points: the median of how far its points lie above
     those of the sheet next to it whose offset is known, nearby; 0 for sheets without points."""
-    count = [len(each) for each in points]
+    count = [len(part) for part in points]
     base = int(np.argmax(count))
     offsets = np.full(len(points), np.nan)
     offsets[base] = 0.0
     rest = [number for number in range(len(points)) if count[number] and number != base]
-    for number in sorted(rest, key=lambda each: (abs(each - base), each)):
-        known = np.flatnonzero(np.isfinite(offsets))
-        nearest = min(known.tolist(), key=lambda each: (abs(each - number), each))
+    for number in sorted(rest, key=lambda other: (abs(other - base), other)):
+        placed = np.flatnonzero(np.isfinite(offsets))
+        nearest = min(placed.tolist(), key=lambda other: (abs(other - number), other))
         others = pooled([points[nearest]], offsets[[nearest]])
         plan = np.ascontiguousarray(points[number][:, :2])
         z = work.native(native_module().idw, others, plan, neighborhood=_NEAR)

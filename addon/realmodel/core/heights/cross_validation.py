@@ -93,8 +93,8 @@ class CrossValidation(ShortRepr):
         """The share of errors below twice their deviation: about 0.95 where variances are honest."""
         if self.standardized is None:
             return None
-        known = np.isfinite(self.standardized)
-        return float((np.abs(self.standardized[known]) <= 2).mean()) if known.any() else None
+        finite = np.isfinite(self.standardized)
+        return float((np.abs(self.standardized[finite]) <= 2).mean()) if finite.any() else None
 
 
 @keyword_only
@@ -131,7 +131,7 @@ def cross_validate(
     points = checked_points(points)
     settings = method_settings(method, neighbours, options)
     threads = check_threads(threads)
-    known = None if dips is None else dips.checked()
+    slopes = None if dips is None else dips.checked()
     if isinstance(folds, bool) or not hasattr(folds, "__index__") or int(folds) < 2:
         raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
     if (mesh is None) == METHODS[method].on_mesh:
@@ -144,8 +144,8 @@ def cross_validate(
 
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
-            found = validate(method, Task(work, points, nodes, settings, triangles, dips=known), int(folds))
-            return found.in_order_of(points)
+            result = validate(method, Task(work, points, nodes, settings, triangles, dips=slopes), int(folds))
+            return result.in_order_of(points)
 
     return run(task, progress, cancel, threads=threads)
 
@@ -170,8 +170,8 @@ def validate(method: str, task: Task, folds: int) -> CrossValidation:
     if variance is not None:
         with np.errstate(divide="ignore", invalid="ignore"):
             standardized = np.where(errors == 0, 0.0, errors / np.sqrt(variance))
-    known = np.isfinite(errors)
-    rmse = float(np.sqrt(np.mean(errors[known] ** 2))) if known.any() else float("nan")
+    finite = np.isfinite(errors)
+    rmse = float(np.sqrt(np.mean(errors[finite] ** 2))) if finite.any() else float("nan")
     return CrossValidation(points, z, errors, standardized, rmse, method, variogram)
 
 
@@ -184,17 +184,17 @@ def distinct_points(points: np.ndarray) -> np.ndarray:
 
 def _in_folds(method: str, task: Task, left_out: list[np.ndarray]) -> Result:
     """The heights of points that are left out together. left_out: (P,) bool, which at a time."""
-    points, known, variogram = task.points, None, None
+    points, kriging, variogram = task.points, None, None
     z, variance = np.empty(len(points)), np.full(len(points), np.nan)
     if METHODS[method].leaves_one_out and METHODS[method].may_be_kriged:
-        known = structure(task)
-        variogram = known.variogram
+        kriging = structure(task)
+        variogram = kriging.variogram
     for fold, out in enumerate(left_out):
         task.work.step(fold / len(left_out))
         places, others = np.ascontiguousarray(points[out, :2]), np.ascontiguousarray(points[~out])
-        if known is not None:
-            found = krige(replace(task, points=others, nodes=places), known)
-            z[out], variance[out] = found.z, found.variance
+        if kriging is not None:
+            result = krige(replace(task, points=others, nodes=places), kriging)
+            z[out], variance[out] = result.z, result.variance
         elif task.triangles is None:
             z[out] = heights(method, replace(task, points=others, nodes=places)).z
         else:

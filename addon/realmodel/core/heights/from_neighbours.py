@@ -109,9 +109,9 @@ def structure(task: Task) -> KrigingStructure:
     if task.companions is not None:
         return _joint_structure(task, task.companions)
     settings = task.settings
-    asked, given = settings["neighbours"], settings["variogram"]
-    if given is not None:
-        variogram = Variogram.from_settings(given)
+    asked, preset = settings["neighbours"], settings["variogram"]
+    if preset is not None:
+        variogram = Variogram.from_settings(preset)
         neighbours = DEFAULT_NEIGHBOURS if asked is None else asked
         return KrigingStructure(variogram, neighbours, dip_use(task, variogram, neighbours))
     anisotropy = settings["anisotropy"]
@@ -143,8 +143,8 @@ def _missing(
     settings: dict, variogram: Variogram, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
 ) -> str | None:
     """missing_data of the data of surfaces that vary alike: each has a mean, and they have one slope."""
-    terms = len([each for each in points if len(each)]) + _TERMS[settings.get("drift", "constant")]
-    count = sum(len(each) for each in dips if each is not None)
+    terms = len([part for part in points if len(part)]) + _TERMS[settings.get("drift", "constant")]
+    count = sum(len(slopes) for slopes in dips if slopes is not None)
     return missing_data(variogram, sum(map(len, points)), count, terms)
 
 
@@ -157,8 +157,8 @@ def _regional_plane(task: Task) -> RegionalPlane | None:
     if (beside := task.companions or task.alike) is not None:
         points, dips = beside.data(task.points, task.dips)
     each_way = [
-        None if slopes is None else (slopes.gradients, _spacing(own, slopes) if len(own) else 1.0)
-        for own, slopes in zip(points, dips, strict=True)
+        None if slopes is None else (slopes.gradients, _spacing(part, slopes) if len(part) else 1.0)
+        for part, slopes in zip(points, dips, strict=True)
     ]
     return plane_of(points, each_way)
 
@@ -170,8 +170,8 @@ def _around(task: Task, plane: RegionalPlane | None) -> Task:
         return task
 
     def above(beside: Beside) -> Beside:
-        points = [plane.taken_from(each) for each in beside.points]
-        return replace(beside, points=points, dips=[plane.slopes_from(each) for each in beside.dips])
+        points = [plane.taken_from(part) for part in beside.points]
+        return replace(beside, points=points, dips=[plane.slopes_from(slopes) for slopes in beside.dips])
 
     bounds = task.bounds and replace(task.bounds, places=plane.taken_from(task.bounds.places))
     return replace(
@@ -189,11 +189,11 @@ def around_its_plane(task: Task) -> Task:
     return _around(task, _regional_plane(task))
 
 
-def _around_plane(task: Task, known: KrigingStructure) -> Result:
+def _around_plane(task: Task, kriging: KrigingStructure) -> Result:
     """krige around the plane of a structure."""
-    plane = known.plane
+    plane = kriging.plane
     above = _around(task, plane)
-    result = krige(above, replace(known, plane=None))
+    result = krige(above, replace(kriging, plane=None))
     if plane is None:
         return result
     places = task.points[:, :2] if task.left_out else task.nodes
@@ -202,10 +202,10 @@ def _around_plane(task: Task, known: KrigingStructure) -> Result:
         _honor_exactly(task, above.points, result.z, z)
     if task.companions is not None or (variance is None and not task.left_out):
         return replace(result, z=z)
-    away = np.column_stack([_from_neighbours(task, known, axis) for axis in np.eye(2)])
+    away = np.column_stack([_from_neighbours(task, kriging, axis) for axis in np.eye(2)])
     if task.left_out:
         without = [_regional_plane(_without(task, number)) for number in range(len(task.points))]
-        slopes = np.array([np.zeros(2) if each is None else each.slope for each in without])
+        slopes = np.array([np.zeros(2) if other is None else other.slope for other in without])
         z = z + dot(slopes - plane.slope, away)
     return replace(result, z=z, variance=None if variance is None else variance + plane.variance(away))
 
@@ -214,15 +214,15 @@ def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndar
     """Gives nodes on points the points' heights where these were met above the plane, without rounding."""
     points, nodes = task.points, task.nodes
     near = np.flatnonzero(np.isin(nodes[:, 0], points[:, 0]))
-    own = np.flatnonzero(np.isin(points[:, 0], nodes[near, 0]))
-    number = {tuple(place): at for place, at in zip(points[own, :2].tolist(), own.tolist(), strict=True)}
+    rows = np.flatnonzero(np.isin(points[:, 0], nodes[near, 0]))
+    number = {tuple(place): at for place, at in zip(points[rows, :2].tolist(), rows.tolist(), strict=True)}
     for node in near.tolist():
         at = number.get(tuple(nodes[node].tolist()))
         if at is not None and kriged[node] == above[at, 2]:
             z[node] = points[at, 2]
 
 
-def _from_neighbours(task: Task, known: KrigingStructure, axis: np.ndarray) -> np.ndarray:
+def _from_neighbours(task: Task, kriging: KrigingStructure, axis: np.ndarray) -> np.ndarray:
     """(N,) how far nodes, or points left out, lie along an axis from where their neighbours put them: so much
     of an error of the slope is theirs."""
     steps = RegionalPlane(axis, np.zeros((2, 2)), task.points[0, :2])
@@ -231,7 +231,7 @@ def _from_neighbours(task: Task, known: KrigingStructure, axis: np.ndarray) -> n
     flat = replace(task, points=data, dips=dips, settings={**task.settings, "drift": "constant"}, bounds=None)
     return (
         steps.at(task.points[:, :2] if task.left_out else task.nodes)
-        - krige(flat, replace(known, plane=None)).z
+        - krige(flat, replace(kriging, plane=None)).z
     )
 
 
@@ -271,17 +271,17 @@ def _fitted_alike(task: Task, along: tuple[float, float] | None) -> dict | None:
     points, dips = task.alike.data(task.points, task.dips)
     drift = task.settings.get("drift", "constant")
     surfaces = [
-        (own, None if slopes is None else (slopes.positions, slopes.gradients, _spacing(own, slopes), 0))
-        for own, slopes in zip(points, dips, strict=True)
+        (part, None if slopes is None else (slopes.positions, slopes.gradients, _spacing(part, slopes), 0))
+        for part, slopes in zip(points, dips, strict=True)
     ]
-    arrays = [*points, *(each for _, of_dips in surfaces if of_dips is not None for each in of_dips[:2])]
+    arrays = [*points, *(array for _, of_dips in surfaces if of_dips is not None for array in of_dips[:2])]
     error = task.alike.error
-    found = task.alike.fitted(
+    fits = task.alike.fitted(
         (along, drift, error, [of_dips is not None for _, of_dips in surfaces]),
         arrays,
         lambda: task.run(native_module().fit_alike, surfaces, along, drift, error),
     )
-    return found[task.alike.own] if found else None
+    return fits[task.alike.own] if fits else None
 
 
 def _joint_structure(task: Task, companions: Companions) -> KrigingStructure:
@@ -294,24 +294,24 @@ def _joint_structure(task: Task, companions: Companions) -> KrigingStructure:
     count = len(data.points) + 2 * len(data.of_dips)
     if companions.model is not None:
         return _of_model(alone, *companions.model, points, count)
-    given = task.settings["variogram"]
+    preset = task.settings["variogram"]
 
-    def with_missing(found: KrigingStructure) -> KrigingStructure:
-        if given is not None:
-            return found
-        return replace(found, missing=_missing(task.settings, found.variogram, points, dips))
+    def with_missing(kriging: KrigingStructure) -> KrigingStructure:
+        if preset is not None:
+            return kriging
+        return replace(kriging, missing=_missing(task.settings, kriging.variogram, points, dips))
 
     spacing = 1.0 if alone.dips is None else _spacing(pooled(points, np.zeros(len(points))), alone.dips)
     fitted = likeliest(alone.run, alone.settings, companions, data, spacing)
     if fitted is not None and fitted["sill"] > 0:  # data in one plane leave nothing
         variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)
-        variogram = variogram if given is None else Variogram.from_settings(given)
-        model = likeliest_model(fitted, variogram, int(np.argmax([len(each) for each in points])))
-        found = _of_model(alone, variogram, model, points, count)
+        variogram = variogram if preset is None else Variogram.from_settings(preset)
+        model = likeliest_model(fitted, variogram, int(np.argmax([len(part) for part in points])))
+        joint = _of_model(alone, variogram, model, points, count)
         if fitted["points"] == len(data.points):
-            return with_missing(found)
-        offsets = mean_offsets(alone, found, points, dips)
-        return with_missing(replace(found, sheets=replace(model, offsets=offsets)))
+            return with_missing(joint)
+        offsets = mean_offsets(alone, joint, points, dips)
+        return with_missing(replace(joint, sheets=replace(model, offsets=offsets)))
     offsets = first_offsets(task.work, points)
     variogram = structure(replace(alone, points=pooled(points, offsets))).variogram
     return with_missing(_of_model(alone, variogram, plain_model(offsets, variogram), points, count))
@@ -326,17 +326,17 @@ def _of_model(
     neighbours = (
         (_neighbours_of_fitted(together) if fitted else DEFAULT_NEIGHBOURS) if asked is None else asked
     )
-    found = KrigingStructure(variogram, neighbours, dip_use(together, variogram, neighbours), sheets=model)
-    return _of_all_sheets(found, task, len(points), count)
+    kriging = KrigingStructure(variogram, neighbours, dip_use(together, variogram, neighbours), sheets=model)
+    return _of_all_sheets(kriging, task, len(points), count)
 
 
-def _of_all_sheets(found: KrigingStructure, task: Task, sheets: int, count: int) -> KrigingStructure:
+def _of_all_sheets(kriging: KrigingStructure, task: Task, sheets: int, count: int) -> KrigingStructure:
     """With as many neighbors as sheets that are kriged together have. count: of all data."""
     if task.settings["neighbours"] is not None:
-        return found
-    neighbours = 0 if count <= MOST_AT_ONCE else min(found.neighbours * sheets, MOST_NEIGHBOURS)
-    use = replace(found.dips, neighbours=min(found.dips.neighbours * sheets, neighbours))
-    return replace(found, neighbours=neighbours, dips=use)
+        return kriging
+    neighbours = 0 if count <= MOST_AT_ONCE else min(kriging.neighbours * sheets, MOST_NEIGHBOURS)
+    use = replace(kriging.dips, neighbours=min(kriging.dips.neighbours * sheets, neighbours))
+    return replace(kriging, neighbours=neighbours, dips=use)
 
 
 def mean_offsets(
@@ -345,54 +345,54 @@ def mean_offsets(
     """(S,) what each sheet lies above that with the most points: by how much it differs from what the others
     let expect at its points, on average; those with the smaller variance count more."""
     assert known.sheets is not None
-    offsets, base = known.sheets.offsets.copy(), int(np.argmax([len(each) for each in points]))
-    for number, own in enumerate(points):
-        if number == base or not len(own):
+    offsets, base = known.sheets.offsets.copy(), int(np.argmax([len(part) for part in points]))
+    for number, sheet_points in enumerate(points):
+        if number == base or not len(sheet_points):
             continue
-        others = [each if n != number else each[:0] for n, each in enumerate(points)]
+        others = [part if n != number else part[:0] for n, part in enumerate(points)]
         data = JointData.of(others, dips, offsets, number)
-        plan = np.ascontiguousarray(own[:, :2])
+        plan = np.ascontiguousarray(sheet_points[:, :2])
         arguments = _joint_arguments(task, known, data, number)
         z, variance, _ = task.run(native_module().krige, data.points, plan, *arguments)
         weight = 1 / np.maximum(variance, 1e-6 * known.variogram.sill)
-        offsets[number] = np.average(own[:, 2] - z, weights=weight)
+        offsets[number] = np.average(sheet_points[:, 2] - z, weights=weight)
     return offsets
 
 
-def _joint_arguments(task: Task, known: KrigingStructure, data: JointData, sheet: int) -> tuple:
+def _joint_arguments(task: Task, kriging: KrigingStructure, data: JointData, sheet: int) -> tuple:
     settings = task.settings
-    assert known.sheets is not None
+    assert kriging.sheets is not None
     return (
-        known.variogram.native(settings["anisotropy"]),
-        _neighborhood(settings, known.neighbours),
+        kriging.variogram.native(settings["anisotropy"]),
+        _neighborhood(settings, kriging.neighbours),
         settings.get("drift", "constant"),
-        known.dips.native(data.dips),
-        known.sheets.native(data.sheets, data.of_dips, sheet, settings["anisotropy"]),
+        kriging.dips.native(data.dips),
+        kriging.sheets.native(data.sheets, data.of_dips, sheet, settings["anisotropy"]),
     )
 
 
 def _cokrige(
-    task: Task, companions: Companions, known: KrigingStructure
+    task: Task, companions: Companions, kriging: KrigingStructure
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Heights of one sheet at the nodes, or at its own points, each left out; their variances, and how many
     have no point within the radius."""
-    assert known.sheets is not None
+    assert kriging.sheets is not None
     points, dips = companions.data(task.points, task.dips)
-    own, offset = companions.own, known.sheets.offsets[companions.own]
-    data = JointData.of(points, dips, known.sheets.offsets, own)
-    arguments = _joint_arguments(task, known, data, own)
+    sheet, offset = companions.own, kriging.sheets.offsets[companions.own]
+    data = JointData.of(points, dips, kriging.sheets.offsets, sheet)
+    arguments = _joint_arguments(task, kriging, data, sheet)
     native = native_module()
     if task.left_out:
         z, variance, alone = task.run(native.krige_left_out, data.points, *arguments)
         return z[: len(task.points)] + offset, variance[: len(task.points)], alone
     z, variance, alone = task.run(native.krige, data.points, _free_nodes(task), *arguments)
-    return z + offset, _of_surface(task, variance, known), alone
+    return z + offset, _of_surface(task, variance, kriging), alone
 
 
-def _of_surface(task: Task, variance: np.ndarray, known: KrigingStructure) -> np.ndarray:
+def _of_surface(task: Task, variance: np.ndarray, kriging: KrigingStructure) -> np.ndarray:
     """(N,) variances of the surface, of those of points at nodes: where points have errors, the nugget is
     theirs, and no part of the surface."""
-    return np.maximum(variance - known.variogram.nugget, 0.0) if task.error > 0 else variance
+    return np.maximum(variance - kriging.variogram.nugget, 0.0) if task.error > 0 else variance
 
 
 def _free_nodes(task: Task) -> np.ndarray:
@@ -439,12 +439,12 @@ def krige(task: Task, known: KrigingStructure | None = None) -> Result:
     return _result(z, variance, known, warnings)
 
 
-def _result(z: np.ndarray, variance: np.ndarray, known: KrigingStructure, warnings: list[str]) -> Result:
+def _result(z: np.ndarray, variance: np.ndarray, kriging: KrigingStructure, warnings: list[str]) -> Result:
     """The variances only where the data show the variogram that they follow from."""
-    if known.missing is not None:
-        warnings = [*warnings, known.missing]
-    shown = variance if known.missing is None else None
-    return Result(z, shown, known.variogram, warnings, neighbours=known.neighbours)
+    if kriging.missing is not None:
+        warnings = [*warnings, kriging.missing]
+    shown = variance if kriging.missing is None else None
+    return Result(z, shown, kriging.variogram, warnings, neighbours=kriging.neighbours)
 
 
 def without_near_points(alone: int, nodes: int) -> list[str]:

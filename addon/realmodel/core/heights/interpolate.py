@@ -58,10 +58,10 @@ def interpolate(
     """
     settings = method_settings(method, neighbours, options)
     if points is not None or METHODS[method].needs_points(settings):
-        given = checked_points(points)
-        given = given[ascending(*given.T)]  # the order of rows must not decide a result
+        data = checked_points(points)
+        data = data[ascending(*data.T)]  # the order of rows must not decide a result
     else:
-        given = np.empty((0, 3))
+        data = np.empty((0, 3))
     nodes = checked_nodes(nodes)
     threads = check_threads(threads)
     triangles = checked_triangles(triangles, len(nodes))
@@ -76,7 +76,7 @@ def interpolate(
 
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            whole = Task(work, given, nodes, settings, triangles, dips=dips, bounds=bounds)
+            whole = Task(work, data, nodes, settings, triangles, dips=dips, bounds=bounds)
             return heights(method, replace(whole, true_thickness=true_thickness))
 
     return run(task, progress, cancel, threads=threads)
@@ -124,13 +124,13 @@ def checked_nodes(nodes: ArrayLike) -> np.ndarray:
     return nodes
 
 
-def _array(values: ArrayLike | None, columns: int, item: str) -> np.ndarray:
+def _array(values: ArrayLike | None, columns: int, name: str) -> np.ndarray:
     try:
         array = np.asarray(values, np.float64)
     except (TypeError, ValueError) as error:
-        raise InputRefused("not an array of numbers", item=item) from error
+        raise InputRefused("not an array of numbers", item=name) from error
     if array.ndim != 2 or array.shape[1] != columns:
-        raise InputRefused(f"must be an array (N, {columns}), not {array.shape}", item=item)
+        raise InputRefused(f"must be an array (N, {columns}), not {array.shape}", item=name)
     return array
 
 

@@ -51,5 +51,5 @@ def in_turn(places: np.ndarray, most: int) -> list[np.ndarray]:
 
 def _distances(plan: np.ndarray, at: np.ndarray, rank: int) -> np.ndarray:
     points = np.ascontiguousarray(plan)
-    found = native_module().nearest_points(points, np.ascontiguousarray(at), rank, execution=on_threads(0))
-    return found[1][:, rank - 1]
+    nearest = native_module().nearest_points(points, np.ascontiguousarray(at), rank, execution=on_threads(0))
+    return nearest[1][:, rank - 1]

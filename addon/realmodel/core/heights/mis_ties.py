@@ -23,14 +23,14 @@ def without_mis_ties(points: np.ndarray) -> tuple[np.ndarray, str | None]:
     tolerated = (apart > 0) & (apart <= most)
     if not tolerated.any():
         return points, None
-    keeps, found = ~tolerated[place], np.array(points)
+    keeps, merged = ~tolerated[place], np.array(points)
     keeps[first[tolerated]] = True
-    found[first[tolerated], 2] = _means(points, place)[tolerated]
+    merged[first[tolerated], 2] = _means(points, place)[tolerated]
     worst = int(np.where(tolerated, apart, 0.0).argmax())  # of equals the first from the west
     count = int(tolerated.sum())
     places = "1 position has" if count == 1 else f"{count} positions have"
     most_apart = f"up to {apart[worst]:.6g} apart (at {place_text(points[first[worst], :2])})"
-    return found[keeps], f"{places} several heights, {most_apart}: their mean is used"
+    return merged[keeps], f"{places} several heights, {most_apart}: their mean is used"
 
 
 def shuffled(places: np.ndarray) -> np.ndarray:

@@ -35,8 +35,8 @@ def _of_series(task: Task, companions: Companions) -> Result:
     asked = replace(task, settings=checked_options("kriging", {}))
     # those of the likeliest model are of thicknesses far from the data; here they are of those at the data
     offsets = mean_offsets(replace(asked, companions=None), structure(asked), points, dips)
-    known = [each for each in dips if each is not None]
-    of_all = Dips.joined(known).merged()[0] if known else None
+    dips_of_sheets = [slopes for slopes in dips if slopes is not None]
+    of_all = Dips.joined(dips_of_sheets).merged()[0] if dips_of_sheets else None
     alone = replace(task, companions=None)
     free = {**task.settings, **dict.fromkeys(BOUNDS)}
     common = replace(alone, points=pooled(points, offsets), dips=of_all, bounds=None, settings=free)
@@ -45,13 +45,13 @@ def _of_series(task: Task, companions: Companions) -> Result:
     for option in BOUNDS:
         if settings[option] is not None:
             settings[option] = heights_of(task, settings[option], task.nodes, option) - base
-    own, bounds = _above(task, task.points, base), task.bounds
+    points_above, bounds = _above(task, task.points, base), task.bounds
     if bounds is not None:
         places = _above(task, bounds.places, base)
         bounds = replace(bounds, places=places)
     if task.dips is not None:  # these slopes are common
         alone = replace(alone, dips=replace(task.dips, gradients=np.zeros_like(task.dips.gradients)))
-    result = _smoothest(replace(alone, points=own, bounds=bounds, settings=settings))
+    result = _smoothest(replace(alone, points=points_above, bounds=bounds, settings=settings))
     result.z = base + result.z
     return result
 
@@ -60,25 +60,25 @@ def _above(task: Task, points: np.ndarray, base: np.ndarray) -> np.ndarray:
     """(P, 3) points with their heights above heights at the nodes; beyond the mesh, where they do not count,
     they stay."""
     under = heights_of(task, base, np.ascontiguousarray(points[:, :2]), "base")
-    found = points.copy()
-    found[:, 2] -= np.nan_to_num(under)
-    return found
+    points_above = points.copy()
+    points_above[:, 2] -= np.nan_to_num(under)
+    return points_above
 
 
 def _smoothest(task: Task) -> Result:
     assert task.triangles is not None
     settings = task.settings
-    given = {}
+    limits = {}
     for option, argument in _ARGUMENTS.items():
         if settings[option] is not None:
-            given[argument] = heights_of(task, settings[option], task.nodes, option)
-    if "equal" in given:
-        given["equal"] = np.where(border_nodes(task.triangles, len(task.nodes)), given["equal"], np.nan)
+            limits[argument] = heights_of(task, settings[option], task.nodes, option)
+    if "equal" in limits:
+        limits["equal"] = np.where(border_nodes(task.triangles, len(task.nodes)), limits["equal"], np.nan)
     for lower, upper in (("above", "below"), ("above", "border"), ("border", "below")):
-        _refuse_crossed(task, given, lower, upper)
+        _refuse_crossed(task, limits, lower, upper)
     dips = None if task.dips is None else (task.dips.positions, task.dips.gradients)
-    equal, least, most = (given.get(bound, np.zeros(0)) for bound in ("equal", "least", "most"))
-    found = task.run(
+    equal, least, most = (limits.get(bound, np.zeros(0)) for bound in ("equal", "least", "most"))
+    output = task.run(
         native_module().dsi,
         task.points,
         task.nodes,
@@ -89,36 +89,36 @@ def _smoothest(task: Task) -> Result:
         None if task.bounds is None else (task.bounds.lower, task.bounds.upper),
     )
     warnings = []
-    if found["outside"]:
+    if output["outside"]:
         warnings.append(
-            f"{found['outside']} of {len(task.points)} points lie outside the mesh and are ignored; "
+            f"{output['outside']} of {len(task.points)} points lie outside the mesh and are ignored; "
             "other methods use them"
         )
-    if found["dips_outside"]:
-        warnings.append(f"left out: {counted(found['dips_outside'], 'dip')} outside the mesh")
+    if output["dips_outside"]:
+        warnings.append(f"left out: {counted(output['dips_outside'], 'dip')} outside the mesh")
     beyond = [*_beyond(task, "above"), *_beyond(task, "below")]
     warnings += beyond
-    if found["missed"] and not beyond:
+    if output["missed"] and not beyond:
         warnings.append(
-            f"{found['missed']} of {len(task.points)} points cannot all be honored on this mesh, the "
-            f"largest misfit is {found['misfit']:.3g}: use a shorter edge_length, or give points a weight"
+            f"{output['missed']} of {len(task.points)} points cannot all be honored on this mesh, the "
+            f"largest misfit is {output['misfit']:.3g}: use a shorter edge_length, or give points a weight"
         )
-    if found["dips_missed"]:
+    if output["dips_missed"]:
         warnings.append(
             "some dips cannot be honored on this mesh beside the points in their triangles: use a shorter "
             "edge_length, or give points a weight"
         )
-    if found["bounds_missed"]:
+    if output["bounds_missed"]:
         warnings.append(
-            f"{found['bounds_missed']} bounds cannot be kept on this mesh beside its points: use a shorter "
+            f"{output['bounds_missed']} bounds cannot be kept on this mesh beside its points: use a shorter "
             "edge_length"
         )
-    if not found["converged"]:
+    if not output["converged"]:
         warnings.append(
             "the solver stopped before the heights were as smooth as possible: triangles of the mesh differ "
             "much in size or shape; a more even mesh helps"
         )
-    return Result(found["z"], warnings=warnings)
+    return Result(output["z"], warnings=warnings)
 
 
 def within_bounds(task: Task, z: np.ndarray, at_border: np.ndarray) -> np.ndarray:
@@ -142,9 +142,9 @@ def _called(reference: Reference) -> str:
     return f"{reference:g}" if isinstance(reference, float) else "the given heights"
 
 
-def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
+def _refuse_crossed(task: Task, limits: dict, lower: str, upper: str) -> None:
     """Refuses bounds that contradict: no surface lies between them."""
-    low, high = (given.get(_ARGUMENTS[option]) for option in (lower, upper))
+    low, high = (limits.get(_ARGUMENTS[option]) for option in (lower, upper))
     if low is None or high is None:
         return
     gap = np.where(np.isfinite(low) & np.isfinite(high), low - high, 0.0)

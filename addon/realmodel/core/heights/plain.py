@@ -117,27 +117,27 @@ def fitted_plane(points: np.ndarray, settings: dict) -> Plane:
         for piece in in_pieces(points):
             yield piece[:, :2] - center, piece[:, 2] - base
 
-    found = _directed(center, base, settings, lambda: (plan for plan, _ in pieces()))
+    fit = _directed(center, base, settings, lambda: (plan for plan, _ in pieces()))
 
     def left(number: int, shares: list[float]) -> Iterator[tuple[np.ndarray, list[np.ndarray]]]:
         """The remainder of a term, piece by piece, and the terms before it."""
         for plan, _ in pieces():
-            done = found.terms(plan)
-            yield _without(found.plain_term(plan, number), shares, done), done
+            done = fit.terms(plan)
+            yield _without(fit.plain_term(plan, number), shares, done), done
 
-    for number in range(1 + len(found.azimuths)):
+    for number in range(1 + len(fit.azimuths)):
         shares: list[float] = []
         for before in range(number):
             shares.append(_total(done[before] * term for term, done in left(number, shares)))
         size = math.sqrt(_total(np.square(term) for term, _ in left(number, shares)))
-        longer = replace(found, steps=(*found.steps, (tuple(shares), size)))
-        coefficient = _total(longer.terms(plan)[number] * found.residuals(plan, z) for plan, z in pieces())
-        found = replace(longer, coefficients=(*found.coefficients, coefficient))
-    free = len(points) - len(found.steps)
+        longer = replace(fit, steps=(*fit.steps, (tuple(shares), size)))
+        coefficient = _total(longer.terms(plan)[number] * fit.residuals(plan, z) for plan, z in pieces())
+        fit = replace(longer, coefficients=(*fit.coefficients, coefficient))
+    free = len(points) - len(fit.steps)
     if free <= 0:
-        return found
-    squares = (np.square(found.residuals(plan, z)) for plan, z in pieces())
-    return replace(found, square=_total(squares) / free)
+        return fit
+    squares = (np.square(fit.residuals(plan, z)) for plan, z in pieces())
+    return replace(fit, square=_total(squares) / free)
 
 
 def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) -> Plane:
@@ -149,10 +149,10 @@ def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) 
     xx, xy, yy = (_total(plan[:, a] * plan[:, b] for plan in plans()) for a, b in ((0, 0), (0, 1), (1, 1)))
     azimuth = 0.5 * atan2(2 * xy, yy - xx)  # in which they spread most
     azimuths = azimuth, azimuth + math.pi / 2
-    spread = [math.sqrt(_total(np.square(_along(plan, each)) for plan in plans())) for each in azimuths]
+    spread = [math.sqrt(_total(np.square(_along(plan, angle)) for plan in plans())) for angle in azimuths]
     shown = (
-        each
-        for each, size in zip(azimuths, spread, strict=True)
+        angle
+        for angle, size in zip(azimuths, spread, strict=True)
         if size > max(_IN_LINE * spread[0], _IN_ONE_PLACE)
     )
     return Plane(center, base, 0.0, 0.0, tuple(shown), spread[0])
@@ -167,19 +167,19 @@ def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     if thickness is not None:
         return Result(lifted(task, below, thickness))
     under = heights_of(task, task.settings["to"], np.ascontiguousarray(task.points[:, :2]), "to")
-    known = np.isfinite(under)
-    if not known.any():
+    finite = np.isfinite(under)
+    if not finite.any():
         raise InputRefused(
             "none of its points lies where the surface that it is parallel to has a height", item="points"
         )
-    points = measured(task, task.points[known], under[known])
+    points = measured(task, task.points[finite], under[finite])
     method = task.settings["thickness_method"]
     shown = run_method(method, replace(task, points=points, settings=checked_options(method, {})))
     warnings = list(shown.warnings)
-    if not known.all():
-        left_out = int((~known).sum())
+    if not finite.all():
+        left_out = int((~finite).sum())
         warnings.append(
-            f"{left_out} of {len(known)} points lie where the surface that it is parallel to has no height: "
+            f"{left_out} of {len(finite)} points lie where the surface that it is parallel to has no height: "
             "they are left out"
         )
     z, variance = lifted(task, below, shown.z), shown.variance

@@ -58,18 +58,18 @@ def plane_of(
     each surface the slopes (D, 2), and the length over which one counts as a difference of heights."""
     squares, products, total, free = np.zeros(3), np.zeros(2), 0.0, -2
     center = None
-    for own, given in zip(points, dips, strict=True):
-        if len(own):
-            mean = sum(piece.sum(axis=0) for piece in in_pieces(own)) / len(own)
+    for part, dip_data in zip(points, dips, strict=True):
+        if len(part):
+            mean = sum(piece.sum(axis=0) for piece in in_pieces(part)) / len(part)
             center = mean[:2] if center is None else center
-            free += len(own) - 1
-            for piece in in_pieces(own):
+            free += len(part) - 1
+            for piece in in_pieces(part):
                 x, y, z = (piece - mean).T
                 squares += [(x * x).sum(), (x * y).sum(), (y * y).sum()]
                 products += [(x * z).sum(), (y * z).sum()]
                 total += float((z * z).sum())
-        if given is not None:
-            slopes, length = given
+        if dip_data is not None:
+            slopes, length = dip_data
             free += 2 * len(slopes)
             squares += np.array([1, 0, 1]) * len(slopes) * length**2
             products += length**2 * slopes.sum(axis=0)
@@ -89,9 +89,9 @@ def plane_of(
     varies = (gain - 2 * error) / float(spread.sum() or 1.0)
     if not varies > 0:
         return None
-    kept = np.where(shown, along * varies / (along * varies + error), 0.0)
-    slope = axes.T[:, 0] * (kept * fitted)[0] + axes.T[:, 1] * (kept * fitted)[1]
-    variances = np.where(shown, error * kept / along, varies)
+    shrinkage = np.where(shown, along * varies / (along * varies + error), 0.0)
+    slope = axes.T[:, 0] * (shrinkage * fitted)[0] + axes.T[:, 1] * (shrinkage * fitted)[1]
+    variances = np.where(shown, error * shrinkage / along, varies)
     c2, s2, cs = c * c, s * s, c * s
     p, q = variances.tolist()
     covariance = np.array([[c2 * p + s2 * q, cs * (p - q)], [cs * (p - q), s2 * p + c2 * q]])

@@ -144,8 +144,8 @@ def _fitted(points: np.ndarray, start: np.ndarray, grid: RegularGrid) -> Regular
 
 def _added(sums: list) -> np.ndarray:
     total = sums[0]
-    for each in sums[1:]:
-        total = total + each
+    for term in sums[1:]:
+        total = total + term
     return total
 
 
@@ -180,8 +180,8 @@ def _fitted_axes(ii: float, ij: float, jj: float, *products: np.ndarray) -> np.n
 def _axes(points: np.ndarray) -> np.ndarray:
     """The shortest steps between points, and the shortest across them: [[x, y], [x, y]]."""
     numbers = np.linspace(0, len(points) - 1, min(len(points), _SAMPLE)).astype(np.int64)
-    found = _steps(points, numbers)
-    steps = [step for number in numbers.tolist() if (step := found[number]) is not None]
+    pairs = _steps(points, numbers)
+    steps = [step for number in numbers.tolist() if (step := pairs[number]) is not None]
     if not steps:
         raise InputRefused(_ONE_ROW, item="points")
     # The commonest, by the lengths of both: cells with a missing neighbour show longer steps.
@@ -197,16 +197,16 @@ def _steps(points: np.ndarray, numbers: np.ndarray) -> dict[int, tuple[np.ndarra
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     size = high - low
     side = max(np.sqrt(_NEAR * size[0] * size[1] / len(points)), _NEAR * size.max() / len(points)) or 1.0
-    found, waiting = {}, [(number, points[number, :2]) for number in numbers.tolist()]
+    pairs, waiting = {}, [(number, points[number, :2]) for number in numbers.tolist()]
     while waiting:
         near = _in_cells_around(points, np.array([place for _, place in waiting]), low, side) - start
         unsure = []
         for number, place in waiting:
-            found[number], reach = _step(near, place - start, side)
+            pairs[number], reach = _step(near, place - start, side)
             if reach > _SURE * side and side < size.max():
                 unsure.append((number, place))  # there may be nearer points elsewhere
         waiting, side = unsure, 4 * side
-    return found
+    return pairs
 
 
 def _in_cells_around(points: np.ndarray, places: np.ndarray, low: np.ndarray, side: float) -> np.ndarray:
@@ -219,12 +219,12 @@ def _in_cells_around(points: np.ndarray, places: np.ndarray, low: np.ndarray, si
     wanted = (cells(places)[:, None, :] + around).reshape(-1, 2)
     rows = int(wanted[:, 1].max()) + 2  # more than there are, so that each cell has a number of its own
     wanted = np.unique(wanted[:, 0] * rows + wanted[:, 1])
-    found = []
+    parts = []
     for piece in in_pieces(points):
         plan = piece[:, :2]
         column, row = cells(plan).T
-        found.append(plan[np.isin(column * rows + np.minimum(row, rows - 1), wanted)])
-    return np.concatenate(found)
+        parts.append(plan[np.isin(column * rows + np.minimum(row, rows - 1), wanted)])
+    return np.concatenate(parts)
 
 
 def _step(

@@ -57,8 +57,8 @@ def _triangulated(task: Task, reference: Reference, option: str) -> Sheet:
             raise InputRefused(
                 f"'{option}' is known at the nodes only, and they have no triangles", item=option
             )
-        known = np.isfinite(heights)[task.triangles].all(axis=1)
+        finite = np.isfinite(heights)[task.triangles].all(axis=1)
         vertices = np.column_stack([task.nodes, heights])
-        return Sheet(vertices, np.ascontiguousarray(task.triangles[known]))
+        return Sheet(vertices, np.ascontiguousarray(task.triangles[finite]))
     assert not isinstance(reference, float)
     return Sheet(*reference)

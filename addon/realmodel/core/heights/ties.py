@@ -50,18 +50,18 @@ def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
     mean counts; those that contradict one another do not."""
     points, _ = without_mis_ties(points)
     wrong = contradictions(points) if len(points) else np.zeros(0, bool)
-    kept = first_at_each_place(points[~wrong])
-    places, lower, upper, heights = kept[:, :2], kept[:, 2], kept[:, 2], [points[:, 2]]
-    margins = np.zeros(len(kept))
+    contacts = first_at_each_place(points[~wrong])
+    places, lower, upper, heights = contacts[:, :2], contacts[:, 2], contacts[:, 2], [points[:, 2]]
+    margins = np.zeros(len(contacts))
     if bounds is not None and len(bounds):
-        given = consistent(kept, bounds)
-        places = np.concatenate([places, given.positions])
+        limits = consistent(contacts, bounds)
+        places = np.concatenate([places, limits.positions])
         heights.append(bounds.places[:, 2])
         margin = np.minimum(
-            BESIDE_BOUND * float(np.ptp(np.concatenate(heights))), (given.upper - given.lower) / 3
+            BESIDE_BOUND * float(np.ptp(np.concatenate(heights))), (limits.upper - limits.lower) / 3
         )
-        lower = np.concatenate([lower, given.lower + margin])
-        upper = np.concatenate([upper, given.upper - margin])
+        lower = np.concatenate([lower, limits.lower + margin])
+        upper = np.concatenate([upper, limits.upper - margin])
         margins = np.concatenate([margins, margin])
     every = np.concatenate(heights)
     tolerance = 0.0
@@ -69,7 +69,7 @@ def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
         digits = float(np.spacing(np.abs(every).max()))
         tolerance = max(_TOLERANCE * float(np.ptp(every)), _DIGITS * digits)
     places = np.ascontiguousarray(places)
-    return TieData(places, lower, upper, margins, len(kept), int(wrong.sum()), tolerance)
+    return TieData(places, lower, upper, margins, len(contacts), int(wrong.sum()), tolerance)
 
 
 def corrected(
@@ -104,17 +104,17 @@ def correction_of_sheets(
         [shuffled(data.places[: data.contacts]), np.arange(data.contacts, len(data.places))]
     )
     asked = (data.places[order], data.lower[order], data.upper[order], of_sheet[order])
-    found = work.native(native_module().ties, nodes, triangles, sheets, asked, data.tolerance)
+    solution = work.native(native_module().ties, nodes, triangles, sheets, asked, data.tolerance)
     faults = sheets[1].shape[1]
-    count = len(found["positions"])
+    count = len(solution["positions"])
     terms = Terms(
-        found["radii"],
-        found["positions"].reshape(-1, 2),
-        found["sided"].reshape(count, faults),
-        found["coefficients"].reshape(len(found["radii"]), count),
+        solution["radii"],
+        solution["positions"].reshape(-1, 2),
+        solution["sided"].reshape(count, faults),
+        solution["coefficients"].reshape(len(solution["radii"]), count),
     )
     after = np.empty(len(order))
-    after[order] = found["after"]
+    after[order] = solution["after"]
     return terms, after
 
 
@@ -148,11 +148,11 @@ def missed_warnings(data: TieData, after: np.ndarray) -> list[str]:
     missed = off > _MISSED * data.tolerance
     for which, name in ((slice(None, data.contacts), "points"), (slice(data.contacts, None), "bounds")):
         if missed[which].any():
-            own = off[which]
-            worst = int(own.argmax())
+            misfits = off[which]
+            worst = int(misfits.argmax())
             place = place_text(data.places[which][worst].tolist())
             warnings.append(
-                f"{int(missed[which].sum())} of {len(own)} {name} cannot be honored beside others: the "
-                f"surface misses one at {place} by {own[worst]:.4g}"
+                f"{int(missed[which].sum())} of {len(misfits)} {name} cannot be honored beside others: the "
+                f"surface misses one at {place} by {misfits[worst]:.4g}"
             )
     return warnings

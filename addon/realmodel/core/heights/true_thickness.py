@@ -41,15 +41,15 @@ class Base:
     def heights(self, places: np.ndarray, own: np.ndarray, thickness: np.ndarray) -> np.ndarray:
         """(N,) heights at places (N, 2) so far above it, or below where the thickness (N,) is negative; NaN
         where `own`, its heights there, are."""
-        found = own.copy()
+        heights = own.copy()
         for sign in (1.0, -1.0):
             some = sign * thickness > 0
             if some.any():
                 corners = self.corners if sign > 0 else self.corners * np.array([1.0, 1.0, sign])
                 asked = (np.ascontiguousarray(places[some]), sign * own[some], sign * thickness[some])
                 z = self.work.native(native_module().heights_at_distance, corners, *asked)
-                found[some] = sign * z
-        return found
+                heights[some] = sign * z
+        return heights
 
 
 def lifted(task: Task, below: np.ndarray, thickness: np.ndarray | float) -> np.ndarray:
@@ -66,13 +66,13 @@ def lifted(task: Task, below: np.ndarray, thickness: np.ndarray | float) -> np.n
 def measured(task: Task, points: np.ndarray, under: np.ndarray) -> np.ndarray:
     """(P, 3) points with their thicknesses above the surface `to` of a task in the place of z. under: (P,)
     its heights there."""
-    found = points.copy()
-    found[:, 2] -= under
+    measured_points = points.copy()
+    measured_points[:, 2] -= under
     sheet = _base_sheet(task)
     if sheet is not None:
-        base = Base(task.work, sheet, float(np.abs(found[:, 2]).max(initial=0.0)))
-        found[:, 2] = base.thickness(np.ascontiguousarray(points), under)
-    return found
+        base = Base(task.work, sheet, float(np.abs(measured_points[:, 2]).max(initial=0.0)))
+        measured_points[:, 2] = base.thickness(np.ascontiguousarray(points), under)
+    return measured_points
 
 
 def stretched(below: np.ndarray, z: np.ndarray, thickness: np.ndarray) -> np.ndarray:
@@ -96,8 +96,8 @@ def _continuation(work: Work, sheet: Sheet, width: float) -> np.ndarray:
     if not loops or not width > 0:
         return np.empty((0, 3, 3))
     sectors = [_sectors(vertices[:, :2], loop) for loop in loops]
-    ends = np.concatenate([each for each, _ in sectors])
-    ways = np.concatenate([each for _, each in sectors])
+    ends = np.concatenate([part for part, _ in sectors])
+    ways = np.concatenate([part for _, part in sectors])
     begin, rise = vertices[ends], (_slopes(vertices, triangles)[ends] * ways).sum(axis=2)
     widths = _free_widths(work, sheet, begin[:, :, :2], ways, width)
     by = np.concatenate([ways, rise[:, :, None]], axis=2) * widths[:, None, None]
@@ -118,14 +118,14 @@ def _slopes(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     weighted by areas in plan, so that narrow ones do not say much."""
     corners = vertices[triangles]
     area = np.bincount(triangles.reshape(-1), np.repeat(_doubled_areas(corners), 3), len(vertices))
-    found = np.zeros((len(vertices), 2))
+    slopes = np.zeros((len(vertices), 2))
     for k in range(3):
         z = corners[:, k, 2] - corners[:, 0, 2]
         across = corners[:, (k + 1) % 3, :2] - corners[:, (k + 2) % 3, :2]
         for axis, part in enumerate((z * across[:, 1], -z * across[:, 0])):
-            found[:, axis] += np.bincount(triangles.reshape(-1), np.repeat(part, 3), len(vertices))
+            slopes[:, axis] += np.bincount(triangles.reshape(-1), np.repeat(part, 3), len(vertices))
     with np.errstate(invalid="ignore"):
-        return np.where(area[:, None] > 0, found / area[:, None], 0.0)
+        return np.where(area[:, None] > 0, slopes / area[:, None], 0.0)
 
 
 def _sectors(plan: np.ndarray, loop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -138,7 +138,7 @@ def _sectors(plan: np.ndarray, loop: np.ndarray) -> tuple[np.ndarray, np.ndarray
     middle = before + way
     turn = before[:, 0] * way[:, 1] - before[:, 1] * way[:, 0]
     sticks_out = (turn > _STRAIGHT) & (norm(middle) > _STRAIGHT)
-    corner, around = loop[sticks_out], [each[sticks_out] for each in (before, middle, way)]
+    corner, around = loop[sticks_out], [vectors[sticks_out] for vectors in (before, middle, way)]
     around[1] = around[1] / norm(around[1])[:, None]
     for at in (2, 1):  # quarters
         between = around[at - 1] + around[at]

@@ -67,14 +67,14 @@ def contours(model: ModelData, interval: float | None = None, ground: Ground | N
         return []
     low, high = min(z.min() for z in heights), max(z.max() for z in heights)
     step = checked_interval(interval, float(low), float(high))
-    found = []
+    contour_lines = []
     for name, corners, vertices, solid in shapes:
         if len(corners):
             own_low, own_high = corners[:, :, 2].min(), corners[:, :, 2].max()
             for k in range(math.ceil(own_low / step), math.floor(own_high / step) + 1):
                 lines = _lines(corners, vertices, solid, k * step)
-                found += [Contour(name, k * step, line) for line in lines]
-    return found
+                contour_lines += [Contour(name, k * step, line) for line in lines]
+    return contour_lines
 
 
 def _lines(corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: float) -> list[np.ndarray]:

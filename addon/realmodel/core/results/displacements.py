@@ -62,7 +62,7 @@ def displacements(model: ModelData) -> list[Displacement]:
 
 
 def _displacements(work: Work, model: ModelData) -> list[Displacement]:
-    found = []
+    measurements = []
     for number, fault in enumerate(model.structures.faults):
         for entry in model.rock_inputs:
             structure = entry.structure
@@ -74,5 +74,5 @@ def _displacements(work: Work, model: ModelData) -> list[Displacement]:
                 if len(measured[0]):
                     name = entry.rock.surfaces[k].name
                     fitted = _fitted(structure, k, at)
-                    found.append(Displacement(fault.name, entry.rock.name, name, *measured, *fitted))
-    return found
+                    measurements.append(Displacement(fault.name, entry.rock.name, name, *measured, *fitted))
+    return measurements

@@ -114,15 +114,15 @@ def _first_surfaces(model: ModelData) -> np.ndarray:
 
 def _cut_at(model: ModelData, k: int) -> list[tuple[int, np.ndarray]]:
     """For each rock mass whose surface k cuts older rock: its global index, and the older blocks."""
-    found = []
+    cuts = []
     first_surfaces = _first_surfaces(model)
     for number, (rock, first) in enumerate(zip(model.project.rocks, first_surfaces[:-1], strict=True)):
         if k < len(rock.surfaces) and RULES[rock.surfaces[k].rule].cuts:
             older = [b for b, block in enumerate(model.blocks) if first <= block.surface < first + k]
             older += _bodies_before(model, number, k)
             if older:
-                found.append((int(first + k), np.array(older)))
-    return found
+                cuts.append((int(first + k), np.array(older)))
+    return cuts
 
 
 def _bodies_before(model: ModelData, rock: int, k: int) -> list[int]:
@@ -142,8 +142,8 @@ def _stage_volumes(work: Work, model: ModelData, m: int, until: tuple[int, int] 
     structures = model.structures
     is_joined = not model.is_stack or any(entry.reaches_base for entry in model.rock_inputs)
     bodies = _with_bodies(structures, until or (m + 1, 0)) if is_joined else None
-    kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
-    first_kept = np.cumsum([0, *kept])
+    counts = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
+    first_kept = np.cumsum([0, *counts])
     volumes = np.full(len(model.blocks), np.nan)
     if bodies is None:
         volume = work.native(
@@ -156,13 +156,13 @@ def _stage_volumes(work: Work, model: ModelData, m: int, until: tuple[int, int] 
         with work.part(*work.stretch):
             volume = build_joined(work, inputs, bodies, "blocks").volumes
     for b, block in enumerate(model.blocks):
-        own = block.surface - first[block.rock]
+        surface = block.surface - first[block.rock]
         body = block.surface - first[-1]
         if body >= 0:
             if bodies is not None and bodies.has_block(body):
                 volumes[b] = volume[first_kept[-1] + body]
-        elif own < kept[block.rock]:
-            volumes[b] = volume[first_kept[block.rock] + own]
+        elif surface < counts[block.rock]:
+            volumes[b] = volume[first_kept[block.rock] + surface]
     return volumes
 
 

@@ -71,15 +71,15 @@ def _areas(
     edge."""
     of = np.stack([model.cell_block[cell], model.cell_compartment[cell]], axis=1)
     keys, number = np.unique(of, axis=0, return_inverse=True)
-    found = []
+    areas = []
     for k, (block, compartment) in enumerate(keys.tolist()):
-        own = number.ravel() == k
-        first, second, _ = net_edges(start[own], end[own])
+        mask = number.ravel() == k
+        first, second, _ = net_edges(start[mask], end[mask])
         polygons = polygons_of(plan, first, second)
         if polygons:
             rings = [[plan[ring] for ring in polygon] for polygon in polygons]
-            found.append(MapArea(block, compartment, rings))
-    return found
+            areas.append(MapArea(block, compartment, rings))
+    return areas
 
 
 def ground_of(model: ModelData) -> Ground:
@@ -92,8 +92,8 @@ def ground_of(model: ModelData) -> Ground:
     edges = _divided(plan, start, end, np.repeat(cell[is_ground], 3))
     try:
         if _is_plain(plan, *edges[:2]):
-            own = triangles[is_ground]
-            return Ground(model.vertices[own], vertex[own], own, _areas(model, plan, *edges))
+            ground = triangles[is_ground]
+            return Ground(model.vertices[ground], vertex[ground], ground, _areas(model, plan, *edges))
     except BuildFailed:  # an area no wider than rounding is inverted
         pass
     return _highest(model, triangles[rises], vertex, plan, cell[rises])
@@ -103,8 +103,8 @@ def _plan_vertices(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Positions in plan that differ, and the number of each vertex's. Those that are some roundings apart are
     one: a line would zigzag between them, which no polygon may."""
     plan, vertex = np.unique(places + 0.0, axis=0, return_inverse=True)  # no -0.0
-    kept, number = np.unique(near_positions(plan), return_inverse=True)
-    return plan[kept], number.ravel()[vertex.ravel()]
+    representatives, number = np.unique(near_positions(plan), return_inverse=True)
+    return plan[representatives], number.ravel()[vertex.ravel()]
 
 
 def _outside(model: ModelData) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -164,7 +164,7 @@ def _vertices_on_edges(
     begins = [np.searchsorted(plan[sorted_by[k], k], low[:, k]) for k in (0, 1)]
     ends = [np.searchsorted(plan[sorted_by[k], k], high[:, k], "right") for k in (0, 1)]
     axis = (ends[1] - begins[1] < ends[0] - begins[0]).astype(np.int64)
-    found = {}
+    vertices = {}
     for edge, (a, b, k) in enumerate(zip(start.tolist(), end.tolist(), axis.tolist(), strict=True)):
         beside = sorted_by[k][begins[k][edge] : ends[k][edge]]
         if len(beside) < 3:
@@ -174,8 +174,8 @@ def _vertices_on_edges(
         along, across = dot(to, way) / length, (to[:, 0] * way[1] - to[:, 1] * way[0]) / length
         on = (np.abs(across) <= near) & (along > 0) & (along < length) & (beside != a) & (beside != b)
         if on.any():
-            found[a, b] = beside[on][np.argsort(along[on], kind="stable")].tolist()
-    return found
+            vertices[a, b] = beside[on][np.argsort(along[on], kind="stable")].tolist()
+    return vertices
 
 
 def _is_plain(plan: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:
@@ -208,17 +208,17 @@ def _highest(
         refined = intersect((flat, vertex[triangles].astype(np.int32)), (other, np.array([[0, 1, 2]])))
     except InputRefused as error:
         raise BuildFailed(f"the top of the model cannot be laid flat: {error}") from error
-    own = np.flatnonzero(refined.source == 0)
-    source, pieces = refined.source_triangle[own], refined.triangles[own].astype(np.int64)
+    numbers = np.flatnonzero(refined.source == 0)
+    source, pieces = refined.source_triangle[numbers], refined.triangles[numbers].astype(np.int64)
     plane = model.vertices[triangles[source]]
     heights = _heights(plane, refined.vertices[pieces][:, :, :2])
     place = np.sort(pieces, axis=1)
     order = np.lexsort((heights.mean(axis=1), *place.T))
     is_last = np.append((np.diff(place[order], axis=0) != 0).any(axis=1), True)
-    own = np.sort(order[is_last])
-    own = own[_rises(refined.vertices[pieces[own]])]
-    pieces, source = pieces[own], source[own]
-    corners = np.concatenate([refined.vertices[pieces][:, :, :2], heights[own][:, :, None]], axis=2)
+    highest = np.sort(order[is_last])
+    highest = highest[_rises(refined.vertices[pieces[highest]])]
+    pieces, source = pieces[highest], source[highest]
+    corners = np.concatenate([refined.vertices[pieces][:, :, :2], heights[highest][:, :, None]], axis=2)
     start, end = _edges(pieces)
     areas = _areas(model, refined.vertices[:, :2] + 0.0, start, end, np.repeat(cell[source], 3))
     return Ground(corners, pieces, triangles[source], areas)
@@ -233,12 +233,12 @@ def _heights(planes: np.ndarray, places: np.ndarray) -> np.ndarray:
     w = places - a[:, None, :2]
     along = (w[:, :, 0] * v[:, None, 1] - w[:, :, 1] * v[:, None, 0]) / area[:, None]
     across = (u[:, None, 0] * w[:, :, 1] - u[:, None, 1] * w[:, :, 0]) / area[:, None]
-    found = a[:, None, 2] + along * u[:, None, 2] + across * v[:, None, 2]
-    found = np.clip(found, planes[:, :, 2].min(axis=1)[:, None], planes[:, :, 2].max(axis=1)[:, None])
+    heights = a[:, None, 2] + along * u[:, None, 2] + across * v[:, None, 2]
+    heights = np.clip(heights, planes[:, :, 2].min(axis=1)[:, None], planes[:, :, 2].max(axis=1)[:, None])
     for corner in (a, b, c):
         same = (places == corner[:, None, :2]).all(axis=2)
-        found = np.where(same, corner[:, None, 2], found)
-    return found
+        heights = np.where(same, corner[:, None, 2], heights)
+    return heights
 
 
 def _area(ring: np.ndarray) -> float:

@@ -27,11 +27,11 @@ UNKNOWN = (0.5, 0.5, 0.5)
 def colors(values: np.ndarray, limits: tuple[float, float], scale: np.ndarray = RISING) -> np.ndarray:
     """(N, 4) float32 sRGB colors of values (N,) between limits; those that are NaN are gray."""
     share = (np.asarray(values, np.float64) - limits[0]) / ((limits[1] - limits[0]) or 1.0)
-    found, steps = np.ones((len(share), 4), np.float32), np.linspace(0.0, 1.0, len(scale))
+    rgba, steps = np.ones((len(share), 4), np.float32), np.linspace(0.0, 1.0, len(scale))
     for channel in range(3):
-        given = np.interp(share, steps, scale[:, channel])
-        found[:, channel] = np.where(np.isfinite(share), given, UNKNOWN[channel])
-    return found
+        channel_values = np.interp(share, steps, scale[:, channel])
+        rgba[:, channel] = np.where(np.isfinite(share), channel_values, UNKNOWN[channel])
+    return rgba
 
 
 def thickness(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, threads: int = 0) -> np.ndarray:
@@ -51,10 +51,10 @@ def at_places(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, thr
     within triangles; NaN where there is none."""
     if not len(triangles):
         return np.full(len(plan), np.nan)
-    found = native_module().surface_heights(
+    heights = native_module().surface_heights(
         np.ascontiguousarray(vertices, np.float64),
         np.ascontiguousarray(triangles, np.int32),
         np.ascontiguousarray(plan, np.float64),
         execution=on_threads(threads),
     )
-    return np.asarray(found)
+    return np.asarray(heights)

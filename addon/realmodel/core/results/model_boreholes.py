@@ -43,26 +43,26 @@ def borehole(model: ModelData, x: float, y: float) -> list[Interval]:
     cells = model.face_cells[faces]
     cells[~is_up] = cells[~is_up, ::-1]
     below, above = np.append(model.cell_block, np.int32(-1))[cells].T  # the first cell is below
-    found: list[Interval] = []
+    intervals: list[Interval] = []
     for k in np.lexsort((above, -height)).tolist():
         z = float(height[k])
-        if found and found[-1].bottom == -np.inf:
-            found[-1] = Interval(found[-1].block, found[-1].top, z)
+        if intervals and intervals[-1].bottom == -np.inf:
+            intervals[-1] = Interval(intervals[-1].block, intervals[-1].top, z)
         if below[k] >= 0:
-            found.append(Interval(int(below[k]), z, -np.inf))
-    return _merged(found)
+            intervals.append(Interval(int(below[k]), z, -np.inf))
+    return _merged(intervals)
 
 
-def _merged(found: list[Interval]) -> list[Interval]:
+def _merged(intervals: list[Interval]) -> list[Interval]:
     """Without stretches of no length, and with those of one block that follow one another as one."""
     merged: list[Interval] = []
-    for each in found:
-        if not each.top > each.bottom:
+    for interval in intervals:
+        if not interval.top > interval.bottom:
             continue
-        if merged and merged[-1].block == each.block and merged[-1].bottom == each.top:
-            merged[-1] = Interval(each.block, merged[-1].top, each.bottom)
+        if merged and merged[-1].block == interval.block and merged[-1].bottom == interval.top:
+            merged[-1] = Interval(interval.block, merged[-1].top, interval.bottom)
         else:
-            merged.append(each)
+            merged.append(interval)
     return merged
 
 

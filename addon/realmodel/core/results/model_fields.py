@@ -34,21 +34,21 @@ def field_of(
     project: Project, rocks: Sequence[RockFields], series: str, compartment: str | None
 ) -> ScalarField:
     """Model.field, of a model of the project."""
-    found = {own.name: (rock, own) for rock in rocks for own in rock.fields}
-    if series not in found:
-        known = [each for rock in project.rocks for each in rock.series]
-        if any(each.name == series and each.kind == FIELD for each in known):
+    fields = {field.name: (rock, field) for rock in rocks for field in rock.fields}
+    if series not in fields:
+        project_series = [entry for rock in project.rocks for entry in rock.series]
+        if any(entry.name == series and entry.kind == FIELD for entry in project_series):
             what = f"series '{series}' has no field here"
             raise UsageError(f"{what}: a stage before it has none, and of tiles only the whole has it")
-        there = f"there are {', '.join(found)}" if found else "the model has none"
-        raise UsageError(f"no series '{series}' with a field: {there}")
-    rock, own = found[series]
-    if compartment is None and len(own.distinct()) == 1:
-        return own.fields[0]
+        choices = f"there are {', '.join(fields)}" if fields else "the model has none"
+        raise UsageError(f"no series '{series}' with a field: {choices}")
+    rock, field = fields[series]
+    if compartment is None and len(field.distinct()) == 1:
+        return field.fields[0]
     if compartment not in rock.compartments:
         what = f"series '{series}' has a field in each of several compartments"
         raise UsageError(f"{what}: name one of {', '.join(rock.compartments)}")
-    return own.fields[rock.compartments.index(compartment)]
+    return field.fields[rock.compartments.index(compartment)]
 
 
 def names_of_compartments(inputs: Sequence[RockInput], entry: RockInput) -> list[str]:
@@ -62,7 +62,7 @@ def names_of_compartments(inputs: Sequence[RockInput], entry: RockInput) -> list
 def local_compartments(model: ModelData, entry: RockInput) -> np.ndarray:
     """For each compartment of a model its number in a rock mass; -1 where it is of another."""
     names = names_of_compartments(model.rock_inputs, entry)
-    known = {name: number for number, name in enumerate(names)}
+    numbers = {name: number for number, name in enumerate(names)}
     if len(names) == 1:
         return np.zeros(max(len(model.compartment_names), 1), np.int64)
-    return np.array([known.get(name, -1) for name in model.compartment_names], np.int64)
+    return np.array([numbers.get(name, -1) for name in model.compartment_names], np.int64)

@@ -24,8 +24,8 @@ def net_edges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarra
     size = int(high.max(initial=0)) + 1
     key, number = np.unique(low * size + high, return_inverse=True)
     net = np.bincount(number.ravel(), np.where(forward, 1, -1), len(key)).astype(np.int64)
-    kept = net != 0
-    low, high, net = key[kept] // size, key[kept] % size, net[kept]
+    mask = net != 0
+    low, high, net = key[mask] // size, key[mask] % size, net[mask]
     return np.where(net > 0, low, high), np.where(net > 0, high, low), np.abs(net)
 
 
@@ -46,12 +46,12 @@ def polygons_of(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> list[
     areas = np.array([twice_area(points[ring]) for ring in outlines])
     around = _Around(points, outlines)
     for hole in holes:
-        own = around.rings_around(hole)
-        if not len(own):
+        candidates = around.rings_around(hole)
+        if not len(candidates):
             raise BuildFailed(
                 f"the plan is not valid: a hole without an outline at {points[hole[0]].tolist()}"
             )
-        polygons[own[areas[own].argmin()]].append(hole)
+        polygons[candidates[areas[candidates].argmin()]].append(hole)
     return polygons
 
 
@@ -160,8 +160,8 @@ def _simple_rings(walk: list[int]) -> list[list[int]]:
 def _contains(points: np.ndarray, outline: np.ndarray, ring: np.ndarray) -> bool:
     """Whether a ring lies in another one that it does not cross: one of its vertices that is no vertex of
     that, or the middle of an edge, is inside."""
-    own = ring[~np.isin(ring, outline)]
-    place = points[own[0]] if len(own) else (points[ring[0]] + points[ring[1]]) / 2
+    free_vertices = ring[~np.isin(ring, outline)]
+    place = points[free_vertices[0]] if len(free_vertices) else (points[ring[0]] + points[ring[1]]) / 2
     a, b = points[outline], points[np.roll(outline, -1)]
     crosses = (a[:, 1] <= place[1]) != (b[:, 1] <= place[1])
     a, b = a[crosses], b[crosses]

@@ -135,19 +135,19 @@ class PlannedHoleData:
         deviations = {contact.depth: contact.deviation for contact in self.contacts}
         return [
             {
-                "block": each.block,
-                "name": self.block_names[each.block],
-                "property": self.properties[each.block],
-                "from": each.begin,
-                "to": each.end,
-                "length": each.length,
-                "vertical_from": self.axis.vertical(each.begin),
-                "vertical_to": self.axis.vertical(each.end),
-                "probability": each.probability,
-                "from_deviation": deviations.get(each.begin),
-                "to_deviation": deviations.get(each.end),
+                "block": interval.block,
+                "name": self.block_names[interval.block],
+                "property": self.properties[interval.block],
+                "from": interval.begin,
+                "to": interval.end,
+                "length": interval.length,
+                "vertical_from": self.axis.vertical(interval.begin),
+                "vertical_to": self.axis.vertical(interval.end),
+                "probability": interval.probability,
+                "from_deviation": deviations.get(interval.begin),
+                "to_deviation": deviations.get(interval.end),
             }
-            for each in self.intervals
+            for interval in self.intervals
         ]
 
     def table(self) -> pandas.DataFrame:
@@ -190,34 +190,34 @@ def intervals_on(section: SectionData, axis: HoleAxis) -> list[HoleInterval]:
 
 def _joined(ends: np.ndarray, blocks: np.ndarray, near: float) -> list[HoleInterval]:
     """Stretches (K, 2) in order, those of one block that meet as one."""
-    found: list[HoleInterval] = []
+    intervals: list[HoleInterval] = []
     for row in np.lexsort((ends[:, 1], ends[:, 0])).tolist():
         (begin, end), block = ends[row].tolist(), int(blocks[row])
         if end - begin <= near:
             continue
-        if found and begin - found[-1].end <= near:
-            begin = found[-1].end
-            if found[-1].block == block:
-                found[-1] = HoleInterval(block, found[-1].begin, max(end, begin))
+        if intervals and begin - intervals[-1].end <= near:
+            begin = intervals[-1].end
+            if intervals[-1].block == block:
+                intervals[-1] = HoleInterval(block, intervals[-1].begin, max(end, begin))
                 continue
         if end > begin:
-            found.append(HoleInterval(block, begin, end))
-    return found
+            intervals.append(HoleInterval(block, begin, end))
+    return intervals
 
 
 def contacts_between(intervals: Sequence[HoleInterval], axis: HoleAxis) -> list[HoleContact]:
     """Where blocks begin and end; not where the hole itself does."""
-    found = []
+    contacts = []
     stops = [None, *intervals, None]
     for above, below in pairwise(stops):
         if above is not None and below is not None and above.end == below.begin:
-            found.append(HoleContact(above.end, above.block, below.block))
+            contacts.append(HoleContact(above.end, above.block, below.block))
             continue
         if above is not None and above.end < axis.length:
-            found.append(HoleContact(above.end, above.block, -1))
+            contacts.append(HoleContact(above.end, above.block, -1))
         if below is not None and below.begin > 0:
-            found.append(HoleContact(below.begin, -1, below.block))
-    return found
+            contacts.append(HoleContact(below.begin, -1, below.block))
+    return contacts
 
 
 def on_surfaces(model: ModelData, contacts: Sequence[HoleContact], axis: HoleAxis) -> list[HoleContact]:
@@ -226,14 +226,14 @@ def on_surfaces(model: ModelData, contacts: Sequence[HoleContact], axis: HoleAxi
     the slope of its triangle there."""
     places = axis.places([contact.depth for contact in contacts])
     near = 1e-7 * float(np.ptp(model.vertices, axis=0).max(initial=0.0) + axis.length)
-    found = list(contacts)
+    result = list(contacts)
     for number, kind in enumerate(model.surface_kind.tolist() if contacts else []):
         vertices, triangles = model.surface(number)
         corners = vertices[triangles]
         low, high = corners.min(axis=1) - near, corners.max(axis=1) + near
         variance = None
         for row, place in enumerate(places):
-            if kind != 0 and found[row].surface:
+            if kind != 0 and result[row].surface:
                 continue
             some = np.flatnonzero(((low <= place) & (place <= high)).all(axis=1))
             chosen = _containing(corners[some], place, near)
@@ -245,16 +245,16 @@ def on_surfaces(model: ModelData, contacts: Sequence[HoleContact], axis: HoleAxi
             deviation = None
             nearing = abs(float(dot(normal, axis.direction)))
             if variance is not None and nearing > 0:
-                own = np.maximum(variance[triangles[at]], 0.0)
-                height = float(dot(weights, np.sqrt(own)))
+                corner_variances = np.maximum(variance[triangles[at]], 0.0)
+                height = float(dot(weights, np.sqrt(corner_variances)))
                 deviation = None if np.isnan(height) else height * abs(float(normal[2])) / nearing
-            found[row] = replace(contacts[row], surface=model.surface_names[number], deviation=deviation)
-    return found
+            result[row] = replace(contacts[row], surface=model.surface_names[number], deviation=deviation)
+    return result
 
 
 def remarks_on(model: ModelData, contacts: Sequence[HoleContact]) -> tuple[str, ...]:
     """Why contacts have no standard deviation where the data of their surfaces show no variogram."""
-    met = {each.surface for each in contacts if each.deviation is None}
+    met = {contact.surface for contact in contacts if contact.deviation is None}
     return tuple(f"{name}: {text}" for name, text in missing_deviations(model).items() if name in met)
 
 
@@ -269,7 +269,7 @@ def _containing(
     with_area = np.flatnonzero(doubled > 0)
     if not len(with_area):
         return None
-    a, b, c, normal, doubled = (each[with_area] for each in (a, b, c, normal, doubled))
+    a, b, c, normal, doubled = (array[with_area] for array in (a, b, c, normal, doubled))
     unit = normal / doubled[:, None]
     weights = np.column_stack(
         [dot(unit, np.cross(q - place, r - place)) for q, r in ((b, c), (c, a), (a, b))]

@@ -54,10 +54,10 @@ def checked_size(model: ModelData, size: CellSize) -> np.ndarray:
     if size is None:
         extent = np.ptp(model.vertices, axis=0).max() if len(model.vertices) else 1.0
         size = extent / _AUTOMATIC
-    given = np.atleast_1d(np.asarray(size, np.float64))
-    if given.shape not in ((1,), (2,), (3,)) or not (np.isfinite(given).all() and (given > 0).all()):
+    sizes = np.atleast_1d(np.asarray(size, np.float64))
+    if sizes.shape not in ((1,), (2,), (3,)) or not (np.isfinite(sizes).all() and (sizes > 0).all()):
         raise UsageError(f"a cell size is one, two or three numbers above 0, not {size}")
-    return given[{1: [0, 0, 0], 2: [0, 0, 1], 3: [0, 1, 2]}[len(given)]]
+    return sizes[{1: [0, 0, 0], 2: [0, 0, 1], 3: [0, 1, 2]}[len(sizes)]]
 
 
 def regular_cells(
@@ -89,10 +89,10 @@ def regular_cells(
         area = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2  # above zero where it is seen from above
         flat = (place[:, 2] * ny + place[:, 1]) * nx + place[:, 0]
         within = area * (triangles[:, :, 2].mean(axis=1) - place[:, 2])
-        own = np.bincount(flat, within, nx * ny * nz).reshape(nz, ny, nx)
+        volume = np.bincount(flat, within, nx * ny * nz).reshape(nz, ny, nx)
         whole = np.bincount(flat, area, nx * ny * nz).reshape(nz, ny, nx)
-        own[:-1] += np.cumsum(whole[::-1], axis=0)[::-1][1:]  # beneath a face cells are full
-        volumes[block] = own
+        volume[:-1] += np.cumsum(whole[::-1], axis=0)[::-1][1:]  # beneath a face cells are full
+        volumes[block] = volume
     # volumes below this are rounding errors of empty cells
     volumes[np.abs(volumes) < 1e-12] = 0.0
     return RegularCells(origin, cell, counts, np.maximum(volumes, 0.0) * cell.prod())
@@ -148,9 +148,9 @@ def _crossing(a: np.ndarray, b: np.ndarray, axis: int, level: np.ndarray) -> np.
     swap = (a[:, axis] > b[:, axis])[:, None]
     a, b = np.where(swap, b, a), np.where(swap, a, b)
     t = ((level - a[:, axis]) / (b[:, axis] - a[:, axis]))[:, None]
-    found = a + t * (b - a)
-    found[:, axis] = level
-    return found
+    points = a + t * (b - a)
+    points[:, axis] = level
+    return points
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,17 +216,17 @@ def _true_thickness(
     """(N,) how far the top of a block is from its base at the centers of cells (N, 2); 0 where it is not.
     heights: (N,) of its top, and its vertical thickness."""
     upper, vertical = heights
-    found, there = np.zeros(len(centers)), np.flatnonzero(vertical > 0)
+    result, cells = np.zeros(len(centers)), np.flatnonzero(vertical > 0)
     triangles = _triangles(model, block)
     a, b = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
     base = triangles[a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < 0]
-    if len(there) and len(base):
+    if len(cells) and len(base):
         corners = base.reshape(-1, 3)
         sheet = Sheet(corners, np.arange(len(corners), dtype=np.int32).reshape(-1, 3))
-        points = np.column_stack([centers[there], upper[there]])
+        points = np.column_stack([centers[cells], upper[cells]])
         under = Base(work, sheet, float(vertical.max()))
-        found[there] = np.minimum(under.thickness(points, points[:, 2] - vertical[there]), vertical[there])
-    return found
+        result[cells] = np.minimum(under.thickness(points, points[:, 2] - vertical[cells]), vertical[cells])
+    return result
 
 
 def _over_centers(

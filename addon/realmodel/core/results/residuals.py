@@ -58,16 +58,16 @@ def heights_of_points(
         else:
             sides = sides_of(work, points, structure.faults)
         active = structure.faults.active(at)
-        found = np.full(len(points), np.nan)
+        heights = np.full(len(points), np.nan)
         for compartment, row in enumerate(structure.compartments):
-            own = ((sides == row) | ~active).all(axis=1)
-            if own.any() and own_field is not None:
-                where = np.full(int(own.sum()), compartment)
-                found[own] = points[own, 2] - own_field.distances(at, points[own], where)
-            elif own.any():
+            inside = ((sides == row) | ~active).all(axis=1)
+            if inside.any() and own_field is not None:
+                where = np.full(int(inside.sum()), compartment)
+                heights[inside] = points[inside, 2] - own_field.distances(at, points[inside], where)
+            elif inside.any():
                 vertices, triangles = structure.sheet(compartment, at)
-                found[own] = at_places(vertices, triangles, points[own, :2], model.threads)
-        return found
+                heights[inside] = at_places(vertices, triangles, points[inside, :2], model.threads)
+        return heights
 
     return run(task, threads=model.threads)
 
@@ -75,14 +75,14 @@ def heights_of_points(
 def residuals(model: ModelData) -> list[Residuals]:
     """The residuals of each surface of a model that was interpolated from points, in the model's order."""
     model.require_project("a residual")
-    found, number = [], 0
+    rows, number = [], 0
     for r, rock in enumerate(model.project.rocks):
         for at, surface in enumerate(rock.surfaces):
             points = surface.point_array()
             if len(points) and number < len(model.surface_names):
-                there = heights_of_points(model, number, at, r, points)
-                known = np.isfinite(there)
-                values = points[known, 2] - there[known]
-                found.append(Residuals(rock.name, surface.name, points[known], values, int((~known).sum())))
+                heights = heights_of_points(model, number, at, r, points)
+                finite = np.isfinite(heights)
+                values = points[finite, 2] - heights[finite]
+                rows.append(Residuals(rock.name, surface.name, points[finite], values, int((~finite).sum())))
             number += 1
-    return found
+    return rows

@@ -124,12 +124,12 @@ def _deviation(
     """The mean over the area, and the maximum, of the square root of the variances (V,)."""
     deviation = np.sqrt(np.maximum(variance, 0.0))
     corners = deviation[triangles]
-    known = np.isfinite(corners).all(axis=1)
-    if not known.any():
+    finite = np.isfinite(corners).all(axis=1)
+    if not finite.any():
         return None, None
-    a, b, c = (vertices[triangles[known, k], :2] for k in range(3))
+    a, b, c = (vertices[triangles[finite, k], :2] for k in range(3))
     area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     mean = (
-        float(np.average(corners[known].mean(axis=1), weights=area)) if area.any() else float(corners.mean())
+        float(np.average(corners[finite].mean(axis=1), weights=area)) if area.any() else float(corners.mean())
     )
     return mean, float(np.nanmax(deviation))

@@ -95,14 +95,14 @@ def borehole_table(model: WithBoreholes, x: float, y: float) -> pandas.DataFrame
     """
     rows = [
         {
-            "block": each.block,
-            "name": model.blocks[each.block].name,
-            "property": model.blocks[each.block].property,
-            "top": each.top,
-            "bottom": each.bottom,
-            "length": each.length,
+            "block": interval.block,
+            "name": model.blocks[interval.block].name,
+            "property": model.blocks[interval.block].property,
+            "top": interval.top,
+            "bottom": interval.bottom,
+            "length": interval.length,
         }
-        for each in model.borehole(x, y)
+        for interval in model.borehole(x, y)
     ]
     return data_frame(rows, _INTERVAL)
 
@@ -144,7 +144,7 @@ def map_dataset(model: ModelData, cell_size: float | Sequence[float] | None = No
             "x": variable(("x",), west + dx * (np.arange(columns) + 0.5), "easting"),
             "y": variable(("y",), north - dy * (np.arange(rows) + 0.5), "northing"),
             "block": variable(("block",), np.arange(len(model.blocks)), "number of the block", {}),
-            "block_name": variable(("block",), [each.name for each in model.blocks], "name of the block", {}),
+            "block_name": variable(("block",), [b.name for b in model.blocks], "name of the block", {}),
         },
         {"title": model.project.name},
     )

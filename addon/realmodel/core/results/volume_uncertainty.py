@@ -20,9 +20,9 @@ def volume_deviations(model: ModelData) -> np.ndarray:
     place cancel out in part. Assumed: variances are right (the variogram holds), and errors are small enough
     that the same contacts remain. Ready meshes and walls count as exact.
     """
-    found = np.full(len(model.blocks), np.nan)
+    deviations = np.full(len(model.blocks), np.nan)
     if not len(model.face_vertices):
-        return found
+        return deviations
     area, middle = plan_areas(model), _middles(model)
     sides = model.face_blocks
     for number in range(len(model.surface_names)):
@@ -42,10 +42,10 @@ def volume_deviations(model: ModelData) -> np.ndarray:
         for side in sides[faces].T:
             inside = side >= 0
             blocks = side[inside]
-            found[np.unique(blocks)] = np.nan_to_num(found[np.unique(blocks)])
-            found += np.bincount(blocks, (here * area[faces])[inside], len(found))
-    found[without_deviation(model)] = np.nan
-    return found
+            deviations[np.unique(blocks)] = np.nan_to_num(deviations[np.unique(blocks)])
+            deviations += np.bincount(blocks, (here * area[faces])[inside], len(deviations))
+    deviations[without_deviation(model)] = np.nan
+    return deviations
 
 
 def without_deviation(model: ModelData) -> np.ndarray:
@@ -61,7 +61,7 @@ def without_deviation(model: ModelData) -> np.ndarray:
 def missing_deviations(model: ModelData) -> dict[str, str]:
     """By the names of the surfaces whose data show no variogram (in some compartment): what is missing."""
     return {
-        each.surface: each.text for each in model.warnings if each.surface and lacks_deviation([each.text])
+        note.surface: note.text for note in model.warnings if note.surface and lacks_deviation([note.text])
     }
 
 
@@ -94,7 +94,7 @@ def _plan(model: ModelData, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 def _next(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """For each corner of polygons the value at the next corner."""
-    found = np.empty_like(values)
-    found[:-1] = values[1:]
-    found[last] = values[first]
-    return found
+    following = np.empty_like(values)
+    following[:-1] = values[1:]
+    following[last] = values[first]
+    return following

@@ -84,8 +84,8 @@ class Boreholes:
     @property
     def files(self) -> list[Path]:
         """The tables that there are."""
-        given = (self.collars, self.survey, self.picks, self.intervals)
-        return [Path(file) for file in given if file is not None]
+        tables = (self.collars, self.survey, self.picks, self.intervals)
+        return [Path(file) for file in tables if file is not None]
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""

@@ -72,9 +72,9 @@ class SpaceDips:
         if len(steep):
             what = f"dip {steep[0]} is vertical or overturned, and a sheet has one height at each position"
             raise InputRefused(what, item="dips", advice='leave it out, or use a series with kind = "field"')
-        kept = self.normals[:, 2] > 0
-        places, normals = self.positions[kept], self.normals[kept]
-        used = None if self.used is None else np.asarray(self.used)[kept]
+        upward = self.normals[:, 2] > 0
+        places, normals = self.positions[upward], self.normals[upward]
+        used = None if self.used is None else np.asarray(self.used)[upward]
         gradients = -normals[:, :2] / normals[:, 2:] + 0.0  # no -0
         return Dips(np.ascontiguousarray(places[:, :2]), gradients, places[:, 2].copy(), used=used)
 
@@ -148,7 +148,7 @@ class Dips:
     def some(self, kept: np.ndarray) -> Dips:
         """Some of them. kept: (D,) bool, or their numbers."""
         more = (self.z, self.surfaces, self.blocks, self.used, self.rows)
-        chosen = [None if each is None else np.asarray(each)[kept] for each in more]
+        chosen = [None if array is None else np.asarray(array)[kept] for array in more]
         return Dips(self.positions[kept], self.gradients[kept], *chosen)
 
     @property
@@ -162,8 +162,8 @@ class Dips:
 
     def used_only(self) -> Dips | None:
         """Those that are not switched off; None where there are none."""
-        kept = self if self.used is None else replace(self.some(self.in_use), used=None)
-        return kept if len(kept) else None
+        dips = self if self.used is None else replace(self.some(self.in_use), used=None)
+        return dips if len(dips) else None
 
     @classmethod
     def from_angles(
@@ -216,9 +216,9 @@ class Dips:
         used = np.concatenate([np.empty(0, bool), *(part.in_use for part in parts)])
         in_use = None if used.all() else used
         names = [
-            np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)
+            np.concatenate([np.empty(0, str), *rows]) for rows in zip(*(p.named for p in parts), strict=True)
         ]
-        if not names or not any((each != "").any() for each in names):
+        if not names or not any((array != "").any() for array in names):
             return cls(positions, gradients, z, used=in_use)
         surfaces, blocks = names
         return cls(positions, gradients, z, surfaces, blocks, in_use)
@@ -240,7 +240,7 @@ class Dips:
         )
         used = _checked_use(self.used, len(positions))
         rows = np.arange(len(positions)) if self.rows is None else self.rows
-        more = [each for each in (z, surfaces, blocks, used) if each is not None]
+        more = [array for array in (z, surfaces, blocks, used) if array is not None]
         order = ascending(*positions.T, *gradients.T, *more)
         return Dips(positions, gradients, z, surfaces, blocks, used, rows).some(order)
 
@@ -257,13 +257,13 @@ class Dips:
         apart = np.abs(self.gradients - means[place]).max(axis=1)
         differ = np.unique(place[apart > 1e-12 * (1 + np.abs(means[place]).max(axis=1))])
         order = np.argsort(first)
-        kept = self.some(first[order])
-        kept = Dips(kept.positions, np.ascontiguousarray(means[order]), kept.z)
+        dips = self.some(first[order])
+        dips = Dips(dips.positions, np.ascontiguousarray(means[order]), dips.z)
         if not len(differ):
-            return kept, None
+            return dips, None
         where = place_text(tuple(places[differ[0]].tolist()))
         many = "1 position has" if len(differ) == 1 else f"{len(differ)} positions have"
-        return kept, f"{many} several dips, one at {where}: their mean slope is used"
+        return dips, f"{many} several dips, one at {where}: their mean slope is used"
 
 
 SomeDips = TypeVar("SomeDips", bound=SpaceDips | Dips)
@@ -274,7 +274,7 @@ def as_given(dips: SomeDips) -> SomeDips:
     if dips.rows is None:
         return dips
     order = np.argsort(dips.rows)
-    arrays = {each.name: getattr(dips, each.name) for each in fields(dips)}
+    arrays = {attribute.name: getattr(dips, attribute.name) for attribute in fields(dips)}
     ordered: dict[str, Any] = {
         name: None if a is None else np.asarray(a)[order] for name, a in arrays.items()
     }
@@ -297,24 +297,24 @@ def _row(dips: Dips | SpaceDips, number: int) -> int:
 
 
 def _checked_use(used: Any, count: int) -> np.ndarray | None:
-    given = None if used is None else np.ascontiguousarray(used, bool)
-    if given is not None and given.shape != (count,):
-        raise InputRefused(f"{count} dips have {given.size} of 'used'", item="dips")
-    return given
-
-
-def _floats(values: ArrayLike, shape: tuple[int, ...], item: str) -> np.ndarray:
-    try:
-        array = np.ascontiguousarray(values, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputRefused("not an array of numbers", item=item) from error
-    if array.shape != shape:
-        raise InputRefused(f"must be an array {shape}, not {array.shape}", item=item)
+    array = None if used is None else np.ascontiguousarray(used, bool)
+    if array is not None and array.shape != (count,):
+        raise InputRefused(f"{count} dips have {array.size} of 'used'", item="dips")
     return array
 
 
-def _texts(names: Any, count: int, item: str) -> np.ndarray:
+def _floats(values: ArrayLike, shape: tuple[int, ...], name: str) -> np.ndarray:
+    try:
+        array = np.ascontiguousarray(values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("not an array of numbers", item=name) from error
+    if array.shape != shape:
+        raise InputRefused(f"must be an array {shape}, not {array.shape}", item=name)
+    return array
+
+
+def _texts(names: Any, count: int, name: str) -> np.ndarray:
     array = np.asarray(names, str)
     if array.shape != (count,):
-        raise InputRefused(f"must be {count} names, one for each dip, not {array.shape}", item=item)
+        raise InputRefused(f"must be {count} names, one for each dip, not {array.shape}", item=name)
     return array

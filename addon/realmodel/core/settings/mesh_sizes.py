@@ -78,25 +78,25 @@ def local_lengths(size: Iterable[Mapping], lines: list[np.ndarray], points: np.n
     return entries
 
 
-def _places_at(entry: Any, item: str, lines: list[np.ndarray], points: np.ndarray | None) -> list:
+def _places_at(entry: Any, name: str, lines: list[np.ndarray], points: np.ndarray | None) -> list:
     if not isinstance(entry, Mapping) or set(entry) != set(_SIZE_KEYS):
-        raise InputRefused(f"needs exactly {', '.join(_SIZE_KEYS)}, not {entry!r}", item=item)
+        raise InputRefused(f"needs exactly {', '.join(_SIZE_KEYS)}, not {entry!r}", item=name)
     if not (is_number(entry["length"]) and entry["length"] > 0):
-        raise InputRefused(f"length must be a finite number above 0, not {entry['length']!r}", item=item)
+        raise InputRefused(f"length must be a finite number above 0, not {entry['length']!r}", item=name)
     if not (is_number(entry["distance"]) and entry["distance"] >= 0):
-        raise InputRefused(f"distance must be a finite number from 0, not {entry['distance']!r}", item=item)
+        raise InputRefused(f"distance must be a finite number from 0, not {entry['distance']!r}", item=name)
     at = entry["at"]
     if isinstance(at, str):
         if at == "outline":
             return [None]
         if at != "constraints":
-            raise InputRefused(f"at must be {_AT}, not {at!r}", item=item)
+            raise InputRefused(f"at must be {_AT}, not {at!r}", item=name)
         places = [*lines, *(points[:, None] if points is not None else [])]
         if not places:
-            raise InputRefused("the rock mass has no constraints", item=item)
+            raise InputRefused("the rock mass has no constraints", item=name)
         return places
     is_one = np.ndim(np.asarray(at, object)) == 1
-    return [places_of([at] if is_one else at, f"{item}, at")]
+    return [places_of([at] if is_one else at, f"{name}, at")]
 
 
 def places_of(places: ArrayLike, item: str, least: int = 1) -> np.ndarray:

@@ -83,21 +83,21 @@ def check_fields(entry: Any) -> None:
 def number(option: str, setting: Setting, value: Any) -> float:
     name = option.rpartition(".")[2]
     try:
-        given = float(value) if not isinstance(value, (bool, str)) else math.nan
+        real = float(value) if not isinstance(value, (bool, str)) else math.nan
     except (OverflowError, TypeError, ValueError):
-        given = math.nan
-    if not math.isfinite(given):
+        real = math.nan
+    if not math.isfinite(real):
         raise OptionRefused(f"'{name}' must be a finite number, not {value!r}", option=option)
     if setting.above is not None:
-        if given <= setting.above:
-            raise OptionRefused(f"'{name}' must be more than {setting.above:g}, not {given:g}", option=option)
-    elif setting.low is not None and given < setting.low:
-        raise OptionRefused(f"'{name}' must be at least {setting.low:g}, not {given:g}", option=option)
-    if setting.below is not None and given >= setting.below:
-        raise OptionRefused(f"'{name}' must be below {setting.below:g}, not {given:g}", option=option)
-    if setting.below is None and setting.high is not None and given > setting.high:
-        raise OptionRefused(f"'{name}' must be at most {setting.high:g}, not {given:g}", option=option)
-    return given
+        if real <= setting.above:
+            raise OptionRefused(f"'{name}' must be more than {setting.above:g}, not {real:g}", option=option)
+    elif setting.low is not None and real < setting.low:
+        raise OptionRefused(f"'{name}' must be at least {setting.low:g}, not {real:g}", option=option)
+    if setting.below is not None and real >= setting.below:
+        raise OptionRefused(f"'{name}' must be below {setting.below:g}, not {real:g}", option=option)
+    if setting.below is None and setting.high is not None and real > setting.high:
+        raise OptionRefused(f"'{name}' must be at most {setting.high:g}, not {real:g}", option=option)
+    return real
 
 
 def surface(option: str, value: Any) -> Any:
@@ -153,17 +153,17 @@ def table(option: str, parts: Settings, value: Any) -> dict:
     for key, part in parts.items():
         if key not in value and part.default is None and not part.switch:
             raise OptionRefused(f"'{option}' lacks '{key}'", option=option)
-    found = {
+    values = {
         key: checked(f"{option}.{key}", part, value.get(key, part.default)) for key, part in parts.items()
     }
-    return {key: given for key, given in found.items() if given is not None}
+    return {key: entry for key, entry in values.items() if entry is not None}
 
 
 def variogram(parts: Settings, structure: Settings) -> Callable[[str, Any], Any]:
     """The check of a variogram: {model, range, sill, nugget}, or {nugget, structures = [{model, range, sill,
     anisotropy}, ...]} for a nested one; a Variogram found by an earlier interpolation is taken as well. None:
     to be fitted."""
-    nested = {"nugget": parts["nugget"], "structures": Setting(check=lambda *given: structures(*given))}
+    nested = {"nugget": parts["nugget"], "structures": Setting(check=lambda *pair: structures(*pair))}
 
     def structures(option: str, value: Any) -> list[dict]:
         if not isinstance(value, (list, tuple)) or not value:
@@ -181,14 +181,14 @@ def variogram(parts: Settings, structure: Settings) -> Callable[[str, Any], Any]
             value = value.settings()
         if isinstance(value, Mapping) and "structures" in value:
             return table(option, nested, value)
-        found = table(option, parts, value)
-        if found["nugget"] > found["sill"]:
+        content = table(option, parts, value)
+        if content["nugget"] > content["sill"]:
             raise OptionRefused(
-                f"the nugget, {found['nugget']:g}, is more than the sill, {found['sill']:g}",
+                f"the nugget, {content['nugget']:g}, is more than the sill, {content['sill']:g}",
                 option=f"{option}.nugget",
                 advice="the sill includes the nugget",
             )
-        return found
+        return content
 
     return check
 

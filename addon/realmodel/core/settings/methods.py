@@ -436,7 +436,7 @@ def check_uses_dips(method: str) -> None:
     check_method(method)
     if METHODS[method].is_constrained:
         return
-    able = ", ".join(name for name, each in METHODS.items() if each.is_constrained)
+    able = ", ".join(name for name, entry in METHODS.items() if entry.is_constrained)
     raise OptionRefused(f"method '{method}' does not use dips", option="dips", advice=f"{able} use them")
 
 
@@ -446,18 +446,18 @@ def checked_options(method: str, options: Mapping) -> dict:
     Raises OptionRefused for an option that the method does not have, or a value that makes no sense.
     """
     check_method(method)
-    known = METHODS[method].options
+    settings = METHODS[method].options
     for option in options:
-        if option in known:
+        if option in settings:
             continue
         owner = next((name for name, other in METHODS.items() if option in other.options), None)
         what = f"'{option}' belongs to {owner}, not to {method}" if owner else None
         raise OptionRefused(
             what or f"'{option}' is not an option of any method",
             option=option,
-            advice=f"options of {method} are {', '.join(known)}",
+            advice=f"options of {method} are {', '.join(settings)}",
         )
     return {
         name: check.checked(name, setting, options.get(name, setting.default))
-        for name, setting in known.items()
+        for name, setting in settings.items()
     }

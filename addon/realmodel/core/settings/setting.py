@@ -111,30 +111,30 @@ class Declaration(NamedTuple):
 @cache
 def declarations(entry: type) -> tuple[Declaration, ...]:
     """The fields of a dataclass that settings describe; tables of others come last, as in a file."""
-    known = []
+    entries = []
     for part in fields(entry):
         setting = part.metadata.get(_DECLARED)
         if setting is not None:
             default = part.default if part.default_factory is MISSING else part.default_factory()
             key, is_needed = setting.key or part.name, default is MISSING
-            known.append(Declaration(part.name, key, setting, is_needed, default))
-    return tuple(sorted(known, key=lambda part: part.setting.kind == "tables"))
+            entries.append(Declaration(part.name, key, setting, is_needed, default))
+    return tuple(sorted(entries, key=lambda part: part.setting.kind == "tables"))
 
 
 @cache
 def settings_of(entry: type) -> Settings:
     """The settings of a dataclass by their keys in a project file."""
-    known: dict[str, Setting] = {}
+    settings: dict[str, Setting] = {}
     for _, key, setting, *_ in declarations(entry):
         if setting.kind == "options":
-            known |= setting.parts
+            settings |= setting.parts
             continue
-        known[key] = setting
+        settings[key] = setting
         if setting.kind in FILE_KINDS:
             for beside, part in settings_of(setting.of).items():
                 if beside != "file":
-                    known.setdefault(beside, part)
-    return known
+                    settings.setdefault(beside, part)
+    return settings
 
 
 def property_name(key: str, setting: Setting) -> str:

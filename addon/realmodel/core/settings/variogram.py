@@ -107,17 +107,17 @@ class Variogram:
         def along(ratio: float, azimuth: float) -> dict | None:
             return {"ratio": ratio, "azimuth": azimuth} if finds_anisotropy and ratio != 1.0 else None
 
-        found = along(fit["anisotropy_ratio"], fit["anisotropy_azimuth"])
+        anisotropy = along(fit["anisotropy_ratio"], fit["anisotropy_azimuth"])
         nugget, sill = fit["nugget"], fit["sill"]
         experimental = {name: fit[name] for name in ("lags", "gamma", "pairs")}
         if not fit["further"]:
-            return cls(fit["model"], fit["range"], sill, nugget, anisotropy=found, **experimental)
+            return cls(fit["model"], fit["range"], sill, nugget, anisotropy=anisotropy, **experimental)
         further = [
-            Structure(model, range_, part, along(*own)) for model, range_, part, *own in fit["further"]
+            Structure(model, range_, part, along(*axes)) for model, range_, part, *axes in fit["further"]
         ]
         first = sill - nugget - sum(part.sill for part in further)
-        structures = (Structure(fit["model"], fit["range"], first, found), *further)
-        return cls("nested", _longest(structures), sill, nugget, structures, found, **experimental)
+        structures = (Structure(fit["model"], fit["range"], first, anisotropy), *further)
+        return cls("nested", _longest(structures), sill, nugget, structures, anisotropy, **experimental)
 
     def with_least_nugget(self, least: float) -> Variogram:
         """The same with a nugget no smaller than the least one; the sill grows with it."""
@@ -151,21 +151,21 @@ class Variogram:
 
     def parts(self) -> tuple[Structure, ...]:
         """The structures of a sum, or the only one."""
-        own = Structure(self.model, self.range, self.sill - self.nugget, self.anisotropy)
-        return self.structures or (own,)
+        structure = Structure(self.model, self.range, self.sill - self.nugget, self.anisotropy)
+        return self.structures or (structure,)
 
     def native(self, anisotropy: dict | None) -> dict:
         """As the native kriging functions take it. anisotropy: of parts that have none of their own."""
         first, *further = self.parts()
         anisotropy = anisotropy or NO_ANISOTROPY
-        own = first.anisotropy or anisotropy
+        first_anisotropy = first.anisotropy or anisotropy
         return {
             "model": first.model,
             "range": first.range,
             "sill": self.sill,
             "nugget": self.nugget,
-            "anisotropy_ratio": own["ratio"],
-            "anisotropy_azimuth": own["azimuth"],
+            "anisotropy_ratio": first_anisotropy["ratio"],
+            "anisotropy_azimuth": first_anisotropy["azimuth"],
             "further": [
                 (
                     part.model,
@@ -190,8 +190,8 @@ def missing_data(variogram: Variogram, points: int, dips: int, terms: int) -> st
     is. terms: of the trends that are fitted with it."""
     least = _LEAST_FREE + terms
     if points + 2 * dips < least:
-        there = counted(points, "point") + (f" and {counted(dips, 'dip')}" if dips else "")
-        missing = f"a variogram takes {least} points or more (a dip counts as two), and the data are {there}"
+        counts = counted(points, "point") + (f" and {counted(dips, 'dip')}" if dips else "")
+        missing = f"a variogram takes {least} points or more (a dip counts as two), and the data are {counts}"
     elif not dips and not variogram.experimental()[1].any():
         missing = "near points have equal heights, so they show no variogram"
     else:

@@ -67,67 +67,67 @@ class Draw:
     def heights(self, method: str, task: Task) -> Interpolation:
         """As heights.heights, with a random error added, which is 0 at the points. A realization that would
         lie beyond a bound goes through it."""
-        own = self._known(method, task)
-        if own.variogram is None:
-            return own.result
-        if own.likely is not None:
-            own = self._with_drawn_variogram(task, own)
-        points = thinned(own.method, task, without_mis_ties(task.points[own.counts])[0])
-        field = self._field_of(own, task.companions)
+        basis = self._known(method, task)
+        if basis.variogram is None:
+            return basis.result
+        if basis.likely is not None:
+            basis = self._with_drawn_variogram(task, basis)
+        points = thinned(basis.method, task, without_mis_ties(task.points[basis.counts])[0])
+        field = self._field_of(basis, task.companions)
         at_points, at_nodes = self._at(task, field, points[:, :2])
-        plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
-        plain = {option: value for option, value in plain.items() if option in own.settings}
+        plain = {**basis.settings, **dict.fromkeys(SURFACE_OPTIONS)}
+        plain = {option: value for option, value in plain.items() if option in basis.settings}
         free = replace(task, points=points, settings=plain, surfaces={}, bounds=None)
-        if own.joint is not None and own.joint.sheets is not None and task.companions is not None:
-            model = own.joint.variogram, own.joint.sheets
+        if basis.joint is not None and basis.joint.sheets is not None and task.companions is not None:
+            model = basis.joint.variogram, basis.joint.sheets
             free = replace(free, companions=replace(task.companions, model=model))
-        drawn = self._drawn(free, field, own)
-        z = own.result.z
-        if task.bounds is not None and len(task.bounds) and holds_bounds(own.method):
-            supports = self._supports(free, drawn, task.bounds, field, own, at_points)
+        drawn = self._drawn(free, field, basis)
+        z = basis.result.z
+        if task.bounds is not None and len(task.bounds) and holds_bounds(basis.method):
+            supports = self._supports(free, drawn, task.bounds, field, basis, at_points)
             free = replace(free, points=np.vstack([points, supports]))
             at_points = np.concatenate([at_points, field.at(task.work, supports[:, :2])])
-            z = heights(own.method, free).z
+            z = heights(basis.method, free).z
         at_data = np.column_stack([free.points[:, :2], at_points])
-        error = at_nodes - heights(own.method, replace(drawn, points=at_data)).z
-        if own.thickness is not None:
+        error = at_nodes - heights(basis.method, replace(drawn, points=at_data)).z
+        if basis.thickness is not None:
             below = heights_of(task, task.settings["to"], task.nodes, "to")
-            return replace(own.result, z=lifted(task, below, own.thickness + error))
+            return replace(basis.result, z=lifted(task, below, basis.thickness + error))
         z = z + error
-        return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
+        return replace(basis.result, z=within_bounds(replace(task, points=points), z, basis.result.z))
 
-    def _with_drawn_variogram(self, task: Task, own: _Known) -> _Known:
+    def _with_drawn_variogram(self, task: Task, basis: _Known) -> _Known:
         """With one of the variograms that the points allow, and the heights that it gives."""
-        assert own.likely is not None
-        variogram = own.likely.draw(self.noise)
-        settings, result = own.settings, own.result
+        assert basis.likely is not None
+        variogram = basis.likely.draw(self.noise)
+        settings, result = basis.settings, basis.result
         if "variogram" in settings:
             settings = {**settings, "variogram": variogram.settings()}
-            result = replace(result, z=heights(own.method, replace(task, settings=settings)).z)
-        return replace(own, variogram=variogram, settings=settings, result=result)
+            result = replace(result, z=heights(basis.method, replace(task, settings=settings)).z)
+        return replace(basis, variogram=variogram, settings=settings, result=result)
 
-    def _field_of(self, own: _Known, companions: Companions | None) -> GaussianField | SheetField:
+    def _field_of(self, basis: _Known, companions: Companions | None) -> GaussianField | SheetField:
         """S: of a sheet of a series together with those of the others."""
-        anisotropy = own.settings.get("anisotropy")
-        if own.joint is None or companions is None:
-            assert own.variogram is not None
-            return GaussianField(own.variogram, anisotropy, self.area, self.noise)
+        anisotropy = basis.settings.get("anisotropy")
+        if basis.joint is None or companions is None:
+            assert basis.variogram is not None
+            return GaussianField(basis.variogram, anisotropy, self.area, self.noise)
         assert self.series is not None
-        return self.series.of(companions.own, self.area, own.joint, anisotropy)
+        return self.series.of(companions.own, self.area, basis.joint, anisotropy)
 
-    def _drawn(self, free: Task, field: GaussianField | SheetField, own: _Known) -> Task:
+    def _drawn(self, free: Task, field: GaussianField | SheetField, basis: _Known) -> Task:
         """The task of a surface with the slopes of S where it has dips, and with S of the other sheets; its
         points are those of the surface still."""
-        known, _ = with_dips(own.method, replace(free, settings=own.settings))
-        if own.joint is not None:
-            baseline = own.joint.dips.baseline
+        whole, _ = with_dips(basis.method, replace(free, settings=basis.settings))
+        if basis.joint is not None:
+            baseline = basis.joint.dips.baseline
         else:
-            baseline = dip_use(known, own.variogram if "variogram" in own.settings else None, 0).baseline
+            baseline = dip_use(whole, basis.variogram if "variogram" in basis.settings else None, 0).baseline
         dips, companions = None, None
-        if known.dips is not None:
-            dips = drawn_dips(free.work, field, known.dips, baseline)
+        if whole.dips is not None:
+            dips = drawn_dips(free.work, field, whole.dips, baseline)
         if isinstance(field, SheetField):
-            companions = drawn_companions(known, field, baseline)
+            companions = drawn_companions(whole, field, baseline)
         return replace(free, dips=dips, companions=companions)
 
     def _supports(
@@ -136,25 +136,25 @@ class Draw:
         drawn: Task,
         bounds: Bounds,
         field: GaussianField | SheetField,
-        own: _Known,
+        basis: _Known,
         at_points: np.ndarray,
     ) -> np.ndarray:
         """(A, 3) the bounds that support the realization, as points. at_points: (P,) S at the points."""
-        run, given, count = runner(own.method, free), consistent(free.points, bounds), len(at_points)
-        run_drawn = runner(own.method, drawn)
-        at_bounds = field.at(free.work, given.positions)  # a field is drawn anew for each call
-        known = dict(zip(map(tuple, given.positions.tolist()), at_bounds.tolist(), strict=True))
+        run, limits, count = runner(basis.method, free), consistent(free.points, bounds), len(at_points)
+        run_drawn = runner(basis.method, drawn)
+        at_bounds = field.at(free.work, limits.positions)  # a field is drawn anew for each call
+        values = dict(zip(map(tuple, limits.positions.tolist()), at_bounds.tolist(), strict=True))
 
         def field_at(places: np.ndarray) -> np.ndarray:
-            return np.array([known[tuple(place)] for place in places.tolist()])
+            return np.array([values[tuple(place)] for place in places.tolist()])
 
-        def realized(each: Task) -> Result:
-            at_data = np.concatenate([at_points, field_at(each.points[count:, :2])])
-            data = np.column_stack([each.points[:, :2], at_data])
-            error = field_at(each.nodes) - run_drawn(replace(drawn, points=data, nodes=each.nodes)).z
-            return Result(run(each).z + error)
+        def realized(task: Task) -> Result:
+            at_data = np.concatenate([at_points, field_at(task.points[count:, :2])])
+            data = np.column_stack([task.points[:, :2], at_data])
+            error = field_at(task.nodes) - run_drawn(replace(drawn, points=data, nodes=task.nodes)).z
+            return Result(run(task).z + error)
 
-        return active_bounds(free.work, free.points, given, MethodHeights(free, realized, False))
+        return active_bounds(free.work, free.points, limits, MethodHeights(free, realized, False))
 
     def _known(self, method: str, task: Task) -> _Known:
         """The data that do not change between realizations. They are not cached for a surface that depends on

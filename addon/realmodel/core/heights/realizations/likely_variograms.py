@@ -40,7 +40,7 @@ class LikelyVariograms:
         if drift == "auto":
             task, drift = around_its_plane(task), "constant"
         along = fitted.anisotropy or settings.get("anisotropy")
-        found = task.run(
+        rows = task.run(
             native_module().likely_variograms,
             task.points,
             (along["ratio"], along["azimuth"]) if along else (1.0, 0.0),
@@ -48,9 +48,9 @@ class LikelyVariograms:
             dips_of_fit(task),
             task.bounds is not None and len(task.bounds) > 0,
         )
-        if not found:
+        if not rows:
             return None
-        models, ranges, nuggets, density, squares, free = zip(*found, strict=True)
+        models, ranges, nuggets, density, squares, free = zip(*rows, strict=True)
         logarithms = np.array(density)
         probable = exp(logarithms - logarithms.max())
         shapes = [

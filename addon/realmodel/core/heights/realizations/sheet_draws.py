@@ -82,19 +82,19 @@ class SheetField:
 def drawn_companions(task: Task, drawn: SheetField, baseline: float) -> Companions:
     """The sheets of a task with what is drawn of them in the place of their heights and slopes. baseline:
     over which slopes count."""
-    given = task.companions
-    assert given is not None
-    points, dips = given.data(without_mis_ties(task.points)[0], task.dips)
+    companions = task.companions
+    assert companions is not None
+    points, dips = companions.data(without_mis_ties(task.points)[0], task.dips)
     heights, slopes = [], []
-    for number, (each, of_sheet) in enumerate(zip(points, dips, strict=True)):
+    for number, (part, of_sheet) in enumerate(zip(points, dips, strict=True)):
         at_sheet = drawn.of_sheet(number)
-        z = at_sheet.at(task.work, each[:, :2]) if len(each) else np.zeros(0)
+        z = at_sheet.at(task.work, part[:, :2]) if len(part) else np.zeros(0)
         if drawn.variogram.nugget > 0:
-            z = z + nugget_noise(drawn.draw.noises[number], drawn.variogram, each[:, :2])
-        heights.append(np.column_stack([each[:, :2], z]))
+            z = z + nugget_noise(drawn.draw.noises[number], drawn.variogram, part[:, :2])
+        heights.append(np.column_stack([part[:, :2], z]))
         slopes.append(None if of_sheet is None else drawn_dips(task.work, at_sheet, of_sheet, baseline))
     model = replace(drawn.sheets, offsets=np.zeros(len(points)))
-    return replace(given, points=heights, dips=slopes, model=(drawn.variogram, model))
+    return replace(companions, points=heights, dips=slopes, model=(drawn.variogram, model))
 
 
 def drawn_dips(work: Work, drawn: GaussianField | SheetField, dips: Dips, baseline: float) -> Dips:

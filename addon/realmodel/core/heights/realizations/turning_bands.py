@@ -52,17 +52,17 @@ class Noise:
         """(count,) float64 of one part, from -1; a longer draw begins with the same numbers."""
         if self._drawn is None:
             return self._normal(part, count)
-        kept = self._drawn.get(part)
-        if kept is None or len(kept) < count:
-            kept = self._normal(part, count)
+        numbers = self._drawn.get(part)
+        if numbers is None or len(numbers) < count:
+            numbers = self._normal(part, count)
             if count <= _MOST_KEPT:
-                self._drawn[part] = kept
-        return kept[:count].copy()
+                self._drawn[part] = numbers
+        return numbers[:count].copy()
 
     def chosen(self, part: int, free: int) -> tuple[float, float]:
         """A number from 0 to 1, and one of the chi-square distribution with so many degrees of freedom."""
-        own = self._generator(part)
-        return float(own.random()), float((own.standard_normal(free) ** 2).sum())
+        generator = self._generator(part)
+        return float(generator.random()), float((generator.standard_normal(free) ** 2).sum())
 
     def _generator(self, part: int) -> np.random.Generator:
         return np.random.Generator(np.random.Philox(np.random.SeedSequence((*self._seed, part + 1))))
@@ -134,19 +134,19 @@ class GaussianField:
         lost = (1.0 - _ON_LINE[part.model](np.array(step / part.range))) / 3
         scale = math.sqrt(part.sill / LINES / (1.0 - lost))
         starts = np.full(_LINES_AT_ONCE, -reach)
-        kept = min(samples, math.ceil(2 * reach / step) + 2)
+        needed = min(samples, math.ceil(2 * reach / step) + 2)
         field = np.zeros(len(local))
         for batch in range(LINES // _LINES_AT_ONCE):
             work.check()
             lines = slice(batch * _LINES_AT_ONCE, (batch + 1) * _LINES_AT_ONCE)
-            key = (number, lines.start, part.model, part.range, length, samples, kept)
+            key = (number, lines.start, part.model, part.range, length, samples, needed)
             values = self.noise.processes.get(key)
             if values is None:
-                values = np.empty((_LINES_AT_ONCE, kept))
+                values = np.empty((_LINES_AT_ONCE, needed))
                 for row in range(_LINES_AT_ONCE):
                     line = number * LINES + lines.start + row
-                    values[row] = _process(spectrum, samples, self.noise, line)[:kept]
-                if kept <= _MOST_KEPT:
+                    values[row] = _process(spectrum, samples, self.noise, line)[:needed]
+                if needed <= _MOST_KEPT:
                     self.noise.processes[key] = values
             field += work.native(
                 native_module().line_sums,

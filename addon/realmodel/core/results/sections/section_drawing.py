@@ -145,13 +145,13 @@ def holes_on(section: SectionData, width: float) -> list[tuple[HoleLine, np.ndar
     if not isinstance(section, FenceData):
         parts = parts_near(section.holes, plane_of(section), width)
         return [(part, flat_of(section, part.places)) for part in parts]
-    found = []
+    hole_parts = []
     for panel, (start, end) in enumerate(pairwise(section.polyline)):
         plane = np.append(start, 0.0), np.array([end[1] - start[1], start[0] - end[0], 0.0])
         for part in parts_near(section.holes, plane, width, (start, end)):
             flat = section.along_panels(part.places, np.full(len(part.places), panel))
-            found.append((part, flat))
-    return found
+            hole_parts.append((part, flat))
+    return hole_parts
 
 
 def _draw_holes(
@@ -172,8 +172,8 @@ def _draw_holes(
             x, y = points[np.argmax(points[:, 1])].tolist()
             half = text_width(hole.name, _SIZE) / 2
             lifted = [(x - half, x + half, y + _NAME_ABOVE + _LINE * k) for k in range(_HIGHEST_NAME)]
-            lifted = [each for k, each in enumerate(lifted) if k == 0 or each[2] + _SIZE < top]
-            place = next((each for each in lifted if not any(_overlap(each, one) for one in taken)), None)
+            lifted = [span for k, span in enumerate(lifted) if k == 0 or span[2] + _SIZE < top]
+            place = next((span for span in lifted if not any(_overlap(span, one) for one in taken)), None)
             if place is not None:
                 taken.append(place)
                 drawing.text(x, place[2], hole.name, _SIZE, anchor="middle", layer=_HOLES)
@@ -192,10 +192,10 @@ def _draw_faults(drawing: Drawing, axes: Axes, section: SectionData) -> None:
             flat = flat_of(section, points)
         lines.append(axes.at(flat).reshape(-1, 2, 2))
     taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
-    for trace, own in zip(section.faults, lines, strict=True):
-        for line in own:
+    for trace, fault_lines in zip(section.faults, lines, strict=True):
+        for line in fault_lines:
             drawing.line(line, BLACK, _FAULT_WIDTH, layer=trace.name)
-        places = _name_places(axes, own, text_width(trace.name, _SIZE))
+        places = _name_places(axes, fault_lines, text_width(trace.name, _SIZE))
         apart = [place for place in places if not any(_overlap(place, other) for other in taken)] or places
         every = np.concatenate(lines)
         begin, end, height = next((place for place in apart if not _is_crossed(place, every)), apart[0])
@@ -276,7 +276,7 @@ def plane_of(section: SectionData) -> tuple[np.ndarray, np.ndarray]:
     """The point and the unit normal of the plane of a section. Raises UsageError where it has none."""
     if section.plane is None:
         raise UsageError("only sections by a plane and fences are drawn")
-    point, normal = (np.asarray(each, np.float64) for each in section.plane)
+    point, normal = (np.asarray(vector, np.float64) for vector in section.plane)
     return point, normal / np.linalg.norm(normal)
 
 

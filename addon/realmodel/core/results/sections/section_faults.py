@@ -36,7 +36,7 @@ def traces_on_fence(model: ModelData, polyline: np.ndarray) -> list[FaultTrace]:
 
 
 def _joined(model: ModelData, panels: list[tuple[np.ndarray, np.ndarray]]) -> list[FaultTrace]:
-    ends = np.concatenate([found for found, _ in panels])
+    ends = np.concatenate([segments for segments, _ in panels])
     surface = np.concatenate([of for _, of in panels])
     panel = np.repeat(np.arange(len(panels), dtype=np.int32), [len(of) for _, of in panels])
     return [
@@ -71,8 +71,8 @@ def _on_panel(model: ModelData, start: np.ndarray, end: np.ndarray) -> tuple[np.
     step = end - start
     ends, surface = _segments(model, np.array([*start, 0.0]), np.array([step[1], -step[0], 0.0]))
     share = dot(ends[:, :, :2] - start, step) / dot(step, step)
-    kept = (share.min(axis=1) < 1.0) & (share.max(axis=1) > 0.0)
-    ends, share, surface = ends[kept], share[kept], surface[kept]
+    inside = (share.min(axis=1) < 1.0) & (share.max(axis=1) > 0.0)
+    ends, share, surface = ends[inside], share[inside], surface[inside]
     length = share[:, 1:] - share[:, :1]
     part = np.tile([0.0, 1.0], (len(ends), 1))  # for each segment, the part on the panel
     np.divide(np.clip(share, 0.0, 1.0) - share[:, :1], length, out=part, where=length != 0)

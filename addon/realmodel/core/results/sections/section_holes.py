@@ -33,7 +33,7 @@ class HoleLine:
 def hole_lines(model: ModelData) -> list[HoleLine]:
     """The boreholes of a model: with intervals by these; with picks alone below a pick the block beneath its
     surface, above the first one that over it."""
-    found, first = [], 0
+    lines, first = [], 0
     for rock in model.project.rocks:
         names = [surface.name for surface in rock.surfaces]
         numbers = {block.surface: n for n, block in enumerate(model.blocks)}
@@ -42,28 +42,28 @@ def hole_lines(model: ModelData) -> list[HoleLine]:
         for n, block in enumerate(model.blocks):
             blocks.setdefault(block.name, n)
         logged = [] if rock.observed is None else list(_of_logs(rock.observed, blocks))
-        found += logged
-        found += _of_picks(rock, below, {hole.name for hole in logged})
+        lines += logged
+        lines += _of_picks(rock, below, {hole.name for hole in logged})
         first += len(names)
-    return found
+    return lines
 
 
-def _of_logs(given: Observations, blocks: dict[str, int]) -> Iterator[HoleLine]:
-    given = given.along_holes()
-    for name in dict.fromkeys(given.holes.tolist()):
-        own = given.some(given.holes == name)
-        if not name or len(own) < 2:
+def _of_logs(observations: Observations, blocks: dict[str, int]) -> Iterator[HoleLine]:
+    observations = observations.along_holes()
+    for name in dict.fromkeys(observations.holes.tolist()):
+        log = observations.some(observations.holes == name)
+        if not name or len(log) < 2:
             continue
-        same = own.goes_on[1:]
-        of_parts = [blocks.get(block, UNKNOWN) for block in own.blocks[1:].tolist()]
-        yield HoleLine(name, *_joined(own.places, np.where(same, of_parts, UNKNOWN)))
+        same = log.goes_on[1:]
+        of_parts = [blocks.get(block, UNKNOWN) for block in log.blocks[1:].tolist()]
+        yield HoleLine(name, *_joined(log.places, np.where(same, of_parts, UNKNOWN)))
 
 
-def _of_picks(rock: Rock, below: list[int], known: set[str]) -> Iterator[HoleLine]:
+def _of_picks(rock: Rock, below: list[int], logged: set[str]) -> Iterator[HoleLine]:
     number = {surface.name: at for at, surface in enumerate(rock.surfaces)}
     for name, (collar, picks) in rock.hole_picks.items():
         met = [(surface, place) for surface, place in picks if surface in number]
-        if name in known or not met:
+        if name in logged or not met:
             continue
         over = number[met[0][0]] + 1
         stops = [] if collar is None else [(below[over] if over < len(below) else UNKNOWN, collar)]
@@ -76,8 +76,8 @@ def _of_picks(rock: Rock, below: list[int], known: set[str]) -> Iterator[HoleLin
 
 def _joined(places: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Without parts of no length."""
-    kept = np.append(True, (places[1:] != places[:-1]).any(axis=1))
-    return places[kept], blocks[kept[1:]].astype(np.int32)
+    differs = np.append(True, (places[1:] != places[:-1]).any(axis=1))
+    return places[differs], blocks[differs[1:]].astype(np.int32)
 
 
 def near_plane(
@@ -86,10 +86,10 @@ def near_plane(
     """The parts of lines from begin to end, (N, 3) each, that lie within a width of a plane on each side of
     it: the numbers (K,) of the lines, and both ends (K, 3) of the parts, moved onto the plane. plane: its
     point and normal."""
-    begin, end = (np.asarray(each, np.float64).reshape(-1, 3) for each in (begin, end))
-    point, normal = (np.asarray(each, np.float64) for each in plane)
+    begin, end = (np.asarray(places, np.float64).reshape(-1, 3) for places in (begin, end))
+    point, normal = (np.asarray(vector, np.float64) for vector in plane)
     normal = normal / norm(normal)
-    away = [((each - point) * normal).sum(axis=1) for each in (begin, end)]
+    away = [((places - point) * normal).sum(axis=1) for places in (begin, end)]
     way = away[1] - away[0]
     low, high = np.zeros(len(begin)), np.ones(len(begin))
     for side in (-width, width):
@@ -98,12 +98,12 @@ def near_plane(
         enters = way * side < 0  # the line comes from beyond this side
         low = np.where(enters & (way != 0), np.maximum(low, share), low)
         high = np.where(~enters & (way != 0), np.minimum(high, share), high)
-    kept = np.flatnonzero((low < high) & ((way != 0) | (np.abs(away[0]) <= width)))
+    numbers = np.flatnonzero((low < high) & ((way != 0) | (np.abs(away[0]) <= width)))
     ends = []
-    for share in (low[kept], high[kept]):
-        at = begin[kept] + share[:, None] * (end - begin)[kept]
-        ends.append(at - (away[0][kept] + share * way[kept])[:, None] * normal)
-    return kept, *ends
+    for share in (low[numbers], high[numbers]):
+        at = begin[numbers] + share[:, None] * (end - begin)[numbers]
+        ends.append(at - (away[0][numbers] + share * way[numbers])[:, None] * normal)
+    return numbers, *ends
 
 
 def parts_near(
@@ -114,18 +114,18 @@ def parts_near(
 ) -> list[HoleLine]:
     """What of holes lies within a width of a plane, moved onto it. span: both ends (2,) in plan of the panel
     that the plane is cut to; None: the whole plane."""
-    found = []
+    parts = []
     for hole in holes:
-        kept, begin, end = near_plane(hole.places[:-1], hole.places[1:], plane, width)
-        if span is not None and len(kept):
+        numbers, begin, end = near_plane(hole.places[:-1], hole.places[1:], plane, width)
+        if span is not None and len(numbers):
             middle, way = 0.5 * (begin + end)[:, :2], span[1] - span[0]
             share = ((middle - span[0]) * way).sum(axis=1) / (way * way).sum()
             inside = (share >= 0.0) & (share <= 1.0)
-            kept, begin, end = kept[inside], begin[inside], end[inside]
-        for run in _runs(kept):
+            numbers, begin, end = numbers[inside], begin[inside], end[inside]
+        for run in _runs(numbers):
             places = np.concatenate([begin[run], end[run[-1:]]])
-            found.append(HoleLine(hole.name, places, hole.blocks[kept[run]]))
-    return found
+            parts.append(HoleLine(hole.name, places, hole.blocks[numbers[run]]))
+    return parts
 
 
 def _runs(numbers: np.ndarray) -> Iterator[np.ndarray]:
@@ -139,15 +139,15 @@ def _runs(numbers: np.ndarray) -> Iterator[np.ndarray]:
 def hole_places(project: Project) -> dict[str, np.ndarray]:
     """(3,) where each borehole of a project begins: its collar, or the highest of its data. Of two holes of
     one name that of the first rock mass."""
-    found: dict[str, np.ndarray] = {}
+    places: dict[str, np.ndarray] = {}
     for rock in project.rocks:
         for name, (collar, picks) in rock.hole_picks.items():
             place = collar if collar is not None else picks[0][1] if picks else None
             if place is not None:
-                found.setdefault(name, np.asarray(place, np.float64))
+                places.setdefault(name, np.asarray(place, np.float64))
         for name, log in ({} if rock.observed is None else rock.observed.logs()).items():
-            found.setdefault(name, log.places[0])
-    return found
+            places.setdefault(name, log.places[0])
+    return places
 
 
 def line_through(
@@ -159,8 +159,8 @@ def line_through(
     if extend is not None and not (np.isfinite(extend) and extend >= 0):
         raise UsageError(f"extend must be 0 or more, not {extend!r}")
     if unknown := [name for name in holes if name not in places]:
-        known = number_list(sorted(places)) if places else "there are none"
-        raise InputRefused(f"there is no hole {number_list(unknown)}", advice=f"holes: {known}")
+        choices = number_list(sorted(places)) if places else "there are none"
+        raise InputRefused(f"there is no hole {number_list(unknown)}", advice=f"holes: {choices}")
     line = np.array([places[name][:2] for name in holes], np.float64).reshape(-1, 2)
     line = line[begins_run(line)]
     if len(line) < 2:
