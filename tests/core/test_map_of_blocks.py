@@ -259,11 +259,11 @@ def test_a_fault_of_any_kind_takes_contacts_near_it(project_of):
     project.faults.append(Fault("F", vertices, triangles))
     model = build(project)
     assert len(model.compartment_names) == 2
-    surface = model.project.rocks[0].surfaces[0]
-    assert not len(surface.contact_array())
-    assert len(surface.point_array()) == 12
+    data = model.rock_inputs[0].data[0]
+    assert not len(data.contacts)
+    assert len(data.points) == 12
     project.faults.clear()
-    assert len(build(project).project.rocks[0].surfaces[0].contact_array()) == 12
+    assert len(build(project).rock_inputs[0].data[0].contacts) == 12
 
 
 @needs_pyshp
@@ -378,9 +378,7 @@ def test_a_project_is_written_back_with_what_its_map_says(project_of, tmp_path):
     assert "project_r_observations.csv" in {path.name for path in written}
     again = build(load_project(written[0]))
     assert [block.volume for block in again.blocks] == [block.volume for block in model.blocks]
-    assert np.array_equal(
-        again.project.rocks[0].surfaces[0].contact_array(), model.project.rocks[0].surfaces[0].contact_array()
-    )
+    assert np.array_equal(again.rock_inputs[0].data[0].contacts, model.rock_inputs[0].data[0].contacts)
 
 
 def valley():
@@ -414,7 +412,7 @@ def test_the_map_of_a_model_makes_a_model_that_honors_it(tmp_path):
     second = build(Project("again", [rock]))
     seen = second.observed()
     for name, number in (("A", 0), ("B", 1)):
-        contacts = second.project.rocks[0].surfaces[number].contact_array()
+        contacts = second.rock_inputs[0].data[number].contacts
         assert len(contacts) > 20, name
         on = first.surface(number)
         heights = np.array([_height(on, *place[:2]) for place in contacts])

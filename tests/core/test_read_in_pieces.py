@@ -205,7 +205,7 @@ def peak(name, scale):
     else:
         surface = Surface("S", points=PointFile(write_points(name, 200 * scale, 200 * scale, folder)[0]))
     with MappedArrays(folder / "arrays") as arrays:
-        surface = SurfaceInput("rock", surface, None, None, "m")
+        surface = SurfaceInput("rock", surface, None, None, [], "m")
         tracemalloc.start()
         _read(arrays.folder, (0, surface))
         found = tracemalloc.get_traced_memory()[1]
@@ -234,14 +234,11 @@ def peak(scale):
     rows, columns = 200 * scale, 220 * scale
     file, _ = write_points("6.grd", rows, columns, folder)
     with MappedArrays(folder / "arrays") as arrays:
-        given = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
-        points = given.read(arrays=arrays).surface.points
-        mesh = tuple(map(arrays.keep, lattice(rows, columns)))
-        extent = np.array([points[:, :2].min(axis=0), points[:, :2].max(axis=0)])
-        settings = Surface("S", method="grid", points=points).method_options()
-        grid = tile_grid([mesh[0]], (1000.0, 1000.0))
-        tiles = folder / f"tiles-{scale}"
-        for name in grid:
+        given = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, [],
+        "m") points = given.read(arrays=arrays).surface.points mesh = tuple(map(arrays.keep, lattice(rows,
+        columns))) extent = np.array([points[:, :2].min(axis=0), points[:, :2].max(axis=0)]) settings =
+        Surface("S", method="grid", points=points).method_options() grid = tile_grid([mesh[0]], (1000.0,
+        1000.0)) tiles = folder / f"tiles-{scale}" for name in grid:
             (tiles / str(name)).mkdir(parents=True)
         tracemalloc.start()
         heights = lambda work: local_heights(work, points, extent, 2, *settings, arrays)
@@ -264,11 +261,10 @@ def test_memory_for_a_raster_in_tiles_does_not_grow(tmp_path):
 
 LIMITED = """
 def limited(file):
-    status = Path("/proc/self/status").read_text()
-    now = int(status.split("VmData:")[1].split()[0]) * 1024
-    resource.setrlimit(resource.RLIMIT_DATA, (now + 100_000_000,) * 2)
-    surface = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
-    with MappedArrays(folder / "arrays") as arrays:
+    status = Path("/proc/self/status").read_text() now = int(status.split("VmData:")[1].split()[0]) * 1024
+    resource.setrlimit(resource.RLIMIT_DATA, (now + 100_000_000,) * 2) surface = SurfaceInput("rock",
+    Surface("S", points=PointFile(file)), None, None, [], "m") with MappedArrays(folder /
+    "arrays") as arrays:
         found, _ = _read(arrays.folder, (0, surface))
         count = len(arrays.opened(found.surface.points))
     try:

@@ -12,6 +12,8 @@ from realmodel.core import (
 )
 from realmodel.core.base.work import native_module
 from realmodel.core.surfaces.local_heights import LocalHeights, local_surfaces
+from realmodel.core.surfaces.observed.surface_data import SurfaceData
+from realmodel.core.surfaces.rock_input import RockInput
 from realmodel.core.tiles.windows import PointWindows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
@@ -207,6 +209,11 @@ def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
     assert nodes @ points / nodes.sum() < 900  # of 3000, 1020 and 1200
 
 
+def entry_of(rock):
+    points = [np.empty((0, 3)) if each.points is None else each.points for each in rock.surfaces]
+    return RockInput(rock, [None] * len(points), data=list(map(SurfaceData.of_points, points)))
+
+
 def test_surfaces_that_tiles_leave_to_the_lead():
     """Those of one system, those that need one that ends, and those that such ones need."""
     points = scattered(60, 1)
@@ -221,11 +228,11 @@ def test_surfaces_that_tiles_leave_to_the_lead():
         Surface("last", points=points, minimum_thickness=1.0, tie=False),
     ]
     rock = Rock("r", surfaces, region=OUTLINE, edge_length=4.0)
-    assert local_surfaces(rock) == set()
+    assert local_surfaces(entry_of(rock)) == set()
     surfaces[6] = Surface("apart", points=points)
-    assert local_surfaces(rock) == {4, 6, 7}
+    assert local_surfaces(entry_of(rock)) == {4, 6, 7}
     surfaces[7].tie = True  # raised, it is tied again; it needs the one before
-    assert local_surfaces(rock) == {4}
+    assert local_surfaces(entry_of(rock)) == {4}
 
 
 def on_a_grid(shape, steps, corner, turn, shift, seed, left_out=0.0):

@@ -17,9 +17,11 @@ from realmodel.core import (
     load_project,
     mesh_region,
 )
+from realmodel.core.base.work import Work
 from realmodel.core.ensembles import Realizer
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.surfaces.local_heights import local_surfaces
+from realmodel.core.surfaces.prepare import read_rocks
 from structure_cases import plane_fault, prepared
 
 OUTLINE = [[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [0.0, 20.0]]
@@ -273,7 +275,7 @@ def test_tiles_leave_it_to_the_lead():
         high = Surface(
             "high", method="parallel", options={"to": "low", "thickness": 1.0}, true_thickness=true
         )
-        assert local_surfaces(rock(low, high).rocks[0]) == expected
+        assert local_surfaces(read_rocks(Work(), rock(low, high))[0]) == expected
 
 
 def test_the_same_for_any_number_of_threads():

@@ -21,7 +21,7 @@ from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
 from ..core.base.work import Cancel, Reporter, Work, native_module, run
 from ..core.heights.ties import tie_data
-from ..core.project.project import Project, Surface, surface_item
+from ..core.project.project import Project, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
 from ..core.surfaces.rock_input import RockInput
 from ..core.surfaces.surface_heights import interpolation_order
@@ -101,7 +101,7 @@ def prepared(
     rocks = [_kept(rock, arrays) for rock in rocks]
     # surfaces on the region's own mesh end where it ends
     clips = tuple(
-        region is not None and not all(surface.interpolated for surface in entry.rock.surfaces)
+        region is not None and not all(map(entry.rock.is_interpolated, entry.rock.surfaces))
         for (_, region, _, _), entry in zip(rocks, inputs, strict=True)
     )
     meshes = [vertices for shapes, *_ in rocks for vertices, _ in shapes]
@@ -111,12 +111,12 @@ def prepared(
     near: dict[tuple[int, int], np.ndarray] = {}
     own: dict[tuple[int, int], np.ndarray] = {}
     for r, entry in enumerate(inputs):
-        numbers = flat(entry.rock)
+        numbers = flat(entry)
         fitted = _fitted(entry, numbers, arrays, workers, cancel)
         for k in (k for k in interpolation_order(entry.rock) if k in fitted):
             found, near[r, k], texts = fitted[k]
-            if entry.rock.surfaces[k].ties:
-                found, of_ties = _tied(found, entry.rock.surfaces[k], near[r, k], entry, cancel)
+            if entry.rock.surfaces[k].tie:
+                found, of_ties = _tied(found, entry, k, near[r, k], cancel)
                 texts = [*texts, *of_ties]
             local[r, k] = linked(found, entry.rock, k)
             warnings += [
@@ -124,10 +124,10 @@ def prepared(
             ]
         if numbers:
             own |= {
-                (r, k): surface.known_points()
+                (r, k): entry.data[k].known_points
                 for k, surface in enumerate(entry.rock.surfaces)
-                if surface.interpolated
-                and len(surface.known_points())
+                if entry.rock.is_interpolated(surface)
+                and len(entry.data[k].known_points)
                 and (k > 0 or 1 in kept_off(entry.rock))
             }
     frame = Frame(
@@ -157,7 +157,7 @@ def _fitted(
     tasks = []
     for k in sorted(numbers):
         surface = entry.rock.surfaces[k]
-        points = arrays.place(arrays.keep(surface.point_array()))
+        points = arrays.place(arrays.keep(entry.data[k].points))
         stub = replace(surface, points=None)
         tasks.append((k, entry.rock.name, stub, points, extent, len(nodes), *surface.method_options()))
     found = {}
@@ -169,10 +169,11 @@ def _fitted(
 
 
 def _tied(
-    found: LocalHeights, surface: Surface, points: np.ndarray, entry: RockInput, cancel: Cancel | None
+    found: LocalHeights, entry: RockInput, number: int, points: np.ndarray, cancel: Cancel | None
 ) -> tuple[LocalHeights, list[str]]:
     """A surface that tiles interpolate, tied to its points and bounds, and warnings."""
-    data = tie_data(np.ascontiguousarray(surface.tied_points), surface.bounds)
+    surface, own = entry.rock.surfaces[number], entry.data[number]
+    data = tie_data(np.ascontiguousarray(own.tied_points(surface)), own.bounds)
     if not len(data.places):
         return found, []
     mesh = Sheet(*map(np.ascontiguousarray, entry.planar_mesh()))
@@ -280,7 +281,7 @@ def _have_one_mesh(inputs: list[RockInput]) -> bool:
     if len(inputs) > 1 or inputs[0].region is None:
         return False
     rock, nodes = inputs[0].rock, len(inputs[0].region.vertices)
-    return all(surface.interpolated for surface in rock.surfaces) and all(
+    return all(map(rock.is_interpolated, rock.surfaces)) and all(
         len(inputs[0].surface(number).vertices) == nodes for number in range(len(rock.surfaces))
     )
 
@@ -294,14 +295,14 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
     for entry in inputs:
         for array in entry.region or ():
             digest.update(np.ascontiguousarray(array))
-        for surface in entry.rock.surfaces:
+        for surface, data in zip(entry.rock.surfaces, entry.data, strict=True):
             how = None
-            if surface.interpolated:
+            if entry.rock.is_interpolated(surface):
                 thickness = (surface.minimum_thickness, surface.true_thickness)
                 how = (surface.method_options(), thickness, surface.tie)
             digest.update(repr((entry.rock.base_elevation, surface.rule, how)).encode())
-            if surface.bounds is not None:
-                for array in (surface.contact_array(), surface.bounds.places, surface.bounds.is_lower):
+            if data.bounds is not None:
+                for array in (data.contacts, data.bounds.places, data.bounds.is_lower):
                     digest.update(np.ascontiguousarray(array))
     for _, found in sorted(of_surfaces.items()):
         digest.update(found)

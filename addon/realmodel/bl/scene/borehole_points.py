@@ -4,7 +4,6 @@
 
 import numpy as np
 
-from ...core import Surface
 from ...core.surfaces.age_order import age_order
 from ..project import library_rows, method_settings, settings
 from . import data_objects
@@ -57,17 +56,13 @@ def _tops(picks, name):
 
 
 def own_points(scene, row):
-    """The points that a surface has from its file, without contacts that follow from observations; None where
-    it is no surface of such points."""
+    """The points that a surface has from its file; None where it is no surface of such points."""
     if row.source == "NONE":
         return np.empty((0, 3))
     if row.source != "POINTS_FILE":
         return None
     found = data_objects.read_points(scene, row)
-    if found is None:
-        return np.empty((0, 3))
-    own = Surface(row.name, points=found, contacts=row.stored.get("contacts")).own_points()
-    return np.empty((0, 3)) if own is None else own
+    return np.empty((0, 3)) if found is None else found
 
 
 def keep_points(row, points):

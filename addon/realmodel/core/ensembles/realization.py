@@ -48,7 +48,7 @@ class Realizer:
         self.model.require_project("an ensemble")
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
-            places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]
+            places += [data.points[:, :2] for data in entry.data]
         places = [each for each in places if len(each)] or [np.zeros((1, 2))]
         low = np.min([each.min(axis=0) for each in places], axis=0)
         high = np.max([each.max(axis=0) for each in places], axis=0)
@@ -130,7 +130,7 @@ class Realizer:
         for each, correlation in enumerate(self.correlations(entry)):
             own = Noise((self.seed, number, rock, each), noise, correlation)
             beside = sheets_beside(entry.rock, each)
-            if surfaces[each].is_level_set:
+            if entry.rock.is_level_set(surfaces[each]):
                 noise, of_series = None, None
             elif each in beside[1:]:  # drawn together with the oldest, whose noise is that of all
                 assert of_series is not None
@@ -144,7 +144,7 @@ class Realizer:
         return replace(
             entry,
             surfaces=[
-                None if surface.interpolated else shape
+                None if entry.rock.is_interpolated(surface) else shape
                 for surface, shape in zip(surfaces, entry.surfaces, strict=True)
             ],
             interpolations=[None] * len(surfaces),

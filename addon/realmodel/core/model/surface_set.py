@@ -20,7 +20,7 @@ from ..exporters import SURFACES
 from ..heights import Interpolation
 from ..notebook import ShortRepr
 from ..project.build_options import check_stage
-from ..project.project import Project, Rock
+from ..project.project import Project
 from ..project.project_checks import check_project
 from ..settings.method_options import check_threads
 from ..structures.parts.parts import Structures
@@ -102,13 +102,13 @@ def build_surfaces(
     stage: int | None = None,
     keep: StoreArray = as_it_is,
     reader: Reader = read_each,
-    flat: Callable[[Rock], Collection[int]] | None = None,
+    flat: Callable[[RockInput], Collection[int]] | None = None,
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
     Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
     surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave. reader:
-    how surfaces are read. flat(rock): surfaces that are not interpolated (rock_input.interpolate_rock), when
+    how surfaces are read. flat(entry): surfaces that are not interpolated (rock_input.interpolate_rock), when
     the method "auto" has made its choice; None: all are.
     Raises InputRefused, UsageError, Cancelled.
     """
@@ -130,7 +130,7 @@ def _build(
     stage: int | None,
     keep: StoreArray,
     reader: Reader,
-    flat: Callable[[Rock], Collection[int]] | None,
+    flat: Callable[[RockInput], Collection[int]] | None,
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs, with_arrays = read_inputs(work, project, reader)

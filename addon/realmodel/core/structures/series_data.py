@@ -14,9 +14,10 @@ from ..base.errors import place_text
 from ..fields import LevelSetData, ScalarField, SlitData
 from ..project.project import Rock
 from ..project.series import Series
-from ..readers.tables.observations import Bounds, LeftOut, source_text
+from ..readers.tables.observations import Bounds, LeftOut, depth_of, source_text
 from ..settings.dips import SpaceDips
 from ..surfaces.observed.conformable import mean_error
+from ..surfaces.observed.surface_data import SurfaceData
 from ..surfaces.rock_input import RockInput
 
 _MOST_BOUNDS = 20_000  # in ways through intervals: more take long, and say hardly more
@@ -24,13 +25,14 @@ _MOST_BOUNDS = 20_000  # in ways through intervals: more take long, and say hard
 
 @dataclass(frozen=True, eq=False)
 class SeriesData:
-    """rock, numbers: of its surfaces there. contacts: (C, 3) with the number (C,) of the surface in the
-    series that each is on, and its row (C,) among the points of that. dips, normals: (D, 3), with rows (D,).
-    bounds: (B, 3) places, each with the number (B,) in the series of the surface whose level f is at most
-    there, or else at least, as is_lower (B,) bool says, and with its row (B,) among the bounds of that
+    """rock, known, numbers: of its surfaces there. contacts: (C, 3) with the number (C,) of the surface in
+    the series that each is on, and its row (C,) among the points of that. dips, normals: (D, 3), with rows
+    (D,). bounds: (B, 3) places, each with the number (B,) in the series of the surface whose level f is at
+    most there, or else at least, as is_lower (B,) bool says, and with its row (B,) among the bounds of that
     surface."""
 
     rock: Rock
+    known: list[SurfaceData]
     numbers: list[int]
     contacts: np.ndarray
     surfaces: np.ndarray
@@ -47,18 +49,19 @@ class SeriesData:
     def of(cls, entry: RockInput, series: Series, numbers: list[int], step: float = np.inf) -> SeriesData:
         """step: how far places within an interval are apart at most."""
         rock = entry.rock
-        points = [rock.surfaces[number].point_array() for number in numbers]
+        points = [entry.data[number].points for number in numbers]
         dips = series.space_dips() or SpaceDips(np.empty((0, 3)), np.empty((0, 3)))
         of_dips = np.flatnonzero(dips.in_use)
         dip_rows = np.array([dips.row(number) for number in of_dips.tolist()], np.int64)
         positions, normals = dips.positions[of_dips], dips.normals[of_dips]
-        given = [rock.surfaces[number].bounds for number in numbers]
+        given = [entry.data[number].bounds for number in numbers]
         step = max(step, sum(_length(each) for each in given if each is not None) / _MOST_BOUNDS)
         none = np.empty((0, 3)), np.empty(0, np.int64)
         placed = [none if each is None else each.along(step) for each in given]
         lower = [np.empty(0, bool) if each is None else each.is_lower for each in given]
         return cls(
             rock,
+            entry.data,
             numbers,
             np.concatenate(points),
             _owners([len(each) for each in points]),
@@ -77,6 +80,7 @@ class SeriesData:
         contacts, dips, bounds = np.split(chosen, np.cumsum([len(self.contacts), len(self.dips)]))
         return SeriesData(
             self.rock,
+            self.known,
             self.numbers,
             *(each[contacts] for each in (self.contacts, self.surfaces, self.contact_rows)),
             *(each[dips] for each in (self.dips, self.normals, self.dip_rows)),
@@ -127,7 +131,7 @@ class SeriesData:
             np.where(self.is_lower, self.bound_surfaces, none),
             slits,
             self.item,
-            float(np.sqrt(mean_error([self.rock.surfaces[number] for number in self.numbers]))),
+            float(np.sqrt(mean_error([self.known[number] for number in self.numbers]))),
             keeps_thickness,
         )
 
@@ -139,33 +143,22 @@ class SeriesData:
             bounds = self._bounds_of(row)
             at = int(self.bound_rows[row])
             return source_text(str(bounds.holes[at]), float(bounds.depths[at]), self.bounds[row])
-        surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
-        source = self._source(row)
-        return (
-            f"surface '{surface.name}', {source or f'point {surface.point_row(int(self.contact_rows[row]))}'}"
-        )
-
-    def _source(self, row: int) -> str | None:
-        """Where a contact was observed; None where it is a point of its surface."""
-        surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
-        observed = self.rock.observed
-        own = len(surface.point_array()) - len(surface.contact_array())
-        if observed is None or self.contact_rows[row] < own:
-            return None
-        same = np.flatnonzero((observed.places == self.contacts[row]).all(axis=1))
-        return observed.source(int(same[0])) if len(same) else None
+        number, at = self.numbers[self.surfaces[row]], int(self.contact_rows[row])
+        data = self.known[number]
+        is_point = at < data.contacts_from
+        source = f"point {data.row(at)}" if is_point else data.source_text(at)
+        return f"surface '{self.rock.surfaces[number].name}', {source}"
 
     def left_out(self, row: int, against: Sequence[tuple[str, int]]) -> LeftOut:
         """A bound that is not used. against: what it contradicts, by kind and row."""
         bounds, at = self._bounds_of(row), int(self.bound_rows[row])
-        depth = float(bounds.depths[at])
         others = tuple(dict.fromkeys(self._said(*each) for each in against))
         return LeftOut(
             "contradiction",
             f"{self.bound_text(row)}, which contradicts {'; '.join(others) or 'data near it'}",
             self._block_of(row),
             str(bounds.holes[at]),
-            None if np.isnan(depth) else depth,
+            depth_of(bounds.depths[at]),
             tuple(self.bounds[row].tolist()),
             others,
         )
@@ -176,8 +169,9 @@ class SeriesData:
             return self.bound_text(row)
         if kind == "dip":
             return f"{self.item(kind, row)} at {place_text(self.dips[row].tolist())}"
-        name = self.rock.surfaces[self.numbers[self.surfaces[row]]].name
-        return f"{self._source(row) or place_text(self.contacts[row].tolist())}: on '{name}'"
+        number = self.numbers[self.surfaces[row]]
+        text = self.known[number].source_text(int(self.contact_rows[row]))
+        return f"{text}: on '{self.rock.surfaces[number].name}'"
 
     def bound_text(self, row: int) -> str:
         """What a bound says."""
@@ -197,7 +191,7 @@ class SeriesData:
         return str(blocks[0]) if len(blocks) == 1 else ""
 
     def _bounds_of(self, row: int) -> Bounds:
-        bounds = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].bounds
+        bounds = self.known[self.numbers[self.bound_surfaces[row]]].bounds
         assert bounds is not None
         return bounds
 

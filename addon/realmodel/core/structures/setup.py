@@ -15,7 +15,7 @@ from ..base.errors import BuildFailed
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..project.project import Project, Rock
+from ..project.project import Project
 from ..project.structure_entries import Fault
 from ..surfaces.field_data import apply_observations, left_out_warnings
 from ..surfaces.prepare import (
@@ -72,13 +72,13 @@ def make_surfaces(
     inputs: list[RockInput],
     stage: int | None,
     keep: StoreArray = as_it_is,
-    flat: Callable[[Rock], Collection[int]] | None = None,
+    flat: Callable[[RockInput], Collection[int]] | None = None,
     joins: bool = True,
 ) -> Structures:
     """Interpolates the surfaces of rock masses that are read and meshed, and divides these by the faults and
     bodies of the project, as read_inputs gives it.
 
-    keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
+    keep, flat: as of interpolate_rock; flat(entry) is asked once the methods "auto" have made their choice.
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
@@ -99,7 +99,7 @@ def _make_whole_sheets(
     inputs: list[RockInput],
     stage: int | None,
     keep: StoreArray,
-    flat: Callable[[Rock], Collection[int]] | None,
+    flat: Callable[[RockInput], Collection[int]] | None,
 ) -> None:
     """As make_surfaces, where nothing divides rock masses."""
     for entry in work.share_out(inputs):
@@ -108,7 +108,7 @@ def _make_whole_sheets(
             propose_series(work, entry, interpolation_order(entry.rock, stage))
             with work.part(0.0, _CHOSEN):
                 settle_methods(work, entry)
-            numbers = flat(entry.rock)
+            numbers = flat(entry)
         interpolate_rock(work, entry, stage, keep, numbers)
 
 

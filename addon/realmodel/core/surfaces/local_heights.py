@@ -24,7 +24,8 @@ from ..heights.run import elsewhere, few_points, refused_points, runs_away
 from ..heights.ties import Terms, TieData, correction, missed_warnings, tied_heights
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
-from .rock_input import named_surfaces
+from .observed.surface_data import SurfaceData
+from .rock_input import RockInput, named_surfaces
 from .surface_heights import needed_surfaces, no_triangle_known, raised_above
 
 Box = tuple[float, float, float, float]  # low x, low y, high x, high y
@@ -195,38 +196,40 @@ class PartHeights:
         )
 
 
-def local_surfaces(rock: Rock) -> set[int]:
-    """The numbers of the surfaces of a rock mass that can be interpolated in parts. Surfaces that they need,
+def local_surfaces(entry: RockInput) -> set[int]:
+    """The numbers of the surfaces of a RockInput that can be interpolated in parts. Surfaces that they need,
     or that other surfaces need, are included only if they have heights everywhere."""
-    found = {number for number, surface in enumerate(rock.surfaces) if is_local(surface)}
+    rock = entry.rock
+    pairs = enumerate(zip(rock.surfaces, entry.data, strict=True))
+    found = {number for number, (surface, data) in pairs if is_local(rock, surface, data)}
     while True:
         others = set(range(len(rock.surfaces))) - found
         asked = {each for number in others for each in needed_surfaces(rock, number)}
         complete = {number for number in found if not _ends(rock.surfaces[number])}
-        complete |= {number for number in others if _is_everywhere(rock.surfaces[number])}
+        complete |= {number for number in others if _is_everywhere(rock, rock.surfaces[number])}
         lacking = {number for number in found if not complete.issuperset(needed_surfaces(rock, number))}
         if not found & (asked | lacking):
             return found
         found -= asked | lacking
 
 
-def is_local(surface: Surface) -> bool:
+def is_local(rock: Rock, surface: Surface, data: SurfaceData) -> bool:
     """Whether the heights of a surface at some nodes do not depend on others."""
-    if not surface.interpolated:
+    if not rock.is_interpolated(surface):
         return False
     if surface.series is not None:
         return False  # the other sheets count, too
     if surface.true_thickness:
         return False  # the other surface counts around each node
     method, settings = surface.method_options()
-    is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
+    is_more_known = data.dips is not None or data.has_bounds or data.error > 0
     if METHODS[method].is_constrained and is_more_known:
         return False  # how dips, bounds and errors count depends on all of them
-    if METHODS[method].needs_points(settings) and not len(surface.point_array()):
+    if METHODS[method].needs_points(settings) and not len(data.points):
         return False
-    if surface.ties and surface.is_along_bounds:
+    if surface.tie and data.is_along_bounds:
         return False  # where bounds do not hold, its points yield
-    is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+    is_tied = surface.tie and (data.has_bounds or len(data.tied_points(surface)) > 0)
     if surface.minimum_thickness is not None and is_tied:
         return False  # raised, it honors data that may share triangles
     if method == "parallel":
@@ -243,9 +246,10 @@ def _ends(surface: Surface) -> bool:
     return surface.method_options()[1].get("extrapolate") == "none"
 
 
-def _is_everywhere(surface: Surface) -> bool:
+def _is_everywhere(rock: Rock, surface: Surface) -> bool:
     """Whether a surface that is made as a whole has a height at each node of the region's mesh."""
-    return surface.interpolated and surface.method_options()[0] != "parallel" and not _ends(surface)
+    is_made = rock.is_interpolated(surface)
+    return is_made and surface.method_options()[0] != "parallel" and not _ends(surface)
 
 
 def local_heights(

@@ -25,6 +25,7 @@ from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
 from .observed.conformable import alike_of
 from .observed.sheet_series import bounds_beside, companions_of
+from .observed.surface_data import SurfaceData
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
 
@@ -71,7 +72,7 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
 
     for number in range(len(rock.surfaces) if last is None else min(last + 1, len(rock.surfaces))):
         visit(number)
-    return [number for number in order if rock.surfaces[number].interpolated]
+    return [number for number in order if rock.is_interpolated(rock.surfaces[number])]
 
 
 def _vertex_attributes(work: Work, points: np.ndarray, result: Interpolation, region: Sheet) -> dict:
@@ -93,7 +94,7 @@ def _vertex_attributes(work: Work, points: np.ndarray, result: Interpolation, re
 def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None = None) -> None:
     """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
     keeps it above the older one where it has a minimum thickness."""
-    rock, surface = entry.rock, entry.rock.surfaces[number]
+    rock, surface, data = entry.rock, entry.rock.surfaces[number], entry.data[number]
     nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
     others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
@@ -102,21 +103,21 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             result, free = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            companions = companions_of(rock, number, entry.joint_fits)
-            task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            task = replace(task, dips=surface.known_dips(), companions=companions, ties=surface.ties)
-            task = replace(task, alike=alike_of(rock, number, entry.joint_fits))
-            bounds = bounds_beside(surface, companions)
-            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness, error=surface.error)
-            result, free = _tied(task, give(method, task), surface)
+            companions = companions_of(rock, entry.data, number, entry.joint_fits)
+            task = Task(work, data.points, nodes, settings, triangles, surfaces=others)
+            task = replace(task, dips=data.dips, companions=companions, ties=surface.tie)
+            task = replace(task, alike=alike_of(rock, entry.data, number, entry.joint_fits))
+            bounds = bounds_beside(data.bounds, companions)
+            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness, error=data.error)
+            result, free = _tied(task, give(method, task), surface, data)
         shape = where_known(nodes, triangles, result.z)
-        if trend is not None and not len(surface.point_array()):
+        if trend is not None and not len(data.points):
             attributes = trend.attributes
         else:
-            attributes = _vertex_attributes(work, surface.point_array(), result, region)
+            attributes = _vertex_attributes(work, data.points, result, region)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
-            warnings += _older_points_above(work, rock, number, shape)
+            warnings += _older_points_above(work, entry, number, shape)
             shape, raised = _above_older(work, entry, number, shape)
             warnings += raised
     if free is not result.z and entry.draws is None:
@@ -127,15 +128,17 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
     entry.warnings += warnings
 
 
-def _tied(task: Task, result: Interpolation, surface: Surface) -> tuple[Interpolation, np.ndarray]:
+def _tied(
+    task: Task, result: Interpolation, surface: Surface, own: SurfaceData
+) -> tuple[Interpolation, np.ndarray]:
     """The heights with which a surface honors its points and bounds on the mesh of its region; and those that
     it had, the same array where it keeps them."""
-    if not surface.ties or task.triangles is None or not len(task.triangles):
+    if not surface.tie or task.triangles is None or not len(task.triangles):
         return result, result.z
     free = result.z
-    data = tie_data(surface.tied_points, task.bounds)
+    data = tie_data(own.tied_points(surface), task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
-    if warnings and surface.is_along_bounds:  # the places that it was put through yield to its bounds
+    if warnings and own.is_along_bounds:  # the places that it was put through yield to its bounds
         data = tie_data(np.empty((0, 3)), task.bounds)
         z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
     if z is not free:
@@ -147,9 +150,9 @@ def _on_trend(
     work: Work, entry: RockInput, number: int, trend: Trend, others: dict
 ) -> tuple[Interpolation, np.ndarray]:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method, as of _tied."""
-    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
-    dips = surface.known_dips()
-    points, mis_ties = without_mis_ties(surface.point_array())
+    surface, own, (nodes, triangles) = entry.rock.surfaces[number], entry.data[number], entry.planar_mesh()
+    dips = own.dips
+    points, mis_ties = without_mis_ties(own.points)
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2])
     away = away[np.isfinite(away[:, 2])]
@@ -172,16 +175,16 @@ def _on_trend(
             "beyond a fault"
         )
     result = replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
-    return _tied(replace(task, bounds=surface.bounds), result, surface)
+    return _tied(replace(task, bounds=own.bounds), result, surface, own)
 
 
-def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> list[BuildWarning]:
+def _older_points_above(work: Work, entry: RockInput, number: int, shape: Sheet) -> list[BuildWarning]:
     """The points of the older surface above one that is to keep off it, before this is raised."""
-    points = rock.surfaces[number - 1].point_array()
+    points = entry.data[number - 1].points
     if not len(points):
         return []
     z = heights_at(work, shape, points[:, :2])
-    return listed(rock, number - 1, points[:, 2] - z, "above", number)
+    return listed(entry, number - 1, points[:, 2] - z, "above", number)
 
 
 def settle_method(work: Work, entry: RockInput, number: int) -> None:
@@ -192,8 +195,9 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
         return
     with naming(surface_item(rock, surface), surface.shape_source):
         nowhere = np.empty((0, 2))
-        task = Task(work, surface.point_array(), nowhere, settings, dips=surface.known_dips())
-        method, options = chosen(replace(task, error=surface.error))
+        data = entry.data[number]
+        task = Task(work, data.points, nowhere, settings, dips=data.dips)
+        method, options = chosen(replace(task, error=data.error))
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
@@ -238,9 +242,10 @@ def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tup
     if raised is None:
         return shape, []
     has_limits = any(key in surface.options for key in BOUNDS)  # they come before data
-    if surface.ties and not has_limits:
+    if surface.tie and not has_limits:
         plan = np.ascontiguousarray(vertices[:, :2])
-        data = tie_data(surface.tied_points, surface.bounds)
+        own = entry.data[number]
+        data = tie_data(own.tied_points(surface), own.bounds)
         raised = raised_heights(work, plan, triangles, raised, least, data)
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())

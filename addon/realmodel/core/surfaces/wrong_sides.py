@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,8 +12,9 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..project.project import Rock, Surface
+from ..project.project import Rock
 from ..settings.rules import RULES, Rule
+from .observed.surface_data import SurfaceData
 from .rock_input import RockInput
 
 _TIED = 1e-9  # of the range of its points: how near to them a surface is
@@ -61,13 +62,12 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
     minimum thickness keeps it above the one before it. What an older surface's points do above a younger
     one is no contradiction: there the younger one ends, or has cut.
     """
-    surfaces = entry.rock.surfaces
-    points = {number: surfaces[number].known_points() for number in numbers}
+    points = {number: entry.data[number].known_points for number in numbers}
     points = {number: own for number, own in points.items() if len(own)}
     warnings = []
     found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock))
     for number, (beyond, others) in found.items():
-        warnings += listed(entry.rock, number, beyond, "below", others)
+        warnings += listed(entry, number, beyond, "below", others)
     return warnings
 
 
@@ -186,15 +186,17 @@ class WrongPoints:
         )
         return replace(worst, items=items, others=others)
 
-    def rows(self, surface: Surface) -> tuple[int, ...]:
+    def rows(self, data: SurfaceData) -> tuple[int, ...]:
         """The numbers that the points had in the table or array that they come from."""
-        return tuple(sorted(map(surface.point_row, self.items)))
+        return tuple(sorted(map(data.row, self.items)))
 
     def is_part_of_survey(self, count: int) -> bool:
         """Whether they are a part of a survey of so many points, and not errors."""
         return count >= _SURVEY and _FEW < len(self.items) / count < 1 - _FEW
 
-    def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
+    def warning(
+        self, rock: Rock, data: Sequence[SurfaceData], number: int, count: int, side: str
+    ) -> BuildWarning:
         """count: of all points of the surface."""
         names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
         surface = rock.surfaces[number]
@@ -203,18 +205,18 @@ class WrongPoints:
         advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
             f"{points_that_lie(len(self.items), count)} {side} {names}, the farthest by "
-            f"{self.by:.4g}: point {surface.point_row(self.worst)} at {place_text(self.place)}"
-            f"{advice or self._of_extrapolated(rock)}"
+            f"{self.by:.4g}: point {data[number].row(self.worst)} at {place_text(self.place)}"
+            f"{advice or self._of_extrapolated(rock, data)}"
         )
         kind = "ends" if is_meant else "wrong_side"
-        return BuildWarning(text, kind, rock.name, surface.name, self.rows(surface))
+        return BuildWarning(text, kind, rock.name, surface.name, self.rows(data[number]))
 
-    def _of_extrapolated(self, rock: Rock) -> str:
+    def _of_extrapolated(self, rock: Rock, data: Sequence[SurfaceData]) -> str:
         """What to add where the farthest point is beside the data of surfaces that it lies beyond."""
         place = np.array([self.place[:2]])
         named = []
         for number in self.others:
-            points = rock.surfaces[number].known_points()
+            points = data[number].known_points
             if len(points) and native_module().outside_hull(points, place)[0]:
                 named.append(f"'{rock.surfaces[number].name}'")
         if not named:
@@ -229,10 +231,10 @@ def points_that_lie(some: int, count: int) -> str:
 
 
 def listed(
-    rock: Rock, number: int, beyond: np.ndarray, side: str, others: int | np.ndarray
+    entry: RockInput, number: int, beyond: np.ndarray, side: str, others: int | np.ndarray
 ) -> list[BuildWarning]:
     """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
     others: the numbers of these surfaces, one or (N,)."""
-    points = rock.surfaces[number].point_array()
+    points = entry.data[number].points
     found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
-    return [] if found is None else [found.warning(rock, number, len(points), side)]
+    return [] if found is None else [found.warning(entry.rock, entry.data, number, len(points), side)]

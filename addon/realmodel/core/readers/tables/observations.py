@@ -200,6 +200,11 @@ def source_text(hole: str, depth: float, place: Sequence[float] | np.ndarray) ->
     return f"hole '{hole}' at {at if np.isnan(depth) else format(depth, '.9g')}"
 
 
+def depth_of(value: float) -> float | None:
+    """None where a depth is not known, NaN."""
+    return None if np.isnan(value) else float(value)
+
+
 @dataclass(frozen=True)
 class LeftOut:
     """An observation that is not used. kind: a word of KINDS, or SWITCHED_OFF. text: what and why. block: its

@@ -193,7 +193,7 @@ class CompartmentSheets:
     def _is_ready(self, others: Iterable[int] | None = None) -> bool:
         """Whether the surfaces that this one needs, or some others, are finished."""
         rock = self.entry.rock
-        if not rock.surfaces[self.number].interpolated:
+        if not rock.is_interpolated(rock.surfaces[self.number]):
             return True
         needed = needed_surfaces(rock, self.number) if others is None else others
         return all(self.entry.divided().sheets[0][other] is not None for other in needed)

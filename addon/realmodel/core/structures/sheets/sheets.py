@@ -56,7 +56,7 @@ def make_sheets(
     steps = np.linspace(0.0, 1.0, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
     def begin(part: Work, number: int) -> CompartmentSheets:
-        kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
+        kind = InterpolatedSurface if rock.is_interpolated(rock.surfaces[number]) else ReadyMesh
         with named(rock, number):
             sheets = CompartmentSheets(entry, number, kind(part, entry, number))
         sheets.make_own()
@@ -139,18 +139,17 @@ def _keep(entry: RockInput, number: int, keep: StoreArray) -> None:
 def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray) -> None:
     """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
     compartment."""
-    structure, surfaces = entry.divided(), entry.rock.surfaces
-    points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
+    structure, data = entry.divided(), entry.data[number]
+    points = data.points
     sides = structure.points[number]
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
-        its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
         one = replace(
             entry,
-            rock=replace(entry.rock, surfaces=its),
             surfaces=structure.sheets[compartment],
             warnings=[],
             structure=None,
+            data=[*entry.data[:number], data.some(own), *entry.data[number + 1 :]],
         )
 
         def holds(places: np.ndarray, row: np.ndarray = row) -> np.ndarray:
