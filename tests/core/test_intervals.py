@@ -373,7 +373,7 @@ def test_contacts_follow_the_rules_when_these_change(project):
     model = build(load_project(project()))
     changed = model.project
     changed.rocks[0].surfaces[1].rule = "conformable"
-    surfaces = build(changed).project.rocks[0].surfaces
+    surfaces = build(changed).rock_inputs[0].data
     # where the clay does not cut the basement, sand on the basement is the surface of that
     assert len(surfaces[0].points) == 4 and len(surfaces[1].points) == 2
 

@@ -19,6 +19,7 @@ from ..core.base.work import Cancel, Progress, Reporter, progress_bar, report_no
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
 from ..core.surfaces.local_heights import PartHeights
+from ..core.surfaces.rock_input import RockInput
 from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
@@ -310,7 +311,7 @@ def _warnings(frame: Frame, store: Store, names: list[Name]) -> list[BuildWarnin
     for (r, k), of in sorted(heights.items()):
         found += frame.local[r, k].warnings(of, frame.project.rocks[r], k)
     for (side, r, k), own in sorted(wrong.items()):
-        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], side))
+        found.append(own.warning(RockInput(frame.project.rocks[r], []), k, frame.sought[r, k], side))
     for (kind, rock, surface, *text), numbers in items.items():
         if kind == "no_area":
             what = "triangle" if len(numbers) == 1 else "triangles"

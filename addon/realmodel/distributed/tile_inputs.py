@@ -301,9 +301,8 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
                 thickness = (surface.minimum_thickness, surface.true_thickness)
                 how = (surface.method_options(), thickness, surface.tie)
             digest.update(repr((entry.rock.base_elevation, surface.rule, how)).encode())
-            if data.bounds is not None:
-                for array in (data.contacts, data.bounds.places, data.bounds.is_lower):
-                    digest.update(np.ascontiguousarray(array))
+            for array in (data.contacts, data.bounds.places, data.bounds.is_lower):
+                digest.update(np.ascontiguousarray(array))
     for _, found in sorted(of_surfaces.items()):
         digest.update(found)
     return digest.hexdigest()

@@ -190,11 +190,6 @@ class Surface(Shaped):
         return METHODS[method].needs_points(settings)
 
     @builtins.property  # a field of this class is called property
-    def has_thickness(self) -> bool:
-        """Whether it keeps a thickness above another surface, or below it."""
-        return self.minimum_thickness is not None or self.method == "parallel"
-
-    @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
         """The name of the block deposited beneath it."""
         return self.block or f"{self.name} block"
@@ -395,15 +390,6 @@ class Rock(Entry):
         outlines = self.region if is_several(self.region) else [self.region]
         return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
 
-    def constraint_lines(self) -> list[np.ndarray]:
-        """The lines (N, 2) of constraints that are arrays."""
-        return [line for line in self.constraints if len(line) > 1]
-
-    def constraint_points(self) -> np.ndarray | None:
-        """The points (N, 2) of constraints that are arrays; None where there are none."""
-        points = [point for point in self.constraints if len(point) == 1]
-        return np.concatenate(points) if points else None
-
     def stage(self, m: int) -> Rock:
         """The rock mass with the surfaces up to m, and the series that these belong to."""
         kept = self.surfaces[: m + 1]
@@ -452,13 +438,10 @@ class Project(Compared):
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             files += rock.map_files
-            files += [Path(rock.dip_file.file)] if rock.dip_file is not None else []
-            for surface in rock.surfaces:
-                if surface.point_file is not None:
-                    files += companions(Path(surface.point_file.file))
-                if surface.dip_file is not None:
-                    files.append(Path(surface.dip_file.file))
-            files += [Path(each.dip_file.file) for each in rock.series if each.dip_file is not None]
+            of_dips = [each.dip_file for each in (rock, *rock.surfaces, *rock.series)]
+            files += [Path(each.file) for each in of_dips if each is not None]
+            for given in (surface.point_file for surface in rock.surfaces):
+                files += [] if given is None else companions(Path(given.file))
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]

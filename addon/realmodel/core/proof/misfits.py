@@ -153,25 +153,19 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
 
 
 def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> Iterator[Misfit]:
-    rock = model.rock_inputs[which[2]].rock
-    surface = rock.surfaces[which[1]]
-    dips, own = model.rock_inputs[which[2]].data[which[1]].dips, surface.dips  # its own ones first
+    entry = model.rock_inputs[which[2]]
+    surface, dips = entry.rock.surfaces[which[1]], entry.data[which[1]].dips
     assert dips is not None
-    rows = (
-        []
-        if not isinstance(own, Dips)
-        else [own.row(number) for number in np.flatnonzero(own.in_use).tolist()]
-    )
-    z = dips.heights
-    slopes, heights = _slopes(model, which, np.column_stack([dips.positions, z]))
+    own = surface.dips  # they come first
+    rows: list[int | None] = [None] * len(dips)
+    if isinstance(own, Dips):
+        in_use = np.flatnonzero(own.in_use).tolist()
+        rows[: len(in_use)] = map(own.row, in_use)
+    slopes, heights = _slopes(model, which, np.column_stack([dips.positions, dips.heights]))
     normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))
-    cross = norm(np.cross(normals, there))
-    angles = np.degrees(atan2(cross, (normals * there).sum(axis=1)))
-    for k in np.flatnonzero(angles > tolerance).tolist():
-        place = (*dips.positions[k].tolist(), float(heights[k] if np.isnan(z[k]) else z[k]))
-        texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
-        source = "", None, rows[k] if k < len(rows) else None
-        yield Misfit("dip", rock.name, surface.name, *source, place, *texts, float(angles[k]))
+    z = np.where(np.isnan(dips.heights), heights, dips.heights)
+    places = np.column_stack([dips.positions, z])
+    return _differing((entry.rock.name, surface.name), (rows, places, normals), there, tolerance)
 
 
 def _dips_of_field(
@@ -179,18 +173,22 @@ def _dips_of_field(
 ) -> Iterator[Misfit]:
     """The dips of a series that its field does not have; outside of its lattice it has none."""
     dips = next(series for series in rock.series if series.name == own.name).space_dips()
-    if dips is None:
-        return
-    rows = np.flatnonzero(dips.in_use)
-    places, normals = dips.positions[rows], dips.normals[rows]
-    there = own.slopes(places, form.compartments_of(work, places))
+    if dips is not None:
+        used = np.flatnonzero(dips.in_use)
+        places, rows = dips.positions[used], [dips.row(row) for row in used.tolist()]
+        there = own.slopes(places, form.compartments_of(work, places))
+        yield from _differing((rock.name, own.name), (rows, places, dips.normals[used]), there, tolerance)
+
+
+def _differing(of: tuple[str, str], dips: tuple, there: np.ndarray, tolerance: float) -> Iterator[Misfit]:
+    """The dips of a rock mass and something in it whose normals differ from those that the model has, (D, 3).
+    dips: their rows, places and normals."""
+    rows, places, normals = dips
     angles = np.degrees(atan2(norm(np.cross(normals, there)), (normals * there).sum(axis=1)))
     for k in np.flatnonzero(angles > tolerance).tolist():
         texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
         place = tuple(places[k].tolist())
-        yield Misfit(
-            "dip", rock.name, own.name, "", None, dips.row(int(rows[k])), place, *texts, float(angles[k])
-        )
+        yield Misfit("dip", *of, "", None, rows[k], place, *texts, float(angles[k]))
 
 
 def _slopes(

@@ -118,7 +118,7 @@ def _observed(work: Work, model: ModelData) -> Observed:
                     residual = None if height != height else place[2] - height
                     source = data.source(data.contacts_from + row)
                     contacts.append(ObservedContact(rock.name, surface.name, *source, tuple(place), residual))
-                count += 0 if data.bounds is None else len(data.bounds)
+                count += len(data.bounds)
                 violated += violated_bounds(model, (first + at, at, number), near)
         left_out += [(rock.name, each) for each in entry.left_out]
         first += len(rock.surfaces)
@@ -132,7 +132,7 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
     number, at, r = surface
     rock = model.rock_inputs[r].rock
     bounds = model.rock_inputs[r].data[at].bounds
-    if bounds is None or not len(bounds):
+    if not len(bounds):
         return []
     own_field = model.rock_inputs[r].field_of(at)
     places, row = bounds.along(np.inf if own_field is None else own_field.fields[0].lattice.spacing[0])

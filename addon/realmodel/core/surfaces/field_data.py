@@ -34,7 +34,7 @@ _LISTED = 12  # observations that a warning names; the report has all
 class FieldData:
     """Of one rock mass. rock: with arrays in the place of boreholes and observations. picks: of its
     boreholes. surfaces: each as it was before it is read, with the picks to be added to it, or None.
-    situation: the bodies that there may be, before their shapes are known. unnamed: names of picks that no
+    unnamed: names of picks that no
     surface from points has. left_out: rows of tables that are not used. map_warnings: sentences. ground: the
     number of the surface that is the ground of the map, None for none. mapped: (D,) texts, the blocks that
     the map shows at dips of the rock mass, "" where these do not need it; None without a map."""
@@ -42,7 +42,6 @@ class FieldData:
     rock: Rock
     picks: Picks
     surfaces: list[tuple[Surface, list[Pick] | None]]
-    situation: Situation
     unnamed: list[str]
     left_out: list[LeftOut]
     map_warnings: list[str]
@@ -103,7 +102,6 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         read,
         picks,
         surfaces,
-        _of_bodies(project, rock),
         [name for name in picks.of_surfaces if name in unnamed],
         left_out,
         map_warnings,
@@ -173,7 +171,7 @@ def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -
     return shown
 
 
-def _of_bodies(project: Project, rock: Rock) -> Situation:
+def bodies_of(project: Project, rock: Rock) -> Situation:
     """The bodies that there may be in a rock mass, before their shapes are known."""
     number = [each.name for each in project.rocks].index(rock.name)
     there = [(body, body_times(project, body)) for body in project.bodies]
@@ -194,30 +192,22 @@ def _without_picks(surface: Surface, picks: Picks) -> Surface:
     return replace(surface, left_out=np.concatenate([*known, off]))
 
 
-def observed_on_mesh(
-    entry: RockInput, observations: Observations | None = None
-) -> tuple[Observations, np.ndarray]:
-    """The observations of a RockInput, or those that are given in their place, with more along its intervals
-    where its surfaces are linear only between edges of its planar mesh, once it is meshed; and (N,) bool,
-    those that are not new."""
-    observations = entry.rock.observed if observations is None else observations
-    assert observations is not None
+def observed_on_mesh(entry: RockInput, observations: Observations) -> tuple[Observations, np.ndarray]:
+    """Observations of a RockInput with more along its intervals where its surfaces are linear only between
+    edges of its planar mesh, once it is meshed; and (N,) bool, those that are not new."""
     if entry.region is None or not entry.rock.interpolates:
         return observations, np.ones(len(observations), bool)
     return with_crossings(observations, entry.region)
 
 
 def apply_observations(
-    work: Work,
-    entry: RockInput,
-    situation: Situation | None = None,
-    given: tuple[Observations, np.ndarray] | None = None,
+    work: Work, entry: RockInput, situation: Situation, given: tuple[Observations, np.ndarray]
 ) -> None:
     """Gives the surfaces of a RockInput that is read the contacts and bounds that follow from its
     observations, in the place of those that they have. situation: where these lie, but for where surfaces
     reach. given: as of observed_on_mesh."""
-    observations, is_own = given or observed_on_mesh(entry)
-    situation = replace(situation or Situation(), covered=_covered(work, entry, observations.places))
+    observations, is_own = given
+    situation = replace(situation, covered=_covered(work, entry, observations.places))
     derived = derive(entry.rock, observations, situation)
     entry.data = with_contacts(entry.rock, entry.data, derived)
     entry.used = derived.used[is_own]

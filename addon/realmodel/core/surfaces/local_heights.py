@@ -222,14 +222,14 @@ def is_local(rock: Rock, surface: Surface, data: SurfaceData) -> bool:
     if surface.true_thickness:
         return False  # the other surface counts around each node
     method, settings = surface.method_options()
-    is_more_known = data.dips is not None or data.has_bounds or data.error > 0
+    is_more_known = data.dips is not None or len(data.bounds) > 0 or data.error > 0
     if METHODS[method].is_constrained and is_more_known:
         return False  # how dips, bounds and errors count depends on all of them
     if METHODS[method].needs_points(settings) and not len(data.points):
         return False
     if surface.tie and data.is_along_bounds:
         return False  # where bounds do not hold, its points yield
-    is_tied = surface.tie and (data.has_bounds or len(data.tied_points(surface)) > 0)
+    is_tied = surface.tie and (len(data.bounds) > 0 or len(data.tied_points(surface)) > 0)
     if surface.minimum_thickness is not None and is_tied:
         return False  # raised, it honors data that may share triangles
     if method == "parallel":

@@ -263,10 +263,10 @@ def _data_of_sheets(work: Work, entry: RockInput, number: int) -> Iterator[TieDa
     if structure is None or not structure.faults.active(number).any():
         yield tie_data(points, bounds)
         return
-    places = points if bounds is None else np.concatenate([points, bounds.places])
-    sides = sides_of(work, places, structure.faults)[:, structure.faults.active(number)]
+    sides = sides_of(work, np.concatenate([points, bounds.places]), structure.faults)[
+        :, structure.faults.active(number)
+    ]
     rows, sheet = np.unique(sides, axis=0, return_inverse=True)
     for each in range(len(rows)):
         own = sheet.ravel() == each
-        of_bounds = own[len(points) :]
-        yield tie_data(points[own[: len(points)]], None if bounds is None else bounds.some(of_bounds))
+        yield tie_data(points[own[: len(points)]], bounds.some(own[len(points) :]))

@@ -31,9 +31,9 @@ from ..settings.mesh_sizes import AUTO
 from ..settings.series import SHEETS
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
-from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
+from .field_data import FieldData, apply_observations, bodies_of, left_out_warnings, read_field_data
 from .observed.conformable import proposals
-from .observed.kept_contacts import with_kept_bounds
+from .observed.kept_contacts import kept_bounds
 from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
@@ -95,10 +95,11 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
             data=[each.data for each in own],
         )
         entry.has_faults = bool(project.faults)
-        if rock.observed is not None:
-            apply_observations(work, entry, field.situation)
+        if (seen := rock.observed) is not None:
+            apply_observations(work, entry, bodies_of(project, given), (seen, np.ones(len(seen), bool)))
         else:
-            entry.data = with_kept_bounds(entry.rock, entry.data)
+            kept = kept_bounds(rock, entry.data)
+            entry.data = [replace(data, bounds=own) for data, own in zip(entry.data, kept, strict=True)]
         _require_points(entry)
         apply_dips(work, entry, field.ground, field.mapped)
         if not (project.faults or project.bodies):  # else once it is known where these are
@@ -118,11 +119,7 @@ def _require_points(entry: RockInput) -> None:
 
 def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
     """The warnings about units in the headers of the tables of dips and observations of a rock mass."""
-    of_series, of_surfaces = (
-        [each.dip_file for each in rock.series],
-        [each.dip_file for each in rock.surfaces],
-    )
-    dips = [rock.dip_file, *of_series, *of_surfaces]
+    dips = [each.dip_file for each in (rock, *rock.series, *rock.surfaces)]
     found: list[BuildWarning] = []
     for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in dips)):
         if given is not None:
@@ -258,13 +255,15 @@ def mesh_again(work: Work, entry: RockInput, keep: StoreArray = as_it_is) -> boo
 
 def _planar_mesh(work: Work, entry: RockInput) -> Sheet:
     """The planar mesh of a rock mass; contacts that it could not tell apart are vertices."""
-    rock, points = entry.rock, entry.rock.constraint_points()
+    rock = entry.rock
+    given_points = [point for point in rock.constraints if len(point) == 1]
+    points = np.concatenate(given_points) if given_points else None
     options = MeshOptions(
         rock.edge_length,
         rock.mesher,
         rock.triangles,
         rock.size,
-        rock.constraint_lines(),
+        [line for line in rock.constraints if len(line) > 1],
         points,
         _density_points(entry) if rock.edge_length == AUTO else None,
     )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -194,10 +194,9 @@ class WrongPoints:
         """Whether they are a part of a survey of so many points, and not errors."""
         return count >= _SURVEY and _FEW < len(self.items) / count < 1 - _FEW
 
-    def warning(
-        self, rock: Rock, data: Sequence[SurfaceData], number: int, count: int, side: str
-    ) -> BuildWarning:
+    def warning(self, entry: RockInput, number: int, count: int, side: str) -> BuildWarning:
         """count: of all points of the surface."""
+        rock, data = entry.rock, entry.data[number]
         names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
         surface = rock.surfaces[number]
         ends = side == "below" and not RULES[surface.rule].cuts and surface.minimum_thickness is None
@@ -205,20 +204,20 @@ class WrongPoints:
         advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
             f"{points_that_lie(len(self.items), count)} {side} {names}, the farthest by "
-            f"{self.by:.4g}: point {data[number].row(self.worst)} at {place_text(self.place)}"
-            f"{advice or self._of_extrapolated(rock, data)}"
+            f"{self.by:.4g}: point {data.row(self.worst)} at {place_text(self.place)}"
+            f"{advice or self._of_extrapolated(entry)}"
         )
         kind = "ends" if is_meant else "wrong_side"
-        return BuildWarning(text, kind, rock.name, surface.name, self.rows(data[number]))
+        return BuildWarning(text, kind, rock.name, surface.name, self.rows(data))
 
-    def _of_extrapolated(self, rock: Rock, data: Sequence[SurfaceData]) -> str:
+    def _of_extrapolated(self, entry: RockInput) -> str:
         """What to add where the farthest point is beside the data of surfaces that it lies beyond."""
         place = np.array([self.place[:2]])
         named = []
         for number in self.others:
-            points = data[number].known_points
+            points = entry.data[number].known_points
             if len(points) and native_module().outside_hull(points, place)[0]:
-                named.append(f"'{rock.surfaces[number].name}'")
+                named.append(f"'{entry.rock.surfaces[number].name}'")
         if not named:
             return ""
         be = "is" if len(named) == 1 else "are"
@@ -237,4 +236,4 @@ def listed(
     others: the numbers of these surfaces, one or (N,)."""
     points = entry.data[number].points
     found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
-    return [] if found is None else [found.warning(entry.rock, entry.data, number, len(points), side)]
+    return [] if found is None else [found.warning(entry, number, len(points), side)]

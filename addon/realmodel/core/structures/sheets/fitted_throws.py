@@ -263,7 +263,7 @@ def _takes_part(entry: RockInput, number: int) -> bool:
         and surface.tie
         and surface.minimum_thickness is None
         and data.dips is None
-        and not data.has_bounds
+        and not len(data.bounds)
         and not needed_surfaces(entry.rock, number)
         and not dies_out.any()
     )

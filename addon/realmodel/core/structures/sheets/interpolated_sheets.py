@@ -68,8 +68,7 @@ class InterpolatedSurface:
         self.keys = keys_of(entry.divided(), number, self.placed.sides)
         self.dips, self.dip_sides = sided_dips(work, self.known, entry)
         self.bounds = self.known.bounds
-        if self.bounds is not None:
-            self.bound_sides = sides_of(work, self.bounds.places, structure.faults)
+        self.bound_sides = sides_of(work, self.bounds.places, structure.faults)
         # of a sheet its interpolation, and the diagnostics of its vertices
         self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
         self.most: tuple[int, Interpolation | None] = (-1, None)
@@ -173,12 +172,11 @@ class InterpolatedSurface:
         """Its data with the dips and bounds in a family's compartments. beside: faults that die out there,
         the side of each that is asked for, and its trace: what lies beside that on the other side does not
         count."""
-        dips, bounds = self.dips, self.bounds
+        dips = self.dips
         if dips is not None:
             dips = dips.some(self._that_constrain(family, dips.positions, self.dip_sides, beside))
-        if bounds is not None:
-            plan = np.ascontiguousarray(bounds.places[:, :2])
-            bounds = bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
+        plan = np.ascontiguousarray(self.bounds.places[:, :2])
+        bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
         return replace(self.known, dips=dips, bounds=bounds)
 
     def _that_constrain(
@@ -329,7 +327,7 @@ class InterpolatedSurface:
         settings = self.surface.method_options()[1]
         is_bounded = any(settings.get(option) is not None for option in BOUNDS)
         surface, data = self.surface, self._constrained(family)
-        if surface.minimum_thickness is None and not is_bounded and not data.has_bounds:
+        if surface.minimum_thickness is None and not is_bounded and not len(data.bounds):
             return trends
         none = np.zeros(len(self.points), bool)
         return shared(
@@ -451,9 +449,7 @@ class InterpolatedSurface:
         """The surfaces whose data count for it, itself included."""
         rock = self.entry.rock
         beside = sheets_beside(rock, self.number)
-        if beside or (self.dips is None and self.bounds is None):
-            return beside
-        return conformable_run(rock, self.entry.data, self.number)
+        return beside or conformable_run(rock, self.entry.data, self.number)
 
     def _counts_by_node(self, surface: Surface, data: SurfaceData) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
@@ -558,9 +554,8 @@ class InterpolatedSurface:
             settings.get(option) is None for option in BOUNDS
         )
         dies_out = faults.active(self.number) & np.array(faults.dies_out, bool)
-        has_data = self.bounds is not None or len(self.known.tied_points(self.surface)) > 0
         is_divided = self.steps is not None or bool(dies_out.any())
-        return self.surface.tie and is_free and has_data and is_divided
+        return self.surface.tie and is_free and is_divided
 
     def tied(self, sheets: list[Sheet]) -> tuple[list[Sheet], list[BuildWarning]]:
         """Its different sheets, tied to the data in their compartments; the same objects where they were. And
@@ -586,8 +581,7 @@ class InterpolatedSurface:
             & (len(self.known.tied_points(self.surface)) > 0)
         )
         of_points = np.where(is_tied, of_points, -1)
-        of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
-        data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
+        data = data_of_sheets(self.points, self.bounds, of_points, sheet_of(self.bound_sides), len(sheets))
         sided = sides, weights_of_sheets(structure, mesh, z, sides)
         tied, texts = tied_sheets(self.work, mesh, z, sided, data)
         name, rock = self.surface.name, self.entry.rock.name

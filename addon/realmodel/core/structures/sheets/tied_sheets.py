@@ -46,14 +46,11 @@ def weights_of_sheets(structure: RockStructure, mesh: Sheet, z: np.ndarray, side
 
 
 def data_of_sheets(
-    points: np.ndarray, bounds: Bounds | None, of_points: np.ndarray, of_bounds: np.ndarray, count: int
+    points: np.ndarray, bounds: Bounds, of_points: np.ndarray, of_bounds: np.ndarray, count: int
 ) -> tuple[TieData, np.ndarray]:
     """What points (P, 3) and bounds ask of so many sheets together, and (C,) int32, of which. of_points,
     of_bounds: to which each counts; -1: none."""
-    each = [
-        tie_data(points[of_points == sheet], None if bounds is None else bounds.some(of_bounds == sheet))
-        for sheet in range(count)
-    ]
+    each = [tie_data(points[of_points == sheet], bounds.some(of_bounds == sheet)) for sheet in range(count)]
     first = [np.arange(len(own.places)) < own.contacts for own in each]
     order = np.argsort(~np.concatenate(first), kind="stable")
     sheets = np.repeat(np.arange(count, dtype=np.int32), [len(own.places) for own in each])

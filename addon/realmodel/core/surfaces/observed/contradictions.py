@@ -27,9 +27,7 @@ def without_contradictions(
     found, left_out = list(data), list[LeftOut]()
     for number, (surface, own) in enumerate(zip(rock.surfaces, data, strict=True)):
         bounds = own.bounds
-        if bounds is None or not len(bounds) or not rock.is_interpolated(surface):
-            continue
-        if own.is_along_bounds or not len(own.points):
+        if not (len(bounds) and len(own.points)) or own.is_along_bounds or not rock.is_interpolated(surface):
             continue
         points, _ = without_mis_ties(own.points)
         wrong = consistent(np.ascontiguousarray(points), bounds).left_out

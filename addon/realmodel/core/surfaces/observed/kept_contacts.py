@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -42,8 +41,3 @@ def kept_bounds(rock: Rock, data: Sequence[SurfaceData]) -> list[Bounds]:
         Bounds.at_or_above(np.concatenate(each), rock.is_level_set(surface))
         for each, surface in zip(places, surfaces, strict=True)
     ]
-
-
-def with_kept_bounds(rock: Rock, data: Sequence[SurfaceData]) -> list[SurfaceData]:
-    """The data of the surfaces of a rock mass that is read, without observations, with these bounds."""
-    return [replace(own, bounds=kept) for own, kept in zip(data, kept_bounds(rock, data), strict=True)]

@@ -43,20 +43,20 @@ def companions_of(
     """The sheets with which a surface is interpolated; None where none of the others has points. known: as
     of Alike."""
     beside = sheets_beside(rock, number)
-    points = [np.ascontiguousarray(data[each].points) for each in beside]
-    if not any(len(own) for each, own in zip(beside, points, strict=True) if each != number):
+    if not any(len(data[each].points) for each in beside if each != number):
         return None
-    dips = [data[each].dips for each in beside]
-    error = mean_error([data[each] for each in beside])
-    return Companions(beside.index(number), points, dips, known, error)
+    sheets = [data[each] for each in beside]
+    points = [np.ascontiguousarray(each.points) for each in sheets]
+    dips = [each.dips for each in sheets]
+    return Companions(beside.index(number), points, dips, known, mean_error(sheets))
 
 
-def bounds_beside(bounds: Bounds | None, companions: Companions | None) -> Bounds | None:
+def bounds_beside(bounds: Bounds, companions: Companions | None) -> Bounds:
     """Bounds of a surface, and those by the contacts of the other sheets: it lies at or above the older
     ones, and at or below the younger ones."""
     if companions is None:
         return bounds
-    parts = [] if bounds is None else [bounds]
+    parts = [bounds]
     for other, points in enumerate(companions.points):
         if other != companions.own and len(points):
             is_older = np.full(len(points), other < companions.own)

@@ -32,7 +32,7 @@ class SurfaceData:
     points: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
     contacts_from: int = 0
     sources: Sources = field(default_factory=dict)
-    bounds: Bounds | None = None
+    bounds: Bounds = field(default_factory=lambda: Bounds.at_or_above(np.empty((0, 3))))
     dips: Dips | None = None
     error: float = 0.0
     is_along_bounds: bool = False
@@ -63,11 +63,6 @@ class SurfaceData:
         that they are a survey of the surface. Both are finer than a planar mesh should be."""
         has_contacts = METHODS[surface.method_options()[0]].has_contacts
         return self.points if has_contacts and len(self.points) <= MOST_CONTACTS else self.points[:0]
-
-    @property
-    def has_bounds(self) -> bool:
-        """Whether heights are known that it lies above or below."""
-        return self.bounds is not None and len(self.bounds) > 0
 
     def row(self, number: int) -> int:
         """The number that a point had in the table or array that it comes from, for messages."""
