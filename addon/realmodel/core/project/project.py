@@ -190,6 +190,11 @@ class Surface(Shaped):
         return METHODS[method].needs_points(settings)
 
     @builtins.property  # a field of this class is called property
+    def has_thickness(self) -> bool:
+        """Whether it keeps a thickness above another surface, or below it."""
+        return self.minimum_thickness is not None or self.method == "parallel"
+
+    @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
         """The name of the block deposited beneath it."""
         return self.block or f"{self.name} block"

@@ -143,7 +143,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
             _check_continuation(surface, refuse)
         return
     _check_method(surface, refuse, no_points)
-    if surface.true_thickness and surface.minimum_thickness is None and surface.method != "parallel":
+    if surface.true_thickness and not surface.has_thickness:
         what = "'true_thickness' has no effect, as the surface keeps no thickness above another one"
         raise refuse(what, "true_thickness", 'add minimum_thickness, or use method = "parallel"')
     length = rock.edge_length if rock.triangles is None else rock.triangles

@@ -21,7 +21,7 @@ from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height
 from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_node_once, require_one_height
 from ..heights.run import elsewhere, few_points, refused_points, runs_away
-from ..heights.ties import Terms, TieData, correction, missed_warnings, tied_heights
+from ..heights.ties import Terms, TieData, correction, missed_warnings, one_sheet, tied_heights
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
 from .observed.surface_data import SurfaceData
@@ -119,7 +119,7 @@ class LocalHeights:
             z[around] = free.heights(work, points, nodes)
         else:
             z[around], _ = free.certain_heights(work, points, nodes, self.border[1])
-        terms, after = correction(work, *mesh.arrays, z, data)
+        terms, after = correction(work, *mesh.arrays, *one_sheet(z, data))
         return replace(free, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
 
     def _extrapolated(self, task: Task, result: Result) -> Result:

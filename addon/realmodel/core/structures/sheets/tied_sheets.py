@@ -11,7 +11,7 @@ import numpy as np
 from ...base.sheet import Sheet
 from ...base.triangles import median_edge
 from ...base.work import Work
-from ...heights.ties import TieData, correction_of_sheets, missed_warnings, tie_data, tied_heights
+from ...heights.ties import TieData, correction, missed_warnings, tie_data, tied_heights
 from ...readers.tables.observations import Bounds
 from ...surfaces.rock_structure import RockStructure
 from .tips import share_of_sides
@@ -74,7 +74,7 @@ def tied_sheets(
     nodes, triangles = mesh
     sides, weights = sided
     asked, of_sheet = data
-    terms, after = correction_of_sheets(
+    terms, after = correction(
         work, nodes, triangles, (np.ascontiguousarray(z), sides, weights), asked, of_sheet
     )
     rows = list(z)
