@@ -87,11 +87,12 @@ def test_each_point_keeps_its_hole_and_depth(write):
     first = build(Project("p", [rock]))
     for model in (first, build(first.project)):
         (data,) = model.rock_inputs[0].data
-        holes = [source[0] for source in data.sources.values()]
-        assert sorted(hole for hole, _ in holes) == ["B1", "B2", "B3"]
-        assert dict(holes)["B1"] == 4 and dict(holes)["B2"] == 6
-        assert len(data.points) == 6 and len(data.sources) == 3
-    assert sorted(first.rock_inputs[0].data[0].sources.values())[2] == (("B3", 2.0),)
+        found = {source.hole: source for (source,) in data.sources.values()}
+        assert sorted(found) == ["B1", "B2", "B3"]
+        assert (found["B1"].depth, found["B2"].depth) == (4, 6)
+        assert len(data.points) == 6
+    rows = {source.hole: source for (source,) in first.rock_inputs[0].data[0].sources.values()}
+    assert rows["B3"] == ("B3", 2.0, picks, 4) and rows["B2"].line == 2
 
 
 def test_inclined_holes_are_a_warning(write):

@@ -178,7 +178,7 @@ def test_ties_of_rasters_and_surveys_are_not_asked_for():
     free, tied = (model_of(grid, "grid", tie=tie).surface(0)[0] for tie in (False, True))
     assert np.array_equal(free, tied)
     many = np.random.default_rng(1).uniform(0, 1, (10_001, 3))
-    assert [len(SurfaceData.of_points(each).tied_points(Surface("top"))) for each in (many, many[1:])] == [
+    assert [len(SurfaceData(each, len(each)).tied_points(Surface("top"))) for each in (many, many[1:])] == [
         0,
         10_000,
     ]
@@ -194,7 +194,9 @@ def test_of_close_places_of_several_surfaces_one_becomes_a_vertex_at_a_time():
     hole = np.array([[50.0, 50, 1], [50.2, 50, 9]])
     surfaces = [Surface(name, points=hole + np.array([0.001 * n, 0, n])) for n, name in enumerate("ab")]
     rock = Rock("r", surfaces, region=REGION, edge_length=20.0)
-    entry = RockInput(rock, [None, None], data=[SurfaceData.of_points(each.points) for each in surfaces])
+    entry = RockInput(
+        rock, [None, None], data=[SurfaceData(each.points, len(each.points)) for each in surfaces]
+    )
     mesh = Sheet(np.array([[0.0, 0], [100, 0], [50, 100]]), np.array([[0, 1, 2]], np.int32))
     found = run(lambda work: crowded_places(work, entry, mesh, np.empty((0, 2))))
     assert len(found) == 1
@@ -204,7 +206,7 @@ def test_a_vertex_beside_a_contact_that_still_cannot_be_met_is_not_enough():
     plan = np.array([[50.0, 20], [30, 30], [70, 30], [50, 70]])
     surface = Surface("a", points=np.column_stack([plan, [1.0, 2, 3, 9]]))
     rock = Rock("r", [surface], region=REGION, edge_length=20.0)
-    entry = RockInput(rock, [None], data=[SurfaceData.of_points(surface.points)])
+    entry = RockInput(rock, [None], data=[SurfaceData(surface.points, 4)])
     mesh = Sheet(np.array([[0.0, 0], [100, 0], [50, 100]]), np.array([[0, 1, 2]], np.int32))
     for off in (500.0, 1.0, 0.0):
         known = np.add(plan, [0.0, off])  # of another surface

@@ -211,7 +211,7 @@ def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
 
 def entry_of(rock):
     points = [np.empty((0, 3)) if each.points is None else each.points for each in rock.surfaces]
-    return RockInput(rock, [None] * len(points), data=list(map(SurfaceData.of_points, points)))
+    return RockInput(rock, [None] * len(points), data=[SurfaceData(each, len(each)) for each in points])
 
 
 def test_surfaces_that_tiles_leave_to_the_lead():

@@ -521,13 +521,12 @@ def fill_surface(row, surface):
         surface_dips.keep(row, surface.dips)
         if surface.left_out is not None and len(surface.left_out):
             row.left_out = {"points": np.asarray(surface.left_out, np.float64)}
-        has_points = surface.has_points
         if surface.input_file is not None:
-            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
+            row.source = "POINTS_FILE" if surface.has_points else "MESH_FILE"
             row.filepath = str(surface.input_file)
             method_settings.fill_reading(row, surface.point_file or surface.mesh_file)
-        elif has_points and (surface.points is None or not len(surface.points)):
+        elif surface.has_points and (surface.points is None or not len(surface.points)):
             row.source = "NONE"
         else:
-            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
-            setattr(row, "stored" if has_points else "stored_mesh", shape_arrays(surface))
+            row.source = "POINTS_FILE" if surface.has_points else "MESH_FILE"
+            setattr(row, "stored" if surface.has_points else "stored_mesh", shape_arrays(surface))

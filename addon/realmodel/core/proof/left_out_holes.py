@@ -187,7 +187,7 @@ def _rock_without(entry: RockInput, holes: set[str]) -> Rock:
         return rock
     surfaces = []
     for surface, data in zip(rock.surfaces, entry.data, strict=True):
-        gone = [row for row, sources in data.picks.items() if not holes.isdisjoint(dict(sources))]
+        gone = [row for row, sources in data.picks.items() if not holes.isdisjoint(s.hole for s in sources)]
         points = np.delete(data.own, gone, axis=0)
         is_some = surface.has_points and len(points)
         surfaces.append(replace(surface, points=points if is_some else None))
@@ -203,8 +203,12 @@ def _judged(work: Work, entry: RockInput, form: ClosedForm, hole: str) -> LeftOu
         length, share = _length_in_block(work, rock, form, observed.some(observed.holes == hole))
     contacts = []
     for number, (surface, data) in enumerate(zip(rock.surfaces, entry.data, strict=True)):
-        rows = sorted((row for row in data.sources if hole in dict(data.sources[row])), reverse=True)
-        depths = {tuple(data.points[row].tolist()): dict(data.sources[row])[hole] for row in rows}
+        depths = {
+            tuple(data.points[row].tolist()): source.depth
+            for row, sources in sorted(data.sources.items(), reverse=True)
+            for source in sources
+            if source.hole == hole
+        }
         if depths:
             above = form.above(work, number, np.array(list(depths)))
             for (place, depth), away in zip(depths.items(), above.tolist(), strict=True):

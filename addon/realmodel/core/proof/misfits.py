@@ -15,7 +15,7 @@ from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..fields.series_field import SeriesField
 from ..project.project import Rock
-from ..readers.tables.observations import SWITCHED_OFF, depth_of
+from ..readers.tables.observations import SWITCHED_OFF, Source
 from ..results.residuals import heights_of_points
 from ..settings.dips import Dips
 from ..surfaces.rock_input import RockInput
@@ -114,7 +114,7 @@ def _points(model: ModelData, which: tuple[int, int, int], near: float) -> Itera
         says, has = f"{place[2]:,.6g}", f"{z:,.6g}, {by:.4g} {'below' if z < place[2] else 'above'}"
         if rock.is_level_set(surface):
             says, has = "on it", f"{by:.4g} on its {'younger' if z < place[2] else 'older'} side"
-        source = *data.source(row), data.row(row)
+        source = *data.source(row)[:2], data.row(row)
         yield Misfit("point", rock.name, surface.name, *source, place, says, has, by)
 
 
@@ -143,10 +143,11 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
         row, last = seen.rows[each].tolist()
         block, there = str(given.blocks[row]), int(seen.found[each])
         name = _NO_ROCK if there == AIR else seen.names.get(there) or model.blocks[there].name
-        depth, to = map(depth_of, given.depths[[row, last]])
+        hole, depth, *_ = Source.of(given.holes[row], given.depths[row])
+        to = Source.of(hole, given.depths[last]).depth
         says = f"{block} to {to:.6g}" if to is not None and last > row else block
         has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
-        source = str(given.holes[row]), depth, given.row(row)
+        source = hole, depth, given.row(row)
         place = tuple(begin[each].tolist())
         low = None if is_place[each] else tuple(end[each].tolist())
         yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]), low)

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.errors import counted
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
-from ..readers.tables.observations import LeftOut, depth_of
+from ..readers.tables.observations import LeftOut, Source
 from ..results.residuals import heights_of_points
 from .closed_form import ClosedForm, closed_forms
 from .seen_places import NEAR, look
@@ -116,7 +116,7 @@ def _observed(work: Work, model: ModelData) -> Observed:
                 near = NEAR * float(np.ptp(given.places[:, 2]))
                 for row, (place, height) in enumerate(zip(places.tolist(), z.tolist(), strict=True)):
                     residual = None if height != height else place[2] - height
-                    source = data.source(data.contacts_from + row)
+                    source = data.source(data.contacts_from + row)[:2]
                     contacts.append(ObservedContact(rock.name, surface.name, *source, tuple(place), residual))
                 count += len(data.bounds)
                 violated += violated_bounds(model, (first + at, at, number), near)
@@ -144,8 +144,7 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
         ViolatedBound(
             rock.name,
             rock.surfaces[at].name,
-            str(bounds.holes[row]),
-            depth_of(bounds.depths[row]),
+            *Source.of(bounds.holes[row], bounds.depths[row])[:2],
             tuple(bounds.places[row].tolist()),
             bool(bounds.is_lower[row]),
             float(beyond[row]),

@@ -16,6 +16,7 @@ from ..base.units import number_text
 from ..base.work import Work, native_module
 from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
+from ..readers.tables.observations import Source
 from ..settings.methods import METHODS, SURFACE_OPTIONS
 from ..settings.rules import RULES, Rule
 from .rock_input import RockInput
@@ -87,7 +88,7 @@ def _missed(
     largest = float(beyond_mesh.max())
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
         return None
-    place, hole = place_text(points[worst].tolist()), _hole(*data.source(worst))
+    place, hole = place_text(points[worst].tolist()), _hole(data.source(worst))
     row = data.row(worst)
     named = f"point {row}" if are_all else "the point"
     side = "above" if points[worst, 2] > z[worst] else "below"
@@ -151,10 +152,11 @@ def _distance_to_neighbors(
     return float(np.median(apart)) if len(apart) else None
 
 
-def _hole(hole: str, depth: float | None) -> str:
-    """The borehole that a point comes from, and the depth, as a part of a sentence."""
-    at = "" if depth is None else f" at a depth of {depth:.6g}"
-    return f" of borehole '{hole}'{at}" if hole else ""
+def _hole(source: Source) -> str:
+    """The borehole that a point comes from, the depth and the row, as a part of a sentence."""
+    at = "" if source.depth is None else f" at a depth of {source.depth:.6g}"
+    row = "" if source.file is None else f" ({source.file.name}, line {source.line})"
+    return f" of borehole '{source.hole}'{at}{row}" if source.hole else ""
 
 
 def _remedy(result: Interpolation | None, is_tied: bool) -> str:

@@ -83,18 +83,16 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         ]
         warnings += of_picks
         rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
-        shapes, faces = [each.shape for each in own], [each.faces for each in own]
         entry = RockInput(
             rock,
-            shapes,
-            None,
-            [None] * len(own),
-            faces,
-            warnings,
+            [each.shape for each in own],
+            interpolations=[None] * len(own),
+            file_faces=[each.faces for each in own],
+            warnings=warnings,
             left_out=field.left_out,
+            has_faults=bool(project.faults),
             data=[each.data for each in own],
         )
-        entry.has_faults = bool(project.faults)
         if (seen := rock.observed) is not None:
             apply_observations(work, entry, bodies_of(project, given), (seen, np.ones(len(seen), bool)))
         else:

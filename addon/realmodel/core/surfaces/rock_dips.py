@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, place_text
+from ..base.errors import InputRefused, place_text
 from ..base.work import Work
 from ..heights import heights
 from ..heights.interpolation import Task
@@ -194,11 +194,10 @@ def _by_blocks(
 
 def _heights_by_dips(work: Work, entry: RockInput, number: int, dips: Dips, counts: np.ndarray) -> np.ndarray:
     """(D,) heights of a surface of few points at dips, from its points and the dips that count for it."""
-    surface, plan = entry.rock.surfaces[number], np.ascontiguousarray(dips.positions)
-    own = entry.data[number].dips
+    plan, own = np.ascontiguousarray(dips.positions), entry.data[number].dips
     joined = Dips.joined([*([] if own is None else [own]), dips.some(counts)])
     slopes = Dips(joined.positions, joined.gradients) if len(joined) else None
-    with naming(surface_item(entry.rock, surface), surface.shape_source):
+    with entry.named(number):
         settings = checked_options(DEFAULT_METHOD, DEFAULT_OPTIONS)
         return heights(DEFAULT_METHOD, Task(work, entry.data[number].points, plan, settings, dips=slopes)).z
 
@@ -217,7 +216,7 @@ def _first_heights(work: Work, entry: RockInput, number: int, plan: np.ndarray) 
         method, settings = CONTINUATION, checked_options(CONTINUATION, CONTINUATION_OPTIONS)
     elif any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS) or METHODS[method].on_mesh:
         return np.full(len(plan), np.nan)
-    with naming(surface_item(entry.rock, surface), surface.shape_source):
+    with entry.named(number):
         return heights(method, Task(work, points, plan, settings)).z
 
 

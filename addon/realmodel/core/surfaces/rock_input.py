@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, naming
 from ..base.sheet import Sheet
 from ..base.stored_objects import NOT_STORED
 from ..base.triangles import median_edge
@@ -17,7 +18,7 @@ from ..fields import FieldDraws, LevelSolid, ScalarField
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
 from ..heights.realizations.draws import Draw
-from ..project.project import Rock
+from ..project.project import Rock, surface_item
 from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS
 from .observed.surface_data import SurfaceData
@@ -73,6 +74,11 @@ class RockInput:
         surface = self.surfaces[number]
         assert surface is not None
         return surface
+
+    def named(self, number: int) -> AbstractContextManager:
+        """Within it errors name a surface, and where its shape comes from."""
+        surface = self.rock.surfaces[number]
+        return naming(surface_item(self.rock, surface), surface.shape_source)
 
     def planar_mesh(self) -> Sheet:
         """The triangulation of the region of a rock mass that has one and is meshed."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, place_text
+from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..heights import Interpolation, chosen, heights
@@ -21,7 +21,7 @@ from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, raised_heights, tie_data
 from ..heights.true_thickness import Base
-from ..project.project import Rock, Surface, surface_item
+from ..project.project import Rock, Surface
 from ..settings.methods import checked_options
 from .observed.conformable import alike_of
 from .observed.sheet_series import bounds_beside, companions_of
@@ -98,7 +98,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
     nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
     others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
-    with naming(surface_item(rock, surface), surface.shape_source):
+    with entry.named(number):
         if trend is not None:
             result, free = _on_trend(work, entry, number, trend, others)
         else:
@@ -193,7 +193,7 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
     method, settings = surface.method_options()
     if method != "auto":
         return
-    with naming(surface_item(rock, surface), surface.shape_source):
+    with entry.named(number):
         nowhere = np.empty((0, 2))
         data = entry.data[number]
         task = Task(work, data.points, nowhere, settings, dips=data.dips)

@@ -44,7 +44,8 @@ class ReadSurface:
         surface, shape = self.surface, self.shape
         faces = None if self.faces is None else change(self.faces)
         if shape is None:
-            data = self.data.with_arrays(change)
+            rows = None if self.data.rows is None else change(self.data.rows)
+            data = replace(self.data, points=change(self.data.points), rows=rows)
             points = None if surface.points is None else data.points
             return replace(self, surface=replace(surface, points=points), data=data, faces=faces)
         vertices, triangles = map(change, shape)
@@ -104,7 +105,7 @@ class SurfaceInput:
             points = points if len(points) else None
         if self.met is not None:
             own = np.empty((0, 3)) if points is None else checked_points(points)
-            points = gather((*in_pieces(own), np.array([place for *_, place in self.met])), np.empty((0, 3)))
+            points = gather((*in_pieces(own), np.array([place for _, place in self.met])), np.empty((0, 3)))
         if points is None or (isinstance(points, Sized) and not len(points)):
             return np.empty((0, 3)), warnings
         checked = checked_points(points)
@@ -127,7 +128,7 @@ class SurfaceInput:
             return SurfaceData(points, count, _sources_among(points, self.picks), rows=rows)
         first = count - len(self.met)
         at = np.flatnonzero(order >= first).tolist()
-        return SurfaceData(points, count, {row: (self.met[order[row] - first][:2],) for row in at}, rows=rows)
+        return SurfaceData(points, count, {row: (self.met[order[row] - first][0],) for row in at}, rows=rows)
 
     def _dips(self, step: Step) -> Dips | None:
         file = self.surface.dip_file
@@ -154,13 +155,13 @@ def _sources_among(points: np.ndarray, picks: list[Pick]) -> Sources:
     """The sources of the picks that are among points (P, 3), as of arrays that were read before; each is of a
     point of its own where several lie at one place."""
     rows: dict[tuple, list[int]] = {}
-    for row in np.flatnonzero(np.isin(points[:, 0], [place[0] for *_, place in picks])).tolist():
+    for row in np.flatnonzero(np.isin(points[:, 0], [place[0] for _, place in picks])).tolist():
         rows.setdefault(tuple(points[row].tolist()), []).append(row)
     found: Sources = {}
-    for hole, depth, place in picks:
+    for source, place in picks:
         if here := rows.get(tuple(map(float, place))):
             row = here.pop(0) if len(here) > 1 else here[0]
-            found[row] = (*found.get(row, ()), (hole, depth))
+            found[row] = (*found.get(row, ()), source)
     return found
 
 

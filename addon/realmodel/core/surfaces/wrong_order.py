@@ -79,7 +79,8 @@ def _warning(entry: RockInput, older: int, wrong: WrongPoints, holes: list[str])
 def _in_one_hole(first: SurfaceData, second: SurfaceData) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """The numbers of the points of two surfaces in the holes that meet both, (N,) each, and the holes."""
     own, other = (
-        {hole: row for row, found in each.sources.items() for hole, _ in found} for each in (first, second)
+        {source.hole: row for row, found in each.sources.items() for source in found}
+        for each in (first, second)
     )
     holes = sorted(own.keys() & other.keys())
     rows = np.array([(own[hole], other[hole]) for hole in holes], int).reshape(-1, 2)

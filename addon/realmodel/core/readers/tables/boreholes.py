@@ -15,10 +15,10 @@ from ...settings.boreholes import Boreholes
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
 from .holes import Holes
 from .intervals import read_intervals
-from .observations import LeftOut, Observations, depth_of
+from .observations import LeftOut, Observations, Source
 from .unit_names import UnitNames
 
-Pick = tuple[str, float | None, np.ndarray]  # hole, depth where it is known, place (3,)
+Pick = tuple[Source, np.ndarray]  # with its place (3,), model units
 
 
 @dataclass
@@ -40,7 +40,7 @@ class Picks:
     @property
     def points(self) -> dict[str, np.ndarray]:
         """(P, 3) float64 the points of each surface, by its name."""
-        return {name: np.array([place for *_, place in picks]) for name, picks in self.of_surfaces.items()}
+        return {name: np.array([place for _, place in picks]) for name, picks in self.of_surfaces.items()}
 
 
 def picks_of(holes: Mapping, surface: str) -> list[Pick]:
@@ -50,7 +50,7 @@ def picks_of(holes: Mapping, surface: str) -> list[Pick]:
     for hole, (collar, picks) in holes.items():
         is_below = [collar is not None and tuple(collar[:2]) == tuple(place[:2]) for _, place in picks]
         found += [
-            (hole, float(collar[2] - place[2]) if below else None, place)
+            (Source(hole, float(collar[2] - place[2]) if below else None), place)
             for (name, place), below in zip(picks, is_below, strict=True)
             if name == surface
         ]
@@ -121,7 +121,8 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = holes.hole_of(row)
-        found.setdefault(name, []).append((hole, depth_of(depth), place))
+        source = Source.of(hole, depth, row.table.file, row.line)
+        found.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:
             ends[hole] = holes.place(row, holes.ends[hole], scale)

@@ -20,7 +20,7 @@ from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import sides_of
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
-from .compartment_sheets import CompartmentSheets, make_borrowed, named
+from .compartment_sheets import CompartmentSheets, make_borrowed
 from .fitted_throws import fit_throws
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
@@ -57,7 +57,7 @@ def make_sheets(
 
     def begin(part: Work, number: int) -> CompartmentSheets:
         kind = InterpolatedSurface if rock.is_interpolated(rock.surfaces[number]) else ReadyMesh
-        with named(rock, number):
+        with entry.named(number):
             sheets = CompartmentSheets(entry, number, kind(part, entry, number))
         sheets.make_own()
         if not sheets.waiting:
@@ -69,7 +69,7 @@ def make_sheets(
             return begin(part, number)
 
     def finish(sheets: CompartmentSheets) -> None:
-        with named(rock, sheets.number):
+        with entry.named(sheets.number):
             sheets.finish()
         _keep(entry, sheets.number, keep)
 

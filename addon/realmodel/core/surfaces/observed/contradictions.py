@@ -12,7 +12,7 @@ import numpy as np
 from ...heights.bounded import consistent
 from ...heights.mis_ties import without_mis_ties
 from ...project.project import Rock, Surface
-from ...readers.tables.observations import Bounds, LeftOut, depth_of
+from ...readers.tables.observations import Bounds, LeftOut, Source
 from .surface_data import SurfaceData
 
 _LISTED = 4  # others that a text names; all are in `contradicts`
@@ -59,8 +59,7 @@ def _listed(surface: Surface, data: SurfaceData, bounds: Bounds, wrong: np.ndarr
         "contradiction",
         text,
         "",
-        str(bounds.holes[row]),
-        depth_of(bounds.depths[row]),
+        *Source.of(bounds.holes[row], bounds.depths[row])[:2],
         tuple(place.tolist()),
         tuple(others),
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...project.project import Rock
-from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, along_bounds, depth_of
+from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, Source, along_bounds
 from .columns import in_wrong_order
 from .kept_contacts import kept_bounds
 from .level_sets import FieldStatements
@@ -135,8 +135,7 @@ class _Listed:
                     kind,
                     f"{given.source(row)}, '{given.blocks[row]}': {text}",
                     str(given.blocks[row]),
-                    str(given.holes[row]),
-                    depth_of(given.depths[row]),
+                    *Source.of(given.holes[row], given.depths[row])[:2],
                     tuple(given.places[row].tolist()),
                 )
                 self.entries.append(entry)
@@ -246,11 +245,12 @@ def _sources_at(place: np.ndarray, on: np.ndarray, holes: np.ndarray, depths: np
     all rows."""
     number = np.full(len(place), -1)
     number[place[on]] = np.arange(len(on))
-    found: dict[int, dict[str, float | None]] = {}
+    found: Sources = {}
     for row in np.flatnonzero((number[place] >= 0) & (holes != "")).tolist():
-        here = found.setdefault(int(number[place[row]]), {})
-        here.setdefault(str(holes[row]), depth_of(depths[row]))
-    return {at: tuple(here.items()) for at, here in found.items()}
+        at, hole = int(number[place[row]]), str(holes[row])
+        if all(hole != each.hole for each in found.get(at, ())):
+            found[at] = (*found.get(at, ()), Source.of(hole, depths[row]))
+    return found
 
 
 def _statements(

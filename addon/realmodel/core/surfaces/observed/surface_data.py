@@ -3,20 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from ...project.project import Surface
-from ...readers.tables.observations import Bounds, source_text
+from ...readers.tables.observations import Bounds, Source, source_text
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 
-Sources = dict[
-    int, tuple[tuple[str, float | None], ...]
-]  # by row: boreholes, and depths where they are known
+Sources = dict[int, tuple[Source, ...]]  # by the rows of points; several of one at the place of several holes
 MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh need not resolve
 
 
@@ -37,11 +33,6 @@ class SurfaceData:
     error: float = 0.0
     is_along_bounds: bool = False
     rows: np.ndarray | None = None
-
-    @classmethod
-    def of_points(cls, points: np.ndarray) -> SurfaceData:
-        """Of points (P, 3) alone."""
-        return cls(points, len(points))
 
     @property
     def own(self) -> np.ndarray:
@@ -73,33 +64,28 @@ class SurfaceData:
         """The sources of the points that are no contacts."""
         return {row: each for row, each in self.sources.items() if row < self.contacts_from}
 
-    def source(self, number: int) -> tuple[str, float | None]:
-        """The borehole of a point, the first of several, "" for none, and the depth, where it is known."""
-        return self.sources.get(number, (("", None),))[0]
+    def source(self, number: int) -> Source:
+        """That of a point, the first of several."""
+        return self.sources.get(number, (Source(),))[0]
 
     def source_text(self, number: int) -> str:
         """Where a point comes from, for messages: its hole with the depth, or its place."""
-        hole, depth = self.source(number)
+        hole, depth, *_ = self.source(number)
         return source_text(hole, np.nan if depth is None else depth, self.points[number])
 
     def some(self, chosen: np.ndarray) -> SurfaceData:
         """The same with some of the points, (P,) bool."""
         own = chosen[: self.contacts_from]
         rows = np.arange(len(own)) if self.rows is None else self.rows
-        number = (np.cumsum(chosen) - 1).tolist()
+        number = np.cumsum(chosen) - 1
         return replace(
             self,
             points=self.points[chosen],
             contacts_from=int(own.sum()),
-            sources={number[row]: each for row, each in self.sources.items() if chosen[row]},
+            sources={int(number[row]): each for row, each in self.sources.items() if chosen[row]},
             rows=rows[own],
         )
 
     def through(self, points: np.ndarray) -> SurfaceData:
         """The same with other points (P, 3), which have no sources."""
         return replace(self, points=points, contacts_from=len(points), sources={}, rows=None)
-
-    def with_arrays(self, change: Callable[[Any], Any]) -> SurfaceData:
-        """The same, with `change` of each array that is as long as the points in its place."""
-        rows = None if self.rows is None else change(self.rows)
-        return replace(self, points=change(self.points), rows=rows)
