@@ -286,7 +286,7 @@ def test_a_survey_is_not_tied_beside_a_fault_that_dies_out(monkeypatch):
     square = [[0, 0], [10, 0], [10, 10], [0, 10]]
 
     def residual(most):
-        monkeypatch.setattr("realmodel.core.project.project.MOST_CONTACTS", most)
+        monkeypatch.setattr("realmodel.core.surfaces.observed.surface_data.MOST_CONTACTS", most)
         rock = Rock(
             "r", [Surface("s", points=points, method="idw")], square, edge_length=2.0, base_elevation=-5
         )

@@ -23,7 +23,7 @@ from ..project.library import Library, Property
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_entries import Body, Fault
-from ..readers.tables.observations import Bounds, LeftOut, Observations, Source
+from ..readers.tables.observations import Bounds, LeftOut, Observations, Origin
 from ..settings.dips import DipFile, Dips, SpaceDips
 from ..settings.map_layer import MapLayer
 from ..settings.point_file import MeshFile, PointFile
@@ -42,7 +42,7 @@ RECORDED: tuple[type, ...] = (
     *(BuildWarning, InputRefused, Project, Library, Property, Interpolation, Variogram, Structure),
     *(SeriesField, Lattice, ScalarField, SolvedField, Anisotropy),
     *(MapLayer, MeshFile, PointFile, DipFile, Dips, SpaceDips, Series),
-    *(Observations, Bounds, LeftOut, Source, SurfaceData),
+    *(Observations, Bounds, LeftOut, Origin, SurfaceData),
 )
 RECORD = "record"  # the table of objects; its arrays are record_0, record_1, ...
 _STORED = StoredClasses(RECORDED)

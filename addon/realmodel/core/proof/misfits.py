@@ -15,7 +15,7 @@ from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..fields.series_field import SeriesField
 from ..project.project import Rock
-from ..readers.tables.observations import SWITCHED_OFF, Source
+from ..readers.tables.observations import SWITCHED_OFF, Origin
 from ..results.residuals import heights_of_points
 from ..settings.dips import Dips
 from ..surfaces.rock_input import RockInput
@@ -143,8 +143,8 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
         row, last = seen.rows[each].tolist()
         block, there = str(given.blocks[row]), int(seen.found[each])
         name = _NO_ROCK if there == AIR else seen.names.get(there) or model.blocks[there].name
-        hole, depth, *_ = Source.of(given.holes[row], given.depths[row])
-        to = Source.of(hole, given.depths[last]).depth
+        hole, depth, *_ = Origin.of(given.holes[row], given.depths[row])
+        to = Origin.of(hole, given.depths[last]).depth
         says = f"{block} to {to:.6g}" if to is not None and last > row else block
         has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
         source = hole, depth, given.row(row)

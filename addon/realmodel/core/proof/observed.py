@@ -10,7 +10,7 @@ import numpy as np
 from ..base.errors import counted
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
-from ..readers.tables.observations import LeftOut, Source
+from ..readers.tables.observations import LeftOut, Origin
 from ..results.residuals import heights_of_points
 from .closed_form import ClosedForm, closed_forms
 from .seen_places import NEAR, look
@@ -144,7 +144,7 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
         ViolatedBound(
             rock.name,
             rock.surfaces[at].name,
-            *Source.of(bounds.holes[row], bounds.depths[row])[:2],
+            *Origin.of(bounds.holes[row], bounds.depths[row])[:2],
             tuple(bounds.places[row].tolist()),
             bool(bounds.is_lower[row]),
             float(beyond[row]),

@@ -18,7 +18,7 @@ from .objects.geo_object import HOLE, LINES, POINTS, GeoObject, Values
 from .tables.boreholes import Pick, Picks
 from .tables.hole_tables import INTERVALS, PICKS
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
-from .tables.observations import Observations, Source
+from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
 from .tables.unit_names import UnitNames
 
@@ -61,7 +61,7 @@ def _add_picks(
             if not np.isfinite(place).all():
                 missing += 1
                 continue
-            points.setdefault(surface, []).append((Source(hole), place * scale))
+            points.setdefault(surface, []).append((Origin(hole), place * scale))
             picks.holes.setdefault(hole, (_collar(each, scale), []))[1].append((surface, place * scale))
     picks.of_surfaces |= points
     if not points:

@@ -13,7 +13,7 @@ from ..base.algebra import norm
 from ..base.errors import place_text
 from ..fields import LevelSetData, ScalarField, SlitData
 from ..project.series import Series
-from ..readers.tables.observations import Bounds, LeftOut, Source, source_text
+from ..readers.tables.observations import Bounds, LeftOut, Origin, source_text
 from ..settings.dips import SpaceDips
 from ..surfaces.observed.conformable import mean_error
 from ..surfaces.rock_input import RockInput
@@ -149,7 +149,7 @@ class SeriesData:
             "contradiction",
             f"{self.bound_text(row)}, which contradicts {'; '.join(others) or 'data near it'}",
             self._block_of(row),
-            *Source.of(bounds.holes[at], bounds.depths[at])[:2],
+            *Origin.of(bounds.holes[at], bounds.depths[at])[:2],
             tuple(self.bounds[row].tolist()),
             others,
         )

@@ -16,7 +16,7 @@ from ..base.units import number_text
 from ..base.work import Work, native_module
 from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
-from ..readers.tables.observations import Source
+from ..readers.tables.observations import Origin
 from ..settings.methods import METHODS, SURFACE_OPTIONS
 from ..settings.rules import RULES, Rule
 from .rock_input import RockInput
@@ -152,7 +152,7 @@ def _distance_to_neighbors(
     return float(np.median(apart)) if len(apart) else None
 
 
-def _hole(source: Source) -> str:
+def _hole(source: Origin) -> str:
     """The borehole that a point comes from, the depth and the row, as a part of a sentence."""
     at = "" if source.depth is None else f" at a depth of {source.depth:.6g}"
     row = "" if source.file is None else f" ({source.file.name}, line {source.line})"

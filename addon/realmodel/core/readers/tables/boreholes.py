@@ -15,10 +15,10 @@ from ...settings.boreholes import Boreholes
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
 from .holes import Holes
 from .intervals import read_intervals
-from .observations import LeftOut, Observations, Source
+from .observations import LeftOut, Observations, Origin
 from .unit_names import UnitNames
 
-Pick = tuple[Source, np.ndarray]  # with its place (3,), model units
+Pick = tuple[Origin, np.ndarray]  # with its place (3,), model units
 
 
 @dataclass
@@ -50,7 +50,7 @@ def picks_of(holes: Mapping, surface: str) -> list[Pick]:
     for hole, (collar, picks) in holes.items():
         is_below = [collar is not None and tuple(collar[:2]) == tuple(place[:2]) for _, place in picks]
         found += [
-            (Source(hole, float(collar[2] - place[2]) if below else None), place)
+            (Origin(hole, float(collar[2] - place[2]) if below else None), place)
             for (name, place), below in zip(picks, is_below, strict=True)
             if name == surface
         ]
@@ -121,7 +121,7 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = holes.hole_of(row)
-        source = Source.of(hole, depth, row.table.file, row.line)
+        source = Origin.of(hole, depth, row.table.file, row.line)
         found.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:

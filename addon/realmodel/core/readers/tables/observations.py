@@ -202,7 +202,7 @@ def source_text(hole: str, depth: float, place: Sequence[float] | np.ndarray) ->
     return f"hole '{hole}' at {at if np.isnan(depth) else format(depth, '.9g')}"
 
 
-class Source(NamedTuple):
+class Origin(NamedTuple):
     """Where a datum comes from. hole: the borehole, "" for none; depth: along it, model units, None where it
     is not known. file, line: of its row in a table, None and 0 where it has none."""
 
@@ -212,7 +212,7 @@ class Source(NamedTuple):
     line: int = 0
 
     @classmethod
-    def of(cls, hole: str, depth: float, file: Path | None = None, line: int = 0) -> Source:
+    def of(cls, hole: str, depth: float, file: Path | None = None, line: int = 0) -> Origin:
         """The same of a depth that is NaN where it is not known."""
         return cls(str(hole), None if np.isnan(depth) else float(depth), file, line)
 

@@ -12,7 +12,7 @@ import numpy as np
 from ...heights.bounded import consistent
 from ...heights.mis_ties import without_mis_ties
 from ...project.project import Rock, Surface
-from ...readers.tables.observations import Bounds, LeftOut, Source
+from ...readers.tables.observations import Bounds, LeftOut, Origin
 from .surface_data import SurfaceData
 
 _LISTED = 4  # others that a text names; all are in `contradicts`
@@ -59,7 +59,7 @@ def _listed(surface: Surface, data: SurfaceData, bounds: Bounds, wrong: np.ndarr
         "contradiction",
         text,
         "",
-        *Source.of(bounds.holes[row], bounds.depths[row])[:2],
+        *Origin.of(bounds.holes[row], bounds.depths[row])[:2],
         tuple(place.tolist()),
         tuple(others),
     )

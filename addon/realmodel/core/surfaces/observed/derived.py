@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...project.project import Rock
-from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, Source, along_bounds
+from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, Origin, along_bounds
 from .columns import in_wrong_order
 from .kept_contacts import kept_bounds
 from .level_sets import FieldStatements
@@ -135,7 +135,7 @@ class _Listed:
                     kind,
                     f"{given.source(row)}, '{given.blocks[row]}': {text}",
                     str(given.blocks[row]),
-                    *Source.of(given.holes[row], given.depths[row])[:2],
+                    *Origin.of(given.holes[row], given.depths[row])[:2],
                     tuple(given.places[row].tolist()),
                 )
                 self.entries.append(entry)
@@ -249,7 +249,7 @@ def _sources_at(place: np.ndarray, on: np.ndarray, holes: np.ndarray, depths: np
     for row in np.flatnonzero((number[place] >= 0) & (holes != "")).tolist():
         at, hole = int(number[place[row]]), str(holes[row])
         if all(hole != each.hole for each in found.get(at, ())):
-            found[at] = (*found.get(at, ()), Source.of(hole, depths[row]))
+            found[at] = (*found.get(at, ()), Origin.of(hole, depths[row]))
     return found
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...project.project import Surface
-from ...readers.tables.observations import Bounds, Source, source_text
+from ...readers.tables.observations import Bounds, Origin, source_text
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 
-Sources = dict[int, tuple[Source, ...]]  # by the rows of points; several of one at the place of several holes
+Sources = dict[int, tuple[Origin, ...]]  # by the rows of points; several of one at the place of several holes
 MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh need not resolve
 
 
@@ -64,9 +64,9 @@ class SurfaceData:
         """The sources of the points that are no contacts."""
         return {row: each for row, each in self.sources.items() if row < self.contacts_from}
 
-    def source(self, number: int) -> Source:
+    def source(self, number: int) -> Origin:
         """That of a point, the first of several."""
-        return self.sources.get(number, (Source(),))[0]
+        return self.sources.get(number, (Origin(),))[0]
 
     def source_text(self, number: int) -> str:
         """Where a point comes from, for messages: its hole with the depth, or its place."""
