@@ -124,11 +124,9 @@ def prepared(
             ]
         if numbers:
             own |= {
-                (r, k): entry.data[k].known_points
-                for k, surface in enumerate(entry.rock.surfaces)
-                if entry.rock.is_interpolated(surface)
-                and len(entry.data[k].known_points)
-                and (k > 0 or 1 in kept_off(entry.rock))
+                (r, k): data.known_points
+                for k, data in enumerate(entry.data)
+                if len(data.known_points) and (k > 0 or 1 in kept_off(entry.rock))
             }
     frame = Frame(
         without_shapes(project, inputs),
