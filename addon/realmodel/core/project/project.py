@@ -335,6 +335,13 @@ class Rock(Entry):
         return dip_file_of(self.dips)
 
     @property
+    def dip_files(self) -> list[DipFile]:
+        """The files of its dips, and of those of its series and its surfaces."""
+        given = [self.dip_file, *(each.dip_file for each in self.series)]
+        given += [each.dip_file for each in self.surfaces]
+        return [each for each in given if each is not None]
+
+    @property
     def has_field_data(self) -> bool:
         """Whether it has boreholes, observations or a map, which may give its surfaces contacts."""
         return any(given is not None for given in (self.boreholes, self.observations, self.map))
@@ -443,8 +450,7 @@ class Project(Compared):
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             files += rock.map_files
-            of_dips = [each.dip_file for each in (rock, *rock.surfaces, *rock.series)]
-            files += [Path(each.file) for each in of_dips if each is not None]
+            files += [Path(each.file) for each in rock.dip_files]
             for given in (surface.point_file for surface in rock.surfaces):
                 files += [] if given is None else companions(Path(given.file))
         for entry in (*self.faults, *self.bodies):

@@ -117,9 +117,8 @@ def _require_points(entry: RockInput) -> None:
 
 def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
     """The warnings about units in the headers of the tables of dips and observations of a rock mass."""
-    dips = [each.dip_file for each in (rock, *rock.series, *rock.surfaces)]
     found: list[BuildWarning] = []
-    for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in dips)):
+    for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in rock.dip_files)):
         if given is not None:
             with naming(rock.item):
                 texts = other_units_in(given, Path(given.file), columns, units)

@@ -86,10 +86,10 @@ class SurfaceInput:
             if surface.has_points:
                 points, warnings = self._points(step, in_memory if arrays is None else arrays.gather)
                 data = self._in_order(points, arrays)
-                points = data.points if len(points) else None
-                read = replace(surface, points=points, dips=self._dips(step), shape_file=file)
-                dips = None if read.dips is None else read.dips.used_only()
-                return ReadSurface(read, replace(data, dips=dips), None, None, warnings)
+                own, dips = data.points if len(points) else None, self._dips(step)
+                read = replace(surface, points=own, dips=dips, shape_file=file)
+                used = None if dips is None else dips.used_only()
+                return ReadSurface(read, replace(data, dips=used), None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
         return ReadSurface(surface, SurfaceData(), Sheet(vertices, triangles), faces, warnings)

@@ -110,7 +110,7 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     is_wrong = np.isin(np.arange(len(observations)), wrong)
     left_out.add(is_wrong, "wrong_order", "an older block lies above a younger one here, or a block twice")
     used &= ~is_wrong
-    *found, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
+    found, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
     text = "it meets a block here that is not next to it in its series: no surface is known to be here"
     left_out.add(np.isin(np.arange(len(observations)), not_adjacent), "not_adjacent", text)
     return Derived(*found, used, left_out.entries)
@@ -193,7 +193,7 @@ def _of_used(
     situation: Situation,
     blocks: np.ndarray,
     used: np.ndarray,
-) -> tuple[list[np.ndarray], list[Sources], list[np.ndarray], list[Bounds], np.ndarray]:
+) -> tuple[tuple[list[np.ndarray], list[Sources], list[np.ndarray], list[Bounds]], np.ndarray]:
     """The contacts of each surface, their sources and errors, and its bounds from the observations that are
     used, their rows; and the rows at places where blocks meet that no surface of their series divides."""
     places, sides = observations.places[used] + 0.0, _sides(situation, len(observations))[used]
@@ -237,7 +237,7 @@ def _of_used(
                 observations.depths[rows],
             )
         )
-    return contacts, sources, errors, bounds, used[fields.not_adjacent]
+    return (contacts, sources, errors, bounds), used[fields.not_adjacent]
 
 
 def _sources_at(place: np.ndarray, on: np.ndarray, holes: np.ndarray, depths: np.ndarray) -> Sources:
