@@ -86,7 +86,7 @@ def prepared(
             flat=flat,
         )
 
-    flat: Callable[[Rock], set[int]] = local_surfaces
+    flat: Callable[[RockInput], set[int]] = local_surfaces
     surfaces = surfaces_with(flat)
     joined = _joined(surfaces, arrays, cancel)
     if joined is not None and any(flat(entry.rock) for entry in surfaces.rock_inputs):
@@ -140,7 +140,7 @@ def prepared(
     return PreparedInputs(frame, rocks, near, own, warnings, _digest(frame, inputs, reader.digests))
 
 
-def _no_surfaces(_rock: Rock) -> set[int]:
+def _no_surfaces(_entry: RockInput) -> set[int]:
     return set()
 
 

@@ -119,7 +119,7 @@ class LocalHeights:
             z[around] = free.heights(work, points, nodes)
         else:
             z[around], _ = free.certain_heights(work, points, nodes, self.border[1])
-        terms, after = correction(work, *mesh.arrays, *one_sheet(z, data))
+        terms, after = correction(work, mesh.vertices, mesh.triangles, *one_sheet(z, data))
         return replace(free, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
 
     def _extrapolated(self, task: Task, result: Result) -> Result:
