@@ -76,7 +76,7 @@ def prepared(
     """arrays: where everything is kept. size: of tiles."""
     reader = SurfaceReader(arrays, workers)
 
-    def surfaces_with(flat: Callable[[Rock], set[int]]) -> SurfaceSet:
+    def surfaces_with(flat: Callable[[RockInput], set[int]]) -> SurfaceSet:
         return build_surfaces(
             project,
             progress=lambda share, text: report(_MADE * share, text),
@@ -89,7 +89,7 @@ def prepared(
     flat: Callable[[RockInput], set[int]] = local_surfaces
     surfaces = surfaces_with(flat)
     joined = _joined(surfaces, arrays, cancel)
-    if joined is not None and any(flat(entry.rock) for entry in surfaces.rock_inputs):
+    if joined is not None and any(map(flat, surfaces.rock_inputs)):
         flat = _no_surfaces  # borders that are joined change the meshes
         surfaces = surfaces_with(flat)
         joined = _joined(surfaces, arrays, cancel)
