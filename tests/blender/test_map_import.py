@@ -37,7 +37,7 @@ class MapImport(PanelCase):
         """The names of the surfaces of the project that have points or a mesh of their own."""
         depsgraph = bpy.context.evaluated_depsgraph_get()
         made = project_settings.read_project(project_settings.compose(self.scene, depsgraph)).rocks[0]
-        return [each.name for each in made.surfaces if each.method == "grid" or not each.interpolated], made
+        return [each.name for each in made.surfaces if each.method == "grid" or not each.has_points], made
 
     @property
     def rock(self):
@@ -176,8 +176,8 @@ class MapImport(PanelCase):
             self.order(order)
             made, rock = self.made_of_ground()
             self.assertEqual(made, [order[-1]])
-            self.assertGreater(len(rock.surfaces[-1].point_array()), 1000)
-            self.assertTrue(all(each.own_points() is None for each in rock.surfaces[:-1]))
+            self.assertGreater(len(rock.surfaces[-1].points), 1000)
+            self.assertTrue(all(each.points is None for each in rock.surfaces[:-1]))
             self.assertEqual([row.source for row in self.rock.surfaces], ["NONE"] * 5)
         ops.surface_add(empty=True, name="Soil")
         self.assertEqual(self.made_of_ground()[0], ["Soil"])
@@ -203,7 +203,7 @@ class MapImport(PanelCase):
         expected = run(lambda work: read_rocks(work, given))[0].rock
         for own, other in zip(rock.surfaces, expected.surfaces, strict=True):
             self.assertEqual((own.name, own.method, own.options), (other.name, other.method, other.options))
-            self.assertTrue(np.array_equal(own.point_array(), other.point_array()), own.name)
+            self.assertTrue(np.array_equal(own.points, other.points), own.name)
         self.assertTrue(np.array_equal(rock.observations.seen_on, expected.observations.seen_on))
         ops.surface_move(direction="DOWN")
         self.assertNotIn(youngest, self.made_of_ground()[0])

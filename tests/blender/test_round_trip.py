@@ -64,10 +64,9 @@ def _surface(surface):
             None if array is None else array.tolist()
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
-        "contacts": surface.contact_array().tolist(),
         "left_out": None if surface.left_out is None else [tuple(place) for place in surface.left_out],
         "dips": surface.dips and [surface.dips.positions.tolist(), surface.dips.gradients.tolist()],
-        "method": surface.method_options() if surface.interpolated else None,
+        "method": surface.method_options() if surface.has_points else None,
         **{
             key: getattr(surface, key)
             for key in (

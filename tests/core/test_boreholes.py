@@ -75,6 +75,26 @@ def test_words_for_a_surface_that_was_not_reached(write, entry):
     assert any("left out: 1 pick without a depth" in text for text in met.warnings)
 
 
+def test_each_point_keeps_its_hole_and_depth(write):
+    """Also of holes at one place, of inclined ones, and of those at whose place the surface has a point."""
+    collars = write("c.csv", "hole,x,y,z,azimuth,dip\nB1,1,1,10,0,90\nB2,1,1,12,0,90\nB3,1,0,10,0,45\n")
+    picks = write("p.csv", "hole,surface,depth\nB2,clay,6\nB1,clay,4\nB3,clay,2\n")
+    points = np.array([[3.0, 3, 7], [1, 1, 6], [3, 1, 7]])
+    clay, square = Surface("clay", points=points), [[0, 0], [4, 0], [4, 4], [0, 4]]
+    rock = Rock(
+        "r", [clay], square, edge_length=1, base_elevation=0, boreholes=Boreholes(picks, collars=collars)
+    )
+    first = build(Project("p", [rock]))
+    for model in (first, build(first.project)):
+        (data,) = model.rock_inputs[0].data
+        found = {source.hole: source for (source,) in data.sources.values()}
+        assert sorted(found) == ["B1", "B2", "B3"]
+        assert (found["B1"].depth, found["B2"].depth) == (4, 6)
+        assert len(data.points) == 6
+    rows = {source.hole: source for (source,) in first.rock_inputs[0].data[0].sources.values()}
+    assert rows["B3"] == ("B3", 2.0, picks, 4) and rows["B2"].line == 2
+
+
 def test_inclined_holes_are_a_warning(write):
     lines = COLLARS.split()
     angles = ["Dip", "-90", "-60", "90", "", "-75"]

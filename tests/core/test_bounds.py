@@ -24,7 +24,8 @@ from realmodel.core.heights.interpolation import Task
 from realmodel.core.heights.realizations.draws import Draw
 from realmodel.core.heights.realizations.turning_bands import FieldArea, Noise
 from realmodel.core.settings.methods import checked_options
-from structure_cases import heights_at, plane_fault, prepared
+from realmodel.core.structures.setup import make_structures, mesh_inputs, read_inputs
+from structure_cases import heights_at, plane_fault
 
 VARIOGRAM = {"model": "matern52", "range": 60.0, "sill": 40.0}
 
@@ -179,9 +180,14 @@ def test_bounds_count_on_their_side_of_a_fault(method):
     points = points[(points[:, 0] < 3) | (points[:, 0] > 5)]
     places = np.array([[4.0, 2.0, 1.0], [4.0, 8.0, 1.0], [9.0, 5.0, 0.5]])
     bounds = bounds_of(places, [True, True, False])
-    surface = Surface("A", points=points, method=method, bounds=bounds)
+    surface = Surface("A", points=points, method=method)
     rock = Rock("R", [surface], SQUARE / 10, edge_length=0.4, base_elevation=-20.0)
-    (entry,) = prepared(Project("P", [rock], faults=[Fault("F", *plane_fault())]))
+    project = Project("P", [rock], faults=[Fault("F", *plane_fault())])
+    inputs, known = read_inputs(Work(), project)
+    (entry,) = inputs
+    entry.data[0] = replace(entry.data[0], bounds=bounds)
+    mesh_inputs(Work(), inputs)
+    make_structures(Work(), known, inputs, None)
     sheets = [entry.structure.sheet(number, 0) for number in range(len(entry.structure.compartments))]
     at = np.array([[4.5, 5.0], [9.0, 5.0]])
     lifted, level = sorted((heights_at(at, *sheet) for sheet in sheets), key=lambda z: -z[0])

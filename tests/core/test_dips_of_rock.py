@@ -44,10 +44,11 @@ def rock_of(rules, dips=None, method="spline", base=-100.0, **more):
 def counted(rock, **more):
     """For each dip the names of the surfaces that it counts for, and the texts of the warnings."""
     model = build(Project("p", [rock], **more))
-    read = model.rock_inputs[0].rock
+    entry = model.rock_inputs[0]
+    read = entry.rock
     found = [[] for _ in range(len(read.dips))]
-    for surface in read.surfaces:
-        for position in [] if surface.rock_dips is None else surface.rock_dips.positions:
+    for surface, data in zip(read.surfaces, entry.data, strict=True):
+        for position in [] if data.dips is None else data.dips.positions:
             for row in np.flatnonzero((read.dips.positions == position).all(axis=1)):
                 found[row].append(surface.name)
     return found, [str(each) for each in model.warnings]
@@ -228,7 +229,7 @@ def test_a_project_with_dips_of_its_rock_mass(tmp_path):
     project = load_project(file)
     assert tmp_path / "dips.csv" in project.input_files()
     model = build(project)
-    assert [len(surface.rock_dips) for surface in model.rock_inputs[0].rock.surfaces] == [2, 2]
+    assert [len(data.dips) for data in model.rock_inputs[0].data] == [2, 2]
     said = [str(warning) for warning in model.warnings if "the header says ft for" in str(warning)]
     assert [file in text for file, text in zip(("dips.csv", "p0.csv", "p1.csv"), sorted(said), strict=True)]
     save_project(model.project, tmp_path / "again.toml")

@@ -108,7 +108,7 @@ def test_the_borehole_and_the_depth_are_named(tmp_path, tie):
     surfaces[1] = Surface(name="S1", method="kriging", options={"variogram": NUGGET}, tie=tie)
     holes = Boreholes(collars=tmp_path / "collars.csv", picks=tmp_path / "picks.csv")
     (found,) = warnings(surfaces, "residual", boreholes=holes)
-    assert f"of borehole 'W-7' at a depth of {1000 - point[2]:.6g}," in found.text
+    assert f"of borehole 'W-7' at a depth of {1000 - point[2]:.6g} (picks.csv, line 9)," in found.text
     assert found.text.startswith("before it is tied it misses" if tie else "it misses")
 
 

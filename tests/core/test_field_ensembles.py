@@ -81,8 +81,8 @@ def test_contacts_and_observations_hold_in_all_realizations():
     for number in range(3):
         model = realizer.realization(number)
         assert model.validate().passed
-        for each, surface in enumerate(project.rocks[0].surfaces[:3]):
-            assert are_on(surface.point_array(), model.rock_inputs[0].surface(each)).all()
+        for each, data in enumerate(model.rock_inputs[0].data[:3]):
+            assert are_on(data.points, model.rock_inputs[0].surface(each)).all()
         assert model.observed().share == 1.0
         volumes.append([block.volume for block in model.blocks])
     assert np.std(volumes, axis=0).min() > 1e-3

@@ -305,13 +305,13 @@ def test_places_of_a_hole_in_any_order():
 def test_a_model_of_logs_alone(project, tmp_path):
     """B2 and B5 meet no clay: sand lies on the basement, which the surface over the clay is."""
     model = build(load_project(project()))
-    surfaces = model.project.rocks[0].surfaces
-    assert sorted(surfaces[0].point_array().tolist()) == [[0.0, 0.0, 4.0], [10.0, 10.0, 4.0]]
-    assert sorted(surfaces[1].point_array().tolist()) == [
+    surfaces = model.rock_inputs[0].data
+    assert sorted(surfaces[0].points.tolist()) == [[0.0, 0.0, 4.0], [10.0, 10.0, 4.0]]
+    assert sorted(surfaces[1].points.tolist()) == [
         *([0.0, 0.0, 8.0], [0.0, 10.0, 9.0], [5.0, 5.0, 8.0], [10.0, 0.0, 7.0])
     ]
     # no observation is on the ground: it goes through the collars, which it lies at or above
-    assert surfaces[2].point_array()[:, 2].tolist() == [10.0] * 5
+    assert surfaces[2].points[:, 2].tolist() == [10.0] * 5
     assert [w.surface for w in model.warnings if w.kind == "no_contact"] == ["S2"]
     assert [
         (b.holes.tolist(), b.places[:, 2].tolist(), b.is_lower.tolist()) for b in [surfaces[0].bounds]
@@ -363,10 +363,8 @@ def test_a_read_project_is_the_same_again_in_memory_and_on_disk(project, write, 
     for other in (again, written, Model.load(tmp_path / "a.npz")):
         np.testing.assert_array_equal(other.vertices, model.vertices)
         assert len(other.project.rocks[0].observed) == 26
-        for first, second in zip(
-            model.project.rocks[0].surfaces, other.project.rocks[0].surfaces, strict=True
-        ):
-            np.testing.assert_array_equal(first.point_array(), second.point_array())
+        for first, second in zip(model.rock_inputs[0].data, other.rock_inputs[0].data, strict=True):
+            np.testing.assert_array_equal(first.points, second.points)
             np.testing.assert_array_equal(first.bounds.places, second.bounds.places)
         assert other.observed().blocks == model.observed().blocks
 
@@ -375,9 +373,9 @@ def test_contacts_follow_the_rules_when_these_change(project):
     model = build(load_project(project()))
     changed = model.project
     changed.rocks[0].surfaces[1].rule = "conformable"
-    surfaces = build(changed).project.rocks[0].surfaces
+    surfaces = build(changed).rock_inputs[0].data
     # where the clay does not cut the basement, sand on the basement is the surface of that
-    assert len(surfaces[0].point_array()) == 4 and len(surfaces[1].point_array()) == 2
+    assert len(surfaces[0].points) == 4 and len(surfaces[1].points) == 2
 
 
 @pytest.mark.parametrize("tie", [False, True])
@@ -391,7 +389,7 @@ def test_arrays_and_own_points_go_together(tie):
     seen = Observations([[5, 5, 2], [5, 5, 8]], ["base block", "clay"])
     rock = Rock("r", surfaces, region=square, edge_length=2.0, base_elevation=-1.0, observations=seen)
     model = build(Project("p", [rock]))
-    assert [len(surface.point_array()) for surface in model.project.rocks[0].surfaces] == [4, 4]
+    assert [len(surface.points) for surface in model.rock_inputs[0].data] == [4, 4]
     found = model.observed()
     share = float(tie)  # tin is not told of bounds, ties are
     assert [(each.block, each.share) for each in found.blocks] == [("base block", share), ("clay", share)]
@@ -404,7 +402,7 @@ def test_a_surface_that_needs_no_points_gets_none_from_bounds():
     seen = Observations([[1, 1, 8], [8, 1, 8], [5, 8, 8], [5, 5, 1]], ["S1", "S1", "S1", "S0"])
     rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-3.0, observations=seen)
     model = build(Project("p", [rock]))
-    points = [surface.point_array().tolist() for surface in model.project.rocks[0].surfaces]
+    points = [surface.points.tolist() for surface in model.rock_inputs[0].data]
     assert points[0] == [] and len(points[1]) == 4
     assert [warning.surface for warning in model.warnings if warning.kind == "no_contact"] == ["S1"]
 
@@ -445,9 +443,9 @@ def test_a_surface_that_no_hole_meets_does_not_follow_inclined_holes_down():
     surfaces = [Surface("S0", points=points, method="plane"), Surface("S1", method="spline", block="sand")]
     rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-5.0, observations=seen)
     model = build(Project("p", [rock]))
-    ground = model.project.rocks[0].surfaces[1]
+    ground = model.rock_inputs[0].data[1]
     expected = [[1.0, 0.0, 9.0], [2.0, 4.0, 9.0], [9.0, 2.0, 9.0]]
-    np.testing.assert_allclose(ground.point_array(), expected, atol=1e-5)  # just above the collars
+    np.testing.assert_allclose(ground.points, expected, atol=1e-5)  # just above the collars
     assert [(each.block, each.share) for each in model.observed().blocks] == [("sand", 1.0)]
 
 

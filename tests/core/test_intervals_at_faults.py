@@ -35,8 +35,8 @@ def test_contacts_and_bounds_among_faults():
     places = [(1, 1), (1, 9), (3, 5), (7, 5), (9, 1), (9, 9)]
     seen = level_logs(places, [0, 0, 0, 2, 2, 2])
     model = faulted(seen, Fault("F", *plane_fault(), youngest="S1"))
-    surfaces = model.project.rocks[0].surfaces
-    assert len(surfaces[0].contact_array()) == len(surfaces[1].contact_array()) == 6
+    data = model.rock_inputs[0].data
+    assert len(data[0].contacts) == len(data[1].contacts) == 6
     found = model.observed()
     assert all(abs(each.residual) < 1e-9 for each in found.contacts)
     assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
@@ -52,7 +52,7 @@ def test_a_sheet_without_points_keeps_the_bounds_of_its_compartment():
     deep = seen.places[:, 2] == 2.0  # the lower top, less the throw: the holes go on to 1 in the same block
     seen.places[deep, 2] = 1.0
     model = faulted(seen, Fault("F", *plane_fault(), youngest="S1"))
-    assert len(model.project.rocks[0].surfaces[0].contact_array()) == 3
+    assert len(model.rock_inputs[0].data[0].contacts) == 3
     found = model.observed()
     assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
     assert not found.violated
@@ -84,8 +84,8 @@ def test_where_a_hole_passes_a_fault_no_surface_is_known_to_be():
     hole = hole_b6(ends)
     fault = Fault("F", *plane_fault(lean=-0.1), youngest="S1")
     model = faulted(Observations.joined([seen, hole]), fault)
-    surfaces = model.project.rocks[0].surfaces
-    there = [[z for x, _, z in surface.contact_array().tolist() if x == 5.5] for surface in surfaces]
+    data = model.rock_inputs[0].data
+    there = [[z for x, _, z in each.contacts.tolist() if x == 5.5] for each in data]
     assert there == [[2.0], [6.0, 4.0], []]
     found = model.observed()
     assert not found.left_out and not found.violated
@@ -107,8 +107,8 @@ def test_what_lies_between_a_fault_and_the_end_of_an_interval_is_listed():
     found = model.observed()
     assert [(each.kind, each.hole, each.block) for _, each in found.left_out] == [("at_fault", "B6", "S1")]
     assert np.isclose(found.left_out[0][1].depth, 3.9)
-    S1 = model.project.rocks[0].surfaces[1]
-    assert 5.5 not in S1.contact_array()[:, 0]
+    S1 = model.rock_inputs[0].data[1]
+    assert 5.5 not in S1.contacts[:, 0]
     there = S1.bounds.some(S1.bounds.places[:, 0] == 5.5)
     heights = sorted(there.places[:, 2].tolist())
     assert np.allclose(heights, [5.0, 5.1], atol=1e-5), "below the fault from it on, above it to the end"
@@ -124,7 +124,7 @@ def test_an_interval_holds_on_both_sides_of_a_fault_that_it_passes():
     found = model.observed()
     assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
     assert not found.violated and not found.left_out
-    bounds = model.project.rocks[0].surfaces[0].bounds
+    bounds = model.rock_inputs[0].data[0].bounds
     near = bounds.places[np.abs(bounds.places[:, 0] - 5.0) < 1e-5]
     assert sorted(near[:, 0] > 5.0) == [False, True] and np.allclose(near[:, 2], 5.0 - 2.8 / 1.2, atol=1e-5)
 

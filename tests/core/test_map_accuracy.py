@@ -139,7 +139,7 @@ def test_contacts_are_off_by_what_the_ground_rises_over_the_accuracy(map_of):
     assert observed.errors[on_line] == pytest.approx(5 * np.abs(slope), rel=0.05)
     model = build(map_of(more=", accuracy = 5"))
     variance = np.mean(observed.errors[on_line] ** 2)
-    assert model.project.rocks[0].surfaces[0].error == pytest.approx(variance)
+    assert model.rock_inputs[0].data[0].error == pytest.approx(variance)
     assert model.interpolations[0].variogram.nugget >= variance * (1 - 1e-12)
 
 

@@ -7,10 +7,12 @@ import sqlite3
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, MapFile, Project, Rock, Surface, build, load_project
+from realmodel.core.base.work import Work
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers.unit_polygons import UnitPolygon
 from realmodel.core.surfaces.field_data import read_field_data
 from realmodel.core.surfaces.observed.polygon_borders import border_lines
+from realmodel.core.surfaces.prepare import read_rocks
 from structure_cases import heights_at, plane_fault
 from test_map_points import needs_pyshp, shapefile
 
@@ -105,7 +107,7 @@ def test_contacts_lie_on_the_plane_that_the_ground_cuts_and_with_dips_make_it(pr
     assert len(found) == 12  # 60 long, 5 apart
     assert (found[:, 0] == 50).all()
     assert {13.0, 37.5} <= set(found[:, 1])  # corners of the line
-    assert np.array_equal(field_of(project).surfaces[0][1], found)
+    assert np.array_equal(read_rocks(Work(), project)[0].data[0].contacts, found)
     assert np.abs(found[:, 2] - contact(*found[:, :2].T)).max() < 1e-9
     assert np.diff(np.sort(found[:, 1])).max() < 7.6
     model = build(project)
@@ -259,11 +261,11 @@ def test_a_fault_of_any_kind_takes_contacts_near_it(project_of):
     project.faults.append(Fault("F", vertices, triangles))
     model = build(project)
     assert len(model.compartment_names) == 2
-    surface = model.project.rocks[0].surfaces[0]
-    assert not len(surface.contact_array())
-    assert len(surface.point_array()) == 12
+    data = model.rock_inputs[0].data[0]
+    assert not len(data.contacts)
+    assert len(data.points) == 12
     project.faults.clear()
-    assert len(build(project).project.rocks[0].surfaces[0].contact_array()) == 12
+    assert len(build(project).rock_inputs[0].data[0].contacts) == 12
 
 
 @needs_pyshp
@@ -328,8 +330,9 @@ def test_a_small_polygon_that_reaches_beyond_the_region_has_a_place(project_of):
 
 def test_places_without_ground_are_listed(project_of, tmp_path):
     write_ground(tmp_path, lambda x, y: -9999 if y > 30 else ground(x, y))
-    field = field_of(project_of(("clay", WEST), ("Yng", EAST)))
-    assert field.surfaces[0][1][:, 1].max() <= 30
+    project = project_of(("clay", WEST), ("Yng", EAST))
+    field = field_of(project)
+    assert contacts_of(project)[:, 1].max() <= 30
     (warning,) = field.map_warnings
     assert "places of the map are where the ground is not known" in warning
     assert float(warning.rpartition(", ")[2].rstrip(")")) > 30
@@ -378,9 +381,7 @@ def test_a_project_is_written_back_with_what_its_map_says(project_of, tmp_path):
     assert "project_r_observations.csv" in {path.name for path in written}
     again = build(load_project(written[0]))
     assert [block.volume for block in again.blocks] == [block.volume for block in model.blocks]
-    assert np.array_equal(
-        again.project.rocks[0].surfaces[0].contact_array(), model.project.rocks[0].surfaces[0].contact_array()
-    )
+    assert np.array_equal(again.rock_inputs[0].data[0].contacts, model.rock_inputs[0].data[0].contacts)
 
 
 def valley():
@@ -414,7 +415,7 @@ def test_the_map_of_a_model_makes_a_model_that_honors_it(tmp_path):
     second = build(Project("again", [rock]))
     seen = second.observed()
     for name, number in (("A", 0), ("B", 1)):
-        contacts = second.project.rocks[0].surfaces[number].contact_array()
+        contacts = second.rock_inputs[0].data[number].contacts
         assert len(contacts) > 20, name
         on = first.surface(number)
         heights = np.array([_height(on, *place[:2]) for place in contacts])

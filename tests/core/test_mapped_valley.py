@@ -29,9 +29,9 @@ def test_its_files_are_those_of_its_script(tmp_path):
 
 def test_contacts_lie_on_the_surfaces_that_the_ground_cuts(made, model):
     heights = [lambda x, y, bed=bed: made.top(bed, x, y) for bed in range(3)] + [made.basalt_base]
-    rock = model.project.rocks[0]
-    for surface, height in zip(rock.surfaces, heights, strict=False):
-        contacts = surface.contact_array()
+    entry = model.rock_inputs[0]
+    for surface, data, height in zip(entry.rock.surfaces, entry.data, heights, strict=False):
+        contacts = data.contacts
         assert len(contacts) > 15, surface.name
         off = [z - height(x, y) for x, y, z in contacts.tolist()]
         assert np.abs(off).max() < 1.0, surface.name  # the raster is bilinear

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The list of data that a model does not honor."""
 
+from dataclasses import replace
+
 import numpy as np
 from realmodel.core import Dips, Observations, Project, Rock, Series, SpaceDips, Surface, build
 
@@ -38,6 +40,15 @@ def test_points_off_their_surface_come_with_their_hole():
     assert len(made.misfits(tolerance=0.5)) == 1
 
 
+def test_holes_at_one_place_are_told_apart():
+    """Each pick is a point of its own, with its own hole; so is each row of a table."""
+    points = [(1, 1, 4), (9, 1, 4), (1, 9, 4), (9, 9, 4), (5, 5, 5), (5, 5, 5)]
+    met = [("clay", np.array([5.0, 5, 5]))]
+    picks = {"B7": (np.array([5.0, 5, 12]), met), "B8": (np.array([5.0, 5, 13]), met)}
+    found = [each for each in model(points=points, picks=picks).misfits() if each.hole]
+    assert sorted((each.hole, each.depth, each.row) for each in found) == [("B7", 7.0, 4), ("B8", 8.0, 5)]
+
+
 def test_bounds_and_blocks():
     seen = Observations([[5, 5, 8.0], [2, 2, 1]], ["base block", "sand"])
     found = model(seen).misfits()
@@ -68,7 +79,9 @@ def test_intervals_say_how_much_of_them_is_elsewhere():
 def test_dips_are_compared_with_the_surface():
     dips = Dips([[5.0, 5.0], [2.5, 5.0], [9.0, 1.0]], [[0.5, 0.0], [-0.5, 0.0], [0.0, 0.0]]).checked()
     made = model()  # a plane, which takes no dips; beside it these would be honored
-    made.rock_inputs[0].rock.surfaces[0].dips = dips
+    (entry,) = made.rock_inputs
+    entry.rock.surfaces[0].dips = dips
+    entry.data[0] = replace(entry.data[0], dips=dips)
     found = [each for each in made.misfits(dip_tolerance=1.0) if each.kind == "dip"]
     assert [each.row for each in found] == [1, 2], "the first fits; the second dips to the other side"
     assert (found[0].says, found[0].has) == ("090/27", "270/27, 53° off")

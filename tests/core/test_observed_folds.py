@@ -281,7 +281,7 @@ def test_picks_are_contacts(tmp_path):
     project = observed_project(dome, None)
     project.rocks[0].boreholes = Boreholes(tmp_path / "picks.csv")
     model = build(project)
-    assert [len(s.point_array()) for s in model.project.rocks[0].surfaces[:3]] == [8, 8, 8]
+    assert [len(each.points) for each in model.rock_inputs[0].data[:3]] == [8, 8, 8]
 
 
 def test_holes_are_cross_validated():
@@ -337,7 +337,7 @@ def test_a_place_that_contradicts_its_hole_is_left_out(down):
 
 def test_data_in_errors_have_their_names():
     project = observed_project(dome, logs(dome, holes(6)))
-    clash = build(project).project.rocks[0].surfaces[0].contact_array()[:1]
+    clash = build(project).rock_inputs[0].data[0].contacts[:1]
     project.rocks[0].surfaces[2].points = clash
     with pytest.raises(InputRefused, match="have a contact at one place") as refused:
         build(project)

@@ -205,7 +205,7 @@ def peak(name, scale):
     else:
         surface = Surface("S", points=PointFile(write_points(name, 200 * scale, 200 * scale, folder)[0]))
     with MappedArrays(folder / "arrays") as arrays:
-        surface = SurfaceInput("rock", surface, None, None, "m")
+        surface = SurfaceInput("rock", surface, None, None, [], "m")
         tracemalloc.start()
         _read(arrays.folder, (0, surface))
         found = tracemalloc.get_traced_memory()[1]
@@ -227,7 +227,7 @@ def limited(file):
     status = Path("/proc/self/status").read_text()
     now = int(status.split("VmData:")[1].split()[0]) * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (now + 100_000_000,) * 2)
-    surface = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
+    surface = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, [], "m")
     with MappedArrays(folder / "arrays") as arrays:
         found = _read(arrays.folder, (0, surface))
         count = len(arrays.opened(found.surface.points))

@@ -61,7 +61,7 @@ def test_a_series_is_read_with_its_surfaces(tmp_path):
     assert (series.name, series.kind, series.resolution) == ("A", "field", 2.5)
     assert series.dip_file == DipFile(tmp_path / "dips.csv")
     assert [surface.series for surface in rock.surfaces] == ["A", "A", None]
-    assert [surface.is_level_set for surface in rock.surfaces] == [True, True, False]
+    assert [rock.is_level_set(surface) for surface in rock.surfaces] == [True, True, False]
     assert not rock.interpolates  # no planar mesh is needed
 
 
@@ -99,7 +99,7 @@ def test_surfaces_of_a_series_are_consecutive():
 @pytest.mark.parametrize(("key", "value"), [("region", None), ("base_elevation", None)])
 def test_a_field_needs_an_end(key, value):
     given = {"region": SQUARE, "base_elevation": 0.0} | {key: value}
-    rock = Rock("r", [Surface("a", points=[[5.0, 5.0, 5.0]], series="A")], series=[Series("A")], **given)
+    rock = Rock("r", [Surface("a", series="A")], series=[Series("A")], **given)
     with pytest.raises(InputRefused, match=f"has no {key}"):
         check_project(Project("p", [rock]))
 
@@ -129,7 +129,7 @@ def test_a_written_series_is_the_same_when_it_is_read(tmp_path, used):
 def test_dips_that_are_switched_off_say_nothing():
     places, normals = np.arange(9.0).reshape(3, 3), np.eye(3)
     series = Series("A", dips=SpaceDips(places, normals, np.array([False, True, True])))
-    rock = Rock("r", [Surface("a", points=[[5.0, 5.0, 5.0]], series="A")], SQUARE, series=[series])
+    rock = Rock("r", [Surface("a", series="A")], SQUARE, series=[series])
     data = SeriesData.of(RockInput(rock, [None]), series, [0])
     np.testing.assert_array_equal(data.dips, places[1:])
     assert data.item("dip", 0) == "dip 1"  # its row in the table

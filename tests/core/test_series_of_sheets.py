@@ -220,7 +220,7 @@ def test_dips_of_the_series_count_for_all_its_sheets():
     ):
         model = build(Project("p", [rock_of(surfaces, series=[Series("J", "sheets", dips)])]))
         errors.append([error(model, number) for number in range(3)])
-        given = [surface.rock_dips for surface in model.rock_inputs[0].rock.surfaces]
+        given = [data.dips for data in model.rock_inputs[0].data]
         assert [0 if each is None else len(each) for each in given] == [0 if dips is None else 40] * 3
     assert np.allclose(errors[1], errors[2], rtol=1e-9)
     assert max(errors[1]) < 0.6 * min(errors[0])
@@ -233,7 +233,7 @@ def test_dips_of_the_series_that_name_a_block_or_a_surface():
     used = np.arange(7) < 6
     dips = Dips(plan, slope, None, names[:, 0], names[:, 1], used)
     model = build(Project("p", [rock_of(surfaces, series=[Series("J", "sheets", dips)])]))
-    given = [surface.rock_dips for surface in model.rock_inputs[0].rock.surfaces]
+    given = [data.dips for data in model.rock_inputs[0].data]
     rows = [[0, 2, 3], [0, 1, 2], [0, 4]]  # those over and under the block of S1, the base under that of S0
     for each, expected in zip(given[:3], rows, strict=True):
         assert sorted(each.positions.tolist()) == sorted(plan[expected].tolist())
@@ -259,7 +259,7 @@ def test_a_project_file_with_dips_of_sheets(tmp_path):
     project = load_project(file)
     assert tmp_path / "dips.csv" in project.input_files()
     model = build(project)
-    assert [len(surface.rock_dips) for surface in model.rock_inputs[0].rock.surfaces] == [2, 2]
+    assert [len(data.dips) for data in model.rock_inputs[0].data] == [2, 2]
     save_project(model.project, tmp_path / "again.toml")
     model.save(tmp_path / "m.npz")
     for again in (load_project(tmp_path / "again.toml"), Model.load(tmp_path / "m.npz").project):

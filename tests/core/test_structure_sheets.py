@@ -272,7 +272,7 @@ def test_sheets_are_interpolated_where_their_compartments_are(method, monkeypatc
         found.append((len(entry.structure.compartments), sum(asked)))
     (few, of_few), (many, of_many) = found
     assert many >= 3 * few and of_many < 2 * of_few < many * len(entry.region.vertices)
-    monkeypatch.setattr(InterpolatedSurface, "_counts_by_node", lambda self, surface: False)
+    monkeypatch.setattr(InterpolatedSurface, "_counts_by_node", lambda self, surface, data: False)
     (whole,) = prepared(overlapping(6, method))
     faults, count = whole.structure.faults, 0
     assert np.array_equal(whole.structure.compartments, entry.structure.compartments)

@@ -30,7 +30,7 @@ def test_points_that_are_left_out_are_not_used():
     model = build(without)
     assert np.allclose(heights(model), 2.0, atol=1e-6)
     assert heights(build(project())).max() > 3.0
-    assert model.project.rocks[0].surfaces[0].point_array().tolist() == sorted(LOW[:4].tolist())
+    assert model.rock_inputs[0].data[0].points.tolist() == sorted(LOW[:4].tolist())
     assert np.array_equal(model.project.rocks[0].surfaces[0].left_out, LOW[4:])
 
 
@@ -85,7 +85,7 @@ def test_they_are_written_and_read_again(tmp_path):
     assert again.surfaces[0].dips.used.tolist() == dips.used.tolist()
     assert again.surfaces[0].dips.gradients.tolist() == dips.gradients.tolist()
     assert again.surfaces[0].left_out.tolist() == LOW[4:].tolist()
-    assert again.surfaces[0].own_points().tolist() == sorted(LOW[:4].tolist())
+    assert again.surfaces[0].points.tolist() == sorted(LOW[:4].tolist())
 
 
 def test_tables_say_what_is_used(tmp_path):
@@ -149,7 +149,7 @@ def test_picks_that_are_switched_off(tmp_path):
     model = build(load_project(file))
     assert np.array_equal(heights(model), heights(build(project(left_out=LOW[4:]))))
     surface = model.project.rocks[0].surfaces[0]
-    assert surface.point_array().tolist() == sorted(LOW[:4].tolist())
+    assert surface.points.tolist() == sorted(LOW[:4].tolist())
     assert np.array_equal(surface.left_out, LOW[4:])
     assert "B4" not in model.project.rocks[0].hole_picks
     save_project(model.project, tmp_path / "again.toml")

@@ -13,6 +13,7 @@ from realmodel.core.results.layer_values import at_places
 from realmodel.core.results.residuals import residuals
 from realmodel.core.settings.meshers import MESHERS
 from realmodel.core.settings.methods import METHODS
+from realmodel.core.surfaces.observed.surface_data import SurfaceData
 from realmodel.core.surfaces.planar_mesh import crowded_places
 from realmodel.core.surfaces.rock_input import RockInput
 from sample_scripts import SAMPLES
@@ -177,7 +178,10 @@ def test_ties_of_rasters_and_surveys_are_not_asked_for():
     free, tied = (model_of(grid, "grid", tie=tie).surface(0)[0] for tie in (False, True))
     assert np.array_equal(free, tied)
     many = np.random.default_rng(1).uniform(0, 1, (10_001, 3))
-    assert [len(Surface("top", points=each).tied_points) for each in (many, many[1:])] == [0, 10_000]
+    assert [len(SurfaceData(each, len(each)).tied_points(Surface("top"))) for each in (many, many[1:])] == [
+        0,
+        10_000,
+    ]
 
 
 def test_data_of_one_position_count_once():
@@ -190,7 +194,9 @@ def test_of_close_places_of_several_surfaces_one_becomes_a_vertex_at_a_time():
     hole = np.array([[50.0, 50, 1], [50.2, 50, 9]])
     surfaces = [Surface(name, points=hole + np.array([0.001 * n, 0, n])) for n, name in enumerate("ab")]
     rock = Rock("r", surfaces, region=REGION, edge_length=20.0)
-    entry = RockInput(rock, [None, None])
+    entry = RockInput(
+        rock, [None, None], data=[SurfaceData(each.points, len(each.points)) for each in surfaces]
+    )
     mesh = Sheet(np.array([[0.0, 0], [100, 0], [50, 100]]), np.array([[0, 1, 2]], np.int32))
     found = run(lambda work: crowded_places(work, entry, mesh, np.empty((0, 2))))
     assert len(found) == 1
@@ -199,7 +205,8 @@ def test_of_close_places_of_several_surfaces_one_becomes_a_vertex_at_a_time():
 def test_a_vertex_beside_a_contact_that_still_cannot_be_met_is_not_enough():
     plan = np.array([[50.0, 20], [30, 30], [70, 30], [50, 70]])
     surface = Surface("a", points=np.column_stack([plan, [1.0, 2, 3, 9]]))
-    entry = RockInput(Rock("r", [surface], region=REGION, edge_length=20.0), [None])
+    rock = Rock("r", [surface], region=REGION, edge_length=20.0)
+    entry = RockInput(rock, [None], data=[SurfaceData(surface.points, 4)])
     mesh = Sheet(np.array([[0.0, 0], [100, 0], [50, 100]]), np.array([[0, 1, 2]], np.int32))
     for off in (500.0, 1.0, 0.0):
         known = np.add(plan, [0.0, off])  # of another surface
@@ -279,7 +286,7 @@ def test_a_survey_is_not_tied_beside_a_fault_that_dies_out(monkeypatch):
     square = [[0, 0], [10, 0], [10, 10], [0, 10]]
 
     def residual(most):
-        monkeypatch.setattr("realmodel.core.project.project.MOST_CONTACTS", most)
+        monkeypatch.setattr("realmodel.core.surfaces.observed.surface_data.MOST_CONTACTS", most)
         rock = Rock(
             "r", [Surface("s", points=points, method="idw")], square, edge_length=2.0, base_elevation=-5
         )

@@ -160,8 +160,7 @@ def _stamp(row):
 
 
 def own_points(scene, row):
-    """(P, 3) the points of a surface that are used, without contacts that follow from observations. Raises
-    InputRefused."""
+    """(P, 3) the points of a surface that are used. Raises InputRefused."""
     points = borehole_points.own_points(scene, row)
     if points is None:
         return np.empty((0, 3))

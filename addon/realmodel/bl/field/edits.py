@@ -96,14 +96,10 @@ def _switch_point(scene, row, place, used):
 
 
 def _keep_points(row, points, stays_of_file=False):
-    """Stores the own points of a surface, beside its contacts. Moved ones are not those of its file any more,
-    which the surface does not name then."""
-    contacts = row.stored.get("contacts")
-    arrays = {"points": points}
-    if contacts is not None:
-        arrays = {"points": np.concatenate([points, contacts]), "contacts": contacts}
+    """Stores the points of a surface. Moved ones are not those of its file any more, which the surface does
+    not name then."""
     with settings.filling():
-        row.stored = arrays
+        row.stored = {"points": points}
         if row.filepath and not stays_of_file:
             row.source, row.filepath, row.stored_stamp = "POINTS_FILE", "", ""
             method_settings.fill_reading(row)

@@ -456,9 +456,7 @@ def shape_arrays(surface):
     if getattr(surface, "traced", None) is not None:
         return structure_settings.trace_arrays(surface.traced)
     if getattr(surface, "points", None) is not None:
-        contacts = getattr(surface, "contacts", None)
-        derived = {} if contacts is None else {"contacts": contacts}
-        return {"points": np.asarray(surface.points, np.float64), **derived}
+        return {"points": np.asarray(surface.points, np.float64)}
     return structure_settings.mesh_arrays(surface)
 
 
@@ -517,19 +515,18 @@ def fill_surface(row, surface):
     with settings.filling():
         method_settings.set_values(row, Surface, surface)
         has_method = surface.method is not None or surface.options
-        row.use_continuation = bool(has_method) and not surface.interpolated
+        row.use_continuation = bool(has_method) and not surface.has_points
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
-        surface_dips.keep(row, surface.own_dips())
+        surface_dips.keep(row, surface.dips)
         if surface.left_out is not None and len(surface.left_out):
             row.left_out = {"points": np.asarray(surface.left_out, np.float64)}
-        has_points = surface.interpolated or surface.is_level_set
         if surface.input_file is not None:
-            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
+            row.source = "POINTS_FILE" if surface.has_points else "MESH_FILE"
             row.filepath = str(surface.input_file)
             method_settings.fill_reading(row, surface.point_file or surface.mesh_file)
-        elif surface.interpolated and not len(surface.point_array()):
+        elif surface.has_points and (surface.points is None or not len(surface.points)):
             row.source = "NONE"
         else:
-            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
-            setattr(row, "stored" if has_points else "stored_mesh", shape_arrays(surface))
+            row.source = "POINTS_FILE" if surface.has_points else "MESH_FILE"
+            setattr(row, "stored" if surface.has_points else "stored_mesh", shape_arrays(surface))

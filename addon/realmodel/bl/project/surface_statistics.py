@@ -15,16 +15,17 @@ def of_model(model):
     null where the region cuts it off). Of faults and bodies, which follow, area and share are null."""
     areas = _surviving_areas(model)
     texts, number = [], 0
-    for rock in model.project.rocks:
-        for surface in rock.surfaces:
+    for entry in model.rock_inputs:
+        rock = entry.rock
+        for surface, data in zip(rock.surfaces, entry.data, strict=True):
             vertices, triangles = model.surface(number)
             heights = vertices[:, 2][triangles] if len(triangles) else np.zeros(1)
             whole = 0.0
-            if surface.interpolated or rock.region is None:  # each sheet goes on beyond its faults
+            if rock.is_interpolated(surface) or rock.region is None:  # each sheet goes on beyond its faults
                 sheets = [triangles] if model.lacks_project else model.sheet_triangles(number)
                 whole = max(plan_area(vertices, sheet) for sheet in sheets)
             figures = {
-                "points": len(surface.points) if surface.points is not None else None,
+                "points": len(data.points) if surface.has_points else None,
                 "triangles": len(triangles),
                 "low": float(heights.min()),
                 "high": float(heights.max()),

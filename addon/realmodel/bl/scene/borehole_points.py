@@ -4,7 +4,6 @@
 
 import numpy as np
 
-from ...core import Surface
 from ...core.surfaces.age_order import age_order
 from ..project import library_rows, method_settings, settings
 from . import data_objects
@@ -57,17 +56,13 @@ def _tops(picks, name):
 
 
 def own_points(scene, row):
-    """The points that a surface has from its file, without contacts that follow from observations; None where
-    it is no surface of such points."""
+    """The points that a surface has from its file; None where it is no surface of such points."""
     if row.source == "NONE":
         return np.empty((0, 3))
     if row.source != "POINTS_FILE":
         return None
     points = data_objects.read_points(scene, row)
-    if points is None:
-        return np.empty((0, 3))
-    without_contacts = Surface(row.name, points=points, contacts=row.stored.get("contacts")).own_points()
-    return np.empty((0, 3)) if without_contacts is None else without_contacts
+    return np.empty((0, 3)) if points is None else points
 
 
 def keep_points(row, points):

@@ -65,6 +65,8 @@ def _take(row, key, text):
             names = [name for name in arrays if name.startswith("column:")]
             columns = {f"column{number}": arrays.pop(name) for number, name in enumerate(names)}
             arrays |= columns | {"columns": np.array([name.partition(":")[2] for name in names], str)}
+        if key == "stored" and "contacts" in arrays:  # they follow from observations
+            arrays = _without_contacts(row, **arrays)
         setattr(row, key, arrays)
     elif key == "hole_picks":
         borehole_picks.store(row, json.loads(text))
@@ -75,6 +77,14 @@ def _take(row, key, text):
     else:
         values = json.loads(text)
         setattr(row, key, values if key == "exact" else {"values": np.array(values)})
+
+
+def _without_contacts(row, points, contacts):
+    """What a surface stores of points of which the last are contacts."""
+    own = points[: len(points) - len(contacts)]
+    if not len(own):
+        row.source = "NONE"
+    return {"points": own} if len(own) else {}
 
 
 def _arrays_of_npz(text):

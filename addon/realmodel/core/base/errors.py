@@ -76,10 +76,13 @@ class InputRefused(RealModelError, ValueError):
 
 @contextmanager
 def naming(item: str, source: Callable[[], tuple[Path | None, int | None]] | None = None) -> Iterator[None]:
-    """Within it errors name an item, and its file and line where they have none yet."""
+    """Within it errors name an item, and its file and line where they have none yet; those that name it, or
+    what it is in, stay."""
     try:
         yield
     except InputRefused as error:
+        if error.item is not None and error.item.startswith(item.partition(",")[0]):
+            raise
         file, line = source() if source else (None, None)
         raise error.within(item, file=file, line=line) from error
 

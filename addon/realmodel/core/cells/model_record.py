@@ -23,12 +23,13 @@ from ..project.library import Library, Property
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_entries import Body, Fault
-from ..readers.tables.observations import Bounds, LeftOut, Observations
+from ..readers.tables.observations import Bounds, LeftOut, Observations, Origin
 from ..settings.dips import DipFile, Dips, SpaceDips
 from ..settings.map_layer import MapLayer
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.variogram import Structure, Variogram
 from ..structures.parts.parts import Structures
+from ..surfaces.observed.surface_data import SurfaceData
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import RockStructure
 from ..surfaces.sides import FaultShape, RockFaults
@@ -41,7 +42,7 @@ RECORDED: tuple[type, ...] = (
     *(BuildWarning, InputRefused, Project, Library, Property, Interpolation, Variogram, Structure),
     *(SeriesField, Lattice, ScalarField, SolvedField, Anisotropy),
     *(MapLayer, MeshFile, PointFile, DipFile, Dips, SpaceDips, Series),
-    *(Observations, Bounds, LeftOut),
+    *(Observations, Bounds, LeftOut, Origin, SurfaceData),
 )
 RECORD = "record"  # the table of objects; its arrays are record_0, record_1, ...
 _STORED = StoredClasses(RECORDED)

@@ -89,10 +89,10 @@ def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None
 
 def _beyond_its_points(entry: RockInput, lowest: float) -> str:
     """The advice where the lowest position is not at a point, but extrapolated by a method."""
-    for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
-        if shape is None or shape.vertices[:, 2].min() > lowest or not surface.interpolated:
+    for surface, data, shape in zip(entry.rock.surfaces, entry.data, entry.surfaces, strict=True):
+        if shape is None or shape.vertices[:, 2].min() > lowest or not entry.rock.is_interpolated(surface):
             continue
-        z = surface.point_array()[:, 2]
+        z = data.points[:, 2]
         if len(z) and z.min() > lowest:
             return f"the lowest point of surface '{surface.name}' is {z.min():.6g}, so check its method"
     return ""

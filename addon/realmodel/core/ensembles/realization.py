@@ -48,7 +48,7 @@ class Realizer:
         self.model.require_project("an ensemble")
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
-            places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]
+            places += [data.points[:, :2] for data in entry.data]
         places = [points for points in places if len(points)] or [np.zeros((1, 2))]
         low = np.min([points.min(axis=0) for points in places], axis=0)
         high = np.max([points.max(axis=0) for points in places], axis=0)
@@ -130,7 +130,7 @@ class Realizer:
         for index, correlation in enumerate(self.correlations(entry)):
             surface_noise = Noise((self.seed, number, rock, index), noise, correlation)
             beside = sheets_beside(entry.rock, index)
-            if surfaces[index].is_level_set:
+            if entry.rock.is_level_set(surfaces[index]):
                 noise, of_series = None, None
             elif index in beside[1:]:  # drawn together with the oldest, whose noise is that of all
                 assert of_series is not None
@@ -144,7 +144,7 @@ class Realizer:
         return replace(
             entry,
             surfaces=[
-                None if surface.interpolated else shape
+                None if entry.rock.is_interpolated(surface) else shape
                 for surface, shape in zip(surfaces, entry.surfaces, strict=True)
             ],
             interpolations=[None] * len(surfaces),

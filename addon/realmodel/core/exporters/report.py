@@ -295,8 +295,9 @@ def warning_entries(model: UsedSurfaces) -> list[dict]:
 def surface_entries(model: UsedSurfaces) -> list[dict]:
     """The entry of each surface of a model, or of a SurfaceSet."""
     entries: list[dict] = []
-    for rock in (entry.rock for entry in model.rock_inputs):
-        for surface in rock.surfaces:
+    for entry in model.rock_inputs:
+        rock = entry.rock
+        for surface, data in zip(rock.surfaces, entry.data, strict=True):
             number = len(entries)
             vertices, triangles = model.surface(number)
             heights = vertices[used_vertices(vertices, triangles), 2]
@@ -309,7 +310,7 @@ def surface_entries(model: UsedSurfaces) -> list[dict]:
                     "triangles": len(triangles),
                     "lowest": float(heights.min()),
                     "highest": float(heights.max()),
-                    "points": len(surface.point_array()) if surface.interpolated else None,
+                    "points": len(data.points) if rock.is_interpolated(surface) else None,
                     "method": result.method if result else None,
                     "method_reason": (result.reason or None) if result else None,
                     "extrapolated": result.extrapolated if result else None,

@@ -79,26 +79,18 @@ def corrected(
     where it does already. And warnings about data that it cannot honor."""
     if not len(data.places):
         return z, missed_warnings(data, np.empty(0))
-    terms, after = correction(work, nodes, triangles, z, data)
+    terms, after = correction(work, nodes, triangles, *one_sheet(z, data))
     if len(terms.radii):
         z = tied_heights(work, z, nodes, terms)
     return z, missed_warnings(data, after)
 
 
 def correction(
-    work: Work, nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray, data: TieData
-) -> tuple[Terms, np.ndarray]:
-    """The correction of heights (N,) at nodes, which are asked for only at the corners of triangles with
-    data; and how far the surface lies below each of the data then, (C,), NaN where it has no triangle."""
-    one = (z, np.empty((1, 0)), np.empty((0, len(nodes))))
-    return correction_of_sheets(work, nodes, triangles, one, data, np.zeros(len(data.places), np.int32))
-
-
-def correction_of_sheets(
     work: Work, nodes: np.ndarray, triangles: np.ndarray, sheets: tuple, data: TieData, of_sheet: np.ndarray
 ) -> tuple[Terms, np.ndarray]:
-    """The correction of several sheets, as native ties takes them. of_sheet: (C,) int32, to which of them
-    each of the data counts."""
+    """The correction of sheets, as native ties takes them, whose heights are asked for only at the corners of
+    triangles with data; and how far the sheet of each of the data lies below it then, (C,), NaN where it has
+    no triangle. of_sheet: (C,) int32, to which sheet each of the data counts."""
     # of contacts near one another the first ones count more: they must not lie on one side
     order = np.concatenate(
         [shuffled(data.places[: data.contacts]), np.arange(data.contacts, len(data.places))]
@@ -116,6 +108,12 @@ def correction_of_sheets(
     after = np.empty(len(order))
     after[order] = solution["after"]
     return terms, after
+
+
+def one_sheet(z: np.ndarray, data: TieData) -> tuple[tuple, TieData, np.ndarray]:
+    """A sheet that no fault divides, with heights (N,), and data as `correction` takes them."""
+    none = np.empty((1, 0)), np.empty((0, len(z)))
+    return (z, *none), data, np.zeros(len(data.places), np.int32)
 
 
 def tied_heights(

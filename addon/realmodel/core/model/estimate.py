@@ -233,7 +233,7 @@ def require_memory(inputs: list[RockInput], cells: str, limit: int | None, struc
 def _sheets(entry: RockInput) -> list[Sheet | None]:
     """The surfaces that are no level sets; None where one is not interpolated yet."""
     pairs = zip(entry.rock.surfaces, entry.surfaces, strict=True)
-    return [shape for surface, shape in pairs if not surface.is_level_set]
+    return [shape for surface, shape in pairs if not entry.rock.is_level_set(surface)]
 
 
 def _plans(entry: RockInput) -> list[Sheet]:

@@ -43,11 +43,11 @@ def changed_values(entry: Any) -> list[tuple[Declaration, Any]]:
     return [(part, value) for part, value in values if part.is_needed or not same(value, part.default)]
 
 
-def keys_without_effect(entry: Any) -> list[str]:
+def keys_without_effect(entry: Any, shape: str) -> list[str]:
     """The keys that are given for a surface or a fault and have no effect on its kind of shape."""
     keys: list[str] = []
     for part, value in changed_values(entry):
-        if not part.setting.fits(entry.shape_kind):
+        if not part.setting.fits(shape):
             keys += value if part.setting.kind == "options" else [part.key]
     return keys
 

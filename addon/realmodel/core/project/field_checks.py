@@ -36,7 +36,7 @@ def _check_map(rock: Rock, given: MapFile) -> None:
     check_layer(given.polygons, "map", refuse)
     check_layer(given.faults, "map", refuse)
     number = rock.ground_number
-    if rock.ground_file is None and number is not None and rock.surfaces[number].is_level_set:
+    if rock.ground_file is None and number is not None and rock.is_level_set(rock.surfaces[number]):
         what = f"the ground of the map cannot be '{rock.surfaces[number].name}': it is a level set"
         raise refuse(what, "map", 'give its heights: ground = "dem.tif", or a sheet as youngest surface')
     for file in rock.map_files:

@@ -11,12 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from ..base.algebra import are_among
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
-from ..readers.tables.observations import Bounds, Observations, along_bounds
+from ..readers.tables.observations import Observations
 from ..settings.boreholes import Boreholes
 from ..settings.crs import checked_crs
 from ..settings.dips import DIPS, DipFile, Dips, dip_file_of
@@ -46,7 +45,6 @@ from .region_rings import is_several
 from .series import Series
 from .structure_entries import MESH, POINTS, Body, Fault, Shaped, library_id
 
-MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh need not resolve
 BASE_BLOCK = "base block"  # the name of the block on the base, where its surface gives it none
 # The shapes of a surface on which a setting has an effect: not on a ready mesh, nor on a level set.
 OF_SHEETS, OF_POINTS = ("sheet",), ("sheet", "level set")
@@ -78,15 +76,11 @@ class Surface(Shaped):
     points of a series; `correlation` is that of the errors of its heights with those of the older one, in
     ensembles.
     `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
-    and is a level set of that field (`is_level_set`, which its rock mass says).
+    and is a level set of that field (Rock.is_level_set).
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
     the block deposited beneath it (0: none), `block` that block's name.
-    `rock_dips` are dips of its rock mass that count for it, and
-    `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
-    heights that it lies at or above, or at or below; `error` is the mean variance of the errors of the
-    heights of its points; all are found when a project is read, and no input.
     `shape_file` is the file that the arrays were read from, if any: messages name it. Points that are read
-    are in the order of their coordinates; `point_rows` are the numbers that they had before, for messages.
+    are in the order of their coordinates; what follows from them and from field data is in RockInput.data.
     """
 
     kind = "surface"
@@ -178,32 +172,16 @@ class Surface(Shaped):
         switch=("Correlation", "In ensembles, draw its elevations with those of the next older surface"),
         shapes=OF_SHEETS,
     )
-    rock_dips: Dips | None = field(default=None, repr=False, compare=False)
-    contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
-    bounds: Bounds | None = field(default=None, repr=False, compare=False)
-    error: float = field(default=0.0, repr=False, compare=False)
-    is_level_set: bool = field(default=False, repr=False, compare=False)
-    point_rows: np.ndarray | None = field(default=None, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @builtins.property  # a field of this class is called property
-    def interpolated(self) -> bool:
-        """Whether its heights are made: from points, by a method that needs none, or from boreholes."""
-        return not self.is_level_set and (
-            self.points is not None
-            or (self.mesh is None and self.vertices is None and self.triangles is None)
-        )
-
-    @builtins.property  # a field of this class is called property
-    def shape_kind(self) -> str:
-        """The kind of its shape, "level set", "sheet" or "mesh", by which settings have an effect."""
-        return "level set" if self.is_level_set else "sheet" if self.interpolated else "mesh"
-
-    @builtins.property  # a field of this class is called property
     def has_points(self) -> bool:
-        """Whether it is made from points: it is interpolated, or a level set. Else it is a ready mesh."""
-        return self.interpolated or self.is_level_set
+        """Whether it is made from points, by a method that needs none, or from boreholes, as an interpolated
+        surface or a level set. Else it is a ready mesh."""
+        return self.points is not None or (
+            self.mesh is None and self.vertices is None and self.triangles is None
+        )
 
     @builtins.property  # a field of this class is called property
     def needs_points(self) -> bool:
@@ -217,86 +195,19 @@ class Surface(Shaped):
         return self.minimum_thickness is not None or self.method == "parallel"
 
     @builtins.property  # a field of this class is called property
-    def ties(self) -> bool:
-        """Whether a surface that is read is made to pass through its contacts and to keep its bounds."""
-        return self.tie and self.interpolated
-
-    @builtins.property  # a field of this class is called property
-    def tied_points(self) -> np.ndarray:
-        """(C, 3) the points that a surface which ties passes through: all, but none of a grid or of so many
-        that they are a survey of the surface. Both are finer than a planar mesh should be."""
-        points = self.point_array()
-        if METHODS[self.method_options()[0]].has_contacts and len(points) <= MOST_CONTACTS:
-            return points
-        return points[:0]
-
-    @builtins.property  # a field of this class is called property
-    def is_along_bounds(self) -> bool:
-        """Whether no contact is known of a sheet, and its points are places on its bounds."""
-        if self.is_level_set or not self.has_bounds or self.contacts is None or not len(self.contacts):
-            return False
-        assert self.bounds is not None
-        return self.own_points() is None and np.array_equal(self.contacts, along_bounds(self.bounds))
-
-    @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
         """The name of the block deposited beneath it."""
         return self.block or f"{self.name} block"
-
-    def point_array(self) -> np.ndarray:
-        """(P, 3) float64 the points of a surface that is read; none where it has none."""
-        assert not isinstance(self.points, (str, Path, PointFile))
-        return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
-
-    def point_row(self, number: int) -> int:
-        """The number that a point had in the table or array that it comes from, for messages."""
-        rows = self.point_rows
-        return number if rows is None or number >= len(rows) else int(rows[number])
 
     @builtins.property  # a field of this class is called property
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
         return dip_file_of(self.dips)
 
-    def known_points(self) -> np.ndarray:
-        """(P, 3) the points that are known to be on a surface that is read: not places on its bounds."""
-        points = self.point_array()
-        return points[:0] if self.is_along_bounds else points
-
-    def own_dips(self) -> Dips | None:
-        """The dips of a surface that is read, without those of its rock mass."""
-        assert self.dips is None or isinstance(self.dips, Dips)
-        return self.dips
-
-    def known_dips(self) -> Dips | None:
-        """All dips that count for a surface that is read: none of them is switched off."""
-        given = [each.used_only() for each in (self.own_dips(), self.rock_dips) if each is not None]
-        parts = [each for each in given if each is not None]
-        return Dips.joined(parts) if len(parts) > 1 else next(iter(parts), None)
-
-    @builtins.property  # a field of this class is called property
-    def has_bounds(self) -> bool:
-        """Whether heights are known that it lies above or below."""
-        return self.bounds is not None and len(self.bounds) > 0
-
-    def contact_array(self) -> np.ndarray:
-        """(C, 3) float64 its contacts; none where it has none."""
-        return np.empty((0, 3)) if self.contacts is None else self.contacts
-
-    def own_points(self) -> np.ndarray | None:
-        """(P, 3) the points of a surface that is read without its contacts; None where it has no others."""
-        points, contacts = self.point_array(), self.contact_array()
-        count = len(points) - len(contacts)
-        if np.array_equal(points[max(count, 0) :], contacts):  # as they are added
-            own = points[:count]
-        else:
-            own = points[~are_among(points, contacts)]
-        return own if len(own) else None
-
     def method_options(self) -> tuple[str, dict]:
         """The method and its complete options; of a ready mesh those by which it is continued to faults.
         Raises OptionRefused."""
-        if self.method is None and not self.interpolated:
+        if self.method is None and not self.has_points:
             return CONTINUATION, checked_options(CONTINUATION, {**CONTINUATION_OPTIONS, **self.options})
         if self.method is None:
             return DEFAULT_METHOD, checked_options(DEFAULT_METHOD, {**DEFAULT_OPTIONS, **self.options})
@@ -393,14 +304,13 @@ class Rock(Entry):
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
-    def __post_init__(self) -> None:
-        self.mark_level_sets()
+    def is_level_set(self, surface: Surface) -> bool:
+        """Whether one of its surfaces is a level set of a field, that of its series."""
+        return any(series.kind == FIELD and series.name == surface.series for series in self.series)
 
-    def mark_level_sets(self) -> None:
-        """Says of each surface whether it is a level set of a field."""
-        fields = {series.name for series in self.series if series.kind == FIELD}
-        for surface in self.surfaces:
-            surface.is_level_set = surface.series in fields
+    def is_interpolated(self, surface: Surface) -> bool:
+        """Whether heights of one of its surfaces are made: it is neither a ready mesh nor a level set."""
+        return surface.has_points and not self.is_level_set(surface)
 
     @property
     def has_fields(self) -> bool:
@@ -423,6 +333,13 @@ class Rock(Entry):
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
         return dip_file_of(self.dips)
+
+    @property
+    def dip_files(self) -> list[DipFile]:
+        """The files of its dips, and of those of its series and its surfaces."""
+        given = [self.dip_file, *(each.dip_file for each in self.series)]
+        given += [each.dip_file for each in self.surfaces]
+        return [each for each in given if each is not None]
 
     @property
     def has_field_data(self) -> bool:
@@ -485,15 +402,6 @@ class Rock(Entry):
         outlines = self.region if is_several(self.region) else [self.region]
         return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
 
-    def constraint_lines(self) -> list[np.ndarray]:
-        """The lines (N, 2) of constraints that are arrays."""
-        return [line for line in self.constraints if len(line) > 1]
-
-    def constraint_points(self) -> np.ndarray | None:
-        """The points (N, 2) of constraints that are arrays; None where there are none."""
-        points = [point for point in self.constraints if len(point) == 1]
-        return np.concatenate(points) if points else None
-
     def stage(self, m: int) -> Rock:
         """The rock mass with the surfaces up to m, and the series that these belong to."""
         kept = self.surfaces[: m + 1]
@@ -503,7 +411,7 @@ class Rock(Entry):
     @property
     def interpolates(self) -> bool:
         """Whether any of its surfaces is interpolated."""
-        return any(surface.interpolated for surface in self.surfaces)
+        return any(map(self.is_interpolated, self.surfaces))
 
 
 @dataclass(eq=False)
@@ -542,13 +450,9 @@ class Project(Compared):
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             files += rock.map_files
-            files += [Path(rock.dip_file.file)] if rock.dip_file is not None else []
-            for surface in rock.surfaces:
-                if surface.point_file is not None:
-                    files += companions(Path(surface.point_file.file))
-                if surface.dip_file is not None:
-                    files.append(Path(surface.dip_file.file))
-            files += [Path(each.dip_file.file) for each in rock.series if each.dip_file is not None]
+            files += [Path(each.file) for each in rock.dip_files]
+            for given in (surface.point_file for surface in rock.surfaces):
+                files += [] if given is None else companions(Path(given.file))
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]

@@ -56,7 +56,6 @@ def check_project(project: Project) -> None:
 
 def _check_rock(project: Project, rock: Rock) -> None:
     refuse = rock.refused
-    rock.mark_level_sets()  # surfaces may have come later
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
     check_values(rock, refuse)
@@ -111,7 +110,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
         raise surface.refused("a surface has no name", "name", item=rock.item)
     refuse = partial(surface.refused, item=surface_item(rock, surface))
     check_names_series(rock, surface, refuse)
-    if surface.is_level_set:
+    if rock.is_level_set(surface):
         check_level_set(rock, surface, refuse)
     else:
         _check_shape(rock, surface, refuse, bool(project.faults))
@@ -133,8 +132,8 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
         for file in (surface.mesh_file, surface.point_file):
             if file is not None:
                 file.check()
-    if not surface.interpolated:
-        idle = keys_without_effect(surface)
+    if not surface.has_points:
+        idle = keys_without_effect(surface, "mesh")
         if continues:
             idle = [key for key in idle if key != "method" and key not in surface.options]
         if idle:

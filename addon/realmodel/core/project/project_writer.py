@@ -166,9 +166,9 @@ def _as_written(entry: Any) -> Any:
     """An entry with the arrays that it is made from: those of its mesh, if no others."""
     if isinstance(entry, Rock):
         return replace(entry, names={})  # what they mean is in the observations
-    if isinstance(entry, Surface) and entry.has_points:
-        return replace(entry, points=entry.own_points())  # its contacts follow from the observations again
-    if isinstance(entry, Fault) and entry.trace is not None:
+    if (isinstance(entry, Surface) and entry.has_points) or (
+        isinstance(entry, Fault) and entry.trace is not None
+    ):
         return entry
     if isinstance(entry, Fault):
         entry = replace(entry, points=None, stick=None, extend=0.0)

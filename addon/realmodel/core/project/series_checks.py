@@ -50,8 +50,8 @@ def _check_sheets(rock: Rock, series: Series, own: list[int], refuse: Refuse) ->
         raise refuse(what, "thickness", "leave it out")
     for number in own:
         surface = rock.surfaces[number]
-        if not surface.interpolated or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:
-            how = f"has method '{surface.method}'" if surface.interpolated else "is a mesh"
+        if not surface.has_points or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:
+            how = f"has method '{surface.method}'" if surface.has_points else "is a mesh"
             what = f"its surfaces are interpolated together, and '{surface.name}' {how}"
             raise refuse(
                 what, "name", f"methods of sheets are {', '.join(SHEET_METHODS[:-1])} and {SHEET_METHODS[-1]}"
@@ -78,7 +78,7 @@ def _check_field(rock: Rock, refuse: Refuse) -> None:
 def check_level_set(rock: Rock, surface: Surface, refuse: Refuse) -> None:
     """Refuses what makes no sense for a surface of a field. Raises InputRefused."""
     shapes = [key for key in ("mesh", "vertices") if getattr(surface, key) is not None]
-    for key in (*shapes, *keys_without_effect(surface)):
+    for key in (*shapes, *keys_without_effect(surface, "level set")):
         what = f"'{key}' has no effect: the surface is a level set of series '{surface.series}'"
         advice = "give the dips to the series" if key == "dips" else "use points, and leave this out"
         raise refuse(what, key, advice)

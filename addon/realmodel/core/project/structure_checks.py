@@ -34,7 +34,7 @@ def _check_fault(project: Project, fault: Fault) -> None:
     refuse = fault.refused
     _check_shape(fault, refuse, ("trace", "points", "mesh"))
     check_values(fault, refuse)
-    for key in keys_without_effect(fault):
+    for key in keys_without_effect(fault, fault.shape_kind):
         if FAULT[key].shapes == OF_TRACES:
             raise refuse(f"'{key}' has no effect, as its shape is no trace", key, "add trace = ...")
         shape = "its shape is a trace" if fault.trace is not None else "no surface is fitted through points"

@@ -23,7 +23,8 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
     for entry, form in zip(inputs, forms, strict=True):
         rock = entry.rock
         shapes = [
-            None if surface.is_level_set else entry.surface(n) for n, surface in enumerate(rock.surfaces)
+            None if rock.is_level_set(surface) else entry.surface(n)
+            for n, surface in enumerate(rock.surfaces)
         ]
         vertices = [shape.vertices for shape in shapes if shape is not None]
         if not entry.reaches_base:
@@ -42,7 +43,7 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
             # any other lies on what is older, or on what that protects, which has its own base
             if shapes[number] is None or not (number == 0 or RULES[surface.rule].cuts):
                 continue
-            if surface.interpolated and len(surface.tied_points):
+            if rock.is_interpolated(surface) and len(entry.data[number].tied_points(surface)):
                 _check_contacts(work, entry, form, number)
             if warning := _cut(work, entry, form, number):
                 entry.warnings.append(warning)
@@ -57,7 +58,7 @@ def _refused(entry: RockInput, what: str, at: np.ndarray, lower: float) -> Input
 
 
 def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int) -> None:
-    points = entry.rock.surfaces[number].known_points()
+    points = entry.data[number].known_points
     deep = points[points[:, 2] < form.base_elevation]
     deep = deep[np.isfinite(form.heights(work, number, deep))]
     if len(deep):

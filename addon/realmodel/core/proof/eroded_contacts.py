@@ -25,13 +25,14 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
     and grids are left out, which are often given as they were before erosion, and what ready meshes remove:
     these stay as they are."""
     for entry, form in zip(inputs, forms, strict=True):
-        surfaces = entry.rock.surfaces
+        rock, surfaces = entry.rock, entry.rock.surfaces
         succession = Succession([surface.rule for surface in surfaces])
         for number, surface in enumerate(surfaces):
-            if not surface.has_points or not (surface.is_level_set or len(surface.tied_points)):
+            data = entry.data[number]
+            if not surface.has_points or not (rock.is_level_set(surface) or len(data.tied_points(surface))):
                 continue
-            points = surface.known_points()
-            is_observed = bool(len(points)) and len(observed_contacts(entry.rock, number)) == len(points)
+            points = data.known_points
+            is_observed = bool(len(points)) and len(observed_contacts(surface, data)) == len(points)
             for cutter in succession.cut_later(number) if len(points) else ():
                 if not (is_observed or surfaces[cutter].has_points):
                     continue
@@ -42,8 +43,8 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
                     continue
                 text = (
                     f"it erodes {len(wrong.items)} of the {len(points)} contacts of '{surface.name}', the "
-                    f"farthest lies {wrong.by:.4g} above it: point {surface.point_row(wrong.worst)} at "
+                    f"farthest lies {wrong.by:.4g} above it: point {data.row(wrong.worst)} at "
                     f"{place_text(wrong.place)}; {_KEPT if is_observed else _NOT_KEPT}"
                 )
                 own = surfaces[cutter].name  # a stage without it has no such warning
-                entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, own, wrong.rows(surface)))
+                entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, own, wrong.rows(data)))

@@ -14,12 +14,12 @@ from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.model_data import ModelData
 from ..heights.left_out_places import in_turn, places_of
-from ..project.project import Project, Rock, Surface
+from ..project.project import Project, Rock
 from ..readers.tables.observations import Observations, in_one_interval
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.observed.derived import BlockNumbers
+from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm, surface_forms
-from .observed import sources_of
 from .seen_places import PLACES, places_along
 
 DEFAULT_FOLDS = 20  # holes are left out in so many groups, where they are more
@@ -135,7 +135,7 @@ def validated_holes(work: Work, model: ModelData, folds: int | None = None) -> H
         out = [every[number] for number in np.flatnonzero(chosen).tolist()]
         with work.part(group / groups, (group + 1) / groups):
             try:
-                found |= _without(work, model.project, rocks, out)
+                found |= _without(work, model.project, model.rock_inputs, out)
             except InputRefused as error:
                 lost = [LeftOutHole(rocks[n].name, hole, 0.0, None, (), str(error)) for n, hole in out]
                 found |= dict(zip(out, lost, strict=True))
@@ -163,72 +163,57 @@ def _places(work: Work, rocks: Sequence[Rock], every: Sequence[tuple[int, str]])
 
 
 def _without(
-    work: Work, project: Project, rocks: Sequence[Rock], out: Sequence[tuple[int, str]]
+    work: Work, project: Project, inputs: Sequence[RockInput], out: Sequence[tuple[int, str]]
 ) -> dict[tuple[int, str], LeftOutHole]:
     """What the surfaces made without some holes, (rock mass, name), say of these."""
     given = [
-        _rock_without(rock, {hole for number, hole in out if number == own}) for own, rock in enumerate(rocks)
+        _rock_without(entry, {hole for number, hole in out if number == own})
+        for own, entry in enumerate(inputs)
     ]
     with work.phase(0.0, 0.1, "leaving out holes"):
-        inputs, known = read_inputs(work, replace(project, rocks=given))
+        without, known = read_inputs(work, replace(project, rocks=given))
     with work.part(0.1, 0.4):
-        mesh_inputs(work, inputs)
+        mesh_inputs(work, without)
     with work.part(0.4, 1.0):
-        structures = make_surfaces(work, known, inputs, None)
-    forms = surface_forms(inputs, structures)
-    return {(number, hole): _judged(work, rocks[number], forms[number], hole) for number, hole in out}
+        structures = make_surfaces(work, known, without, None)
+    forms = surface_forms(without, structures)
+    return {(number, hole): _judged(work, inputs[number], forms[number], hole) for number, hole in out}
 
 
-def _rock_without(rock: Rock, holes: set[str]) -> Rock:
-    """A rock mass without what some holes say."""
+def _rock_without(entry: RockInput, holes: set[str]) -> Rock:
+    """The rock mass of a RockInput without what some holes say."""
+    rock, observed, left_out = entry.rock, entry.rock.observed, sorted(holes)
     if not holes:
         return rock
-    met: dict[str, set[tuple]] = {}
-    for hole in sorted(holes):
-        for surface, place in rock.hole_picks.get(hole, (None, ()))[1]:
-            met.setdefault(surface, set()).add(tuple(np.asarray(place).tolist()))
-    observed = rock.observed
-    kept = None if observed is None else observed.some(~np.isin(observed.holes, sorted(holes)))
-    surfaces = [_surface_without(surface, met.get(surface.name, set())) for surface in rock.surfaces]
+    surfaces = []
+    for surface, data in zip(rock.surfaces, entry.data, strict=True):
+        gone = [row for row, sources in data.picks.items() if not holes.isdisjoint(s.hole for s in sources)]
+        points = np.delete(data.own, gone, axis=0)
+        is_some = surface.has_points and len(points)
+        surfaces.append(replace(surface, points=points if is_some else None))
+    kept = None if observed is None else observed.some(~np.isin(observed.holes, left_out))
     picks = {hole: each for hole, each in rock.hole_picks.items() if hole not in holes}
     return replace(rock, surfaces=surfaces, observations=kept, hole_picks=picks)
 
 
-def _surface_without(surface: Surface, met: set[tuple]) -> Surface:
-    """A surface without points that holes met, and without contacts and bounds: these are found anew."""
-    if not surface.has_points:
-        return surface
-    points = surface.own_points()
-    if points is not None and met:
-        points = points[[tuple(point) not in met for point in points.tolist()]]
-    is_left = points is not None and len(points)
-    return replace(surface, points=points if is_left else None, contacts=None, bounds=None)
-
-
-def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
-    observed = rock.observed
+def _judged(work: Work, entry: RockInput, form: ClosedForm, hole: str) -> LeftOutHole:
+    rock, observed = entry.rock, entry.rock.observed
     length, share = 0.0, None
-    sources: dict[tuple, tuple[str, float | None]] = {}
     if observed is not None:
-        own = observed.some(observed.holes == hole)
-        length, share = _length_in_block(work, rock, form, own)
-        sources = sources_of(own)
+        length, share = _length_in_block(work, rock, form, observed.some(observed.holes == hole))
     contacts = []
-    for number, surface in enumerate(rock.surfaces):
-        places = [place for place in map(tuple, surface.contact_array().tolist()) if place in sources]
-        points = set(map(tuple, surface.point_array().tolist())) if surface.has_points else set()
-        for name, place in rock.hole_picks.get(hole, (None, ()))[1]:
-            picked = tuple(np.asarray(place).tolist())
-            # the top of an interval may be on another surface than that of its block
-            if name == surface.name and picked in points and picked not in places:
-                places.append(picked)
-        if not places:
-            continue
-        above = form.above(work, number, np.array(places))
-        for place, away in zip(places, above.tolist(), strict=True):
-            error = None if away != away else away
-            _, depth = sources.get(place, ("", None))
-            contacts.append(LeftOutContact(surface.name, depth, place, error))
+    for number, (surface, data) in enumerate(zip(rock.surfaces, entry.data, strict=True)):
+        depths = {
+            tuple(data.points[row].tolist()): source.depth
+            for row, sources in sorted(data.sources.items(), reverse=True)
+            for source in sources
+            if source.hole == hole
+        }
+        if depths:
+            above = form.above(work, number, np.array(list(depths)))
+            for (place, depth), away in zip(depths.items(), above.tolist(), strict=True):
+                error = None if away != away else away
+                contacts.append(LeftOutContact(surface.name, depth, place, error))
     return LeftOutHole(rock.name, hole, length, share, tuple(contacts))
 
 

@@ -15,9 +15,10 @@ from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..fields.series_field import SeriesField
 from ..project.project import Rock
-from ..readers.tables.observations import SWITCHED_OFF
+from ..readers.tables.observations import SWITCHED_OFF, Origin
 from ..results.residuals import heights_of_points
-from ..surfaces.data_sources import sources_of_rock
+from ..settings.dips import Dips
+from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm, closed_forms
 from .observed import violated_bounds
 from .seen_places import NEAR, look
@@ -70,13 +71,12 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
     found: list[Misfit] = []
     forms, first = closed_forms(model), 0
     for number, (entry, form) in enumerate(zip(model.rock_inputs, forms, strict=True)):
-        near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry.rock)
-        sources = sources_of_rock(entry.rock)
+        near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry)
         for at, surface in enumerate(entry.rock.surfaces):
             which = first + at, at, number
-            found += _points(model, which, sources, near)
+            found += _points(model, which, near)
             found += _bounds(model, which, near)
-            if surface.known_dips() is not None and not surface.is_level_set:
+            if entry.data[at].dips is not None and not entry.rock.is_level_set(surface):
                 found += _dips(model, which, dip_tolerance)
         for own in entry.fields:
             found += _dips_of_field(work, entry.rock, own, form, dip_tolerance)
@@ -95,27 +95,26 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
     return sorted(found, key=lambda each: (order[each.kind], -(each.by or 0.0)))
 
 
-def _range_of_heights(rock: Rock) -> float:
-    parts = [surface.point_array()[:, 2] for surface in rock.surfaces]
-    parts += [] if rock.observed is None else [rock.observed.places[:, 2]]
+def _range_of_heights(entry: RockInput) -> float:
+    observed, parts = entry.rock.observed, [data.points[:, 2] for data in entry.data]
+    parts += [] if observed is None else [observed.places[:, 2]]
     heights = np.concatenate(parts) if parts else np.empty(0)
     return float(np.ptp(heights)) if len(heights) else 0.0
 
 
-def _points(model: ModelData, which: tuple[int, int, int], sources: dict, near: float) -> Iterator[Misfit]:
+def _points(model: ModelData, which: tuple[int, int, int], near: float) -> Iterator[Misfit]:
     """which: the number of a surface in the model, in its rock mass, and that of the rock mass."""
-    rock = model.rock_inputs[which[2]].rock
-    surface = rock.surfaces[which[1]]
-    points = surface.known_points()
+    entry = model.rock_inputs[which[2]]
+    rock, surface, data = entry.rock, entry.rock.surfaces[which[1]], entry.data[which[1]]
+    points = data.known_points
     heights = heights_of_points(model, *which, points) if len(points) else np.empty(0)
     for row in np.flatnonzero(np.abs(points[:, 2] - heights) > near).tolist():
         place, z = tuple(points[row].tolist()), float(heights[row])
         by = abs(place[2] - z)
         says, has = f"{place[2]:,.6g}", f"{z:,.6g}, {by:.4g} {'below' if z < place[2] else 'above'}"
-        if surface.is_level_set:
+        if rock.is_level_set(surface):
             says, has = "on it", f"{by:.4g} on its {'younger' if z < place[2] else 'older'} side"
-        hole, depth = sources.get(place, ("", None))
-        source = hole, depth, surface.point_row(row)
+        source = *data.source(row)[:2], data.row(row)
         yield Misfit("point", rock.name, surface.name, *source, place, says, has, by)
 
 
@@ -123,7 +122,8 @@ def _bounds(model: ModelData, which: tuple[int, int, int], near: float) -> Itera
     for each in violated_bounds(model, which, near):
         side, other = ("at or above", "below") if each.is_lower else ("at or below", "above")
         says = f"{each.surface} {side} {each.place[2]:,.6g}"
-        if model.rock_inputs[which[2]].rock.surfaces[which[1]].is_level_set:
+        rock = model.rock_inputs[which[2]].rock
+        if rock.is_level_set(rock.surfaces[which[1]]):
             own, other = ("older", "younger") if each.is_lower else ("younger", "older")
             says, other = f"on the {own} side of {each.surface}", f"on its {other} side"
         has = f"{each.by:.4g} {other}"
@@ -143,32 +143,30 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
         row, last = seen.rows[each].tolist()
         block, there = str(given.blocks[row]), int(seen.found[each])
         name = _NO_ROCK if there == AIR else seen.names.get(there) or model.blocks[there].name
-        depth, to = (None if np.isnan(d) else float(d) for d in given.depths[[row, last]])
+        hole, depth, *_ = Origin.of(given.holes[row], given.depths[row])
+        to = Origin.of(hole, given.depths[last]).depth
         says = f"{block} to {to:.6g}" if to is not None and last > row else block
         has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
-        source = str(given.holes[row]), depth, given.row(row)
+        source = hole, depth, given.row(row)
         place = tuple(begin[each].tolist())
         low = None if is_place[each] else tuple(end[each].tolist())
         yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]), low)
 
 
 def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> Iterator[Misfit]:
-    rock = model.rock_inputs[which[2]].rock
-    surface = rock.surfaces[which[1]]
-    dips = surface.known_dips()  # its own ones first
+    entry = model.rock_inputs[which[2]]
+    surface, dips = entry.rock.surfaces[which[1]], entry.data[which[1]].dips
     assert dips is not None
-    own = surface.own_dips()
-    rows = [] if own is None else [own.row(number) for number in np.flatnonzero(own.in_use).tolist()]
-    z = dips.heights
-    slopes, heights = _slopes(model, which, np.column_stack([dips.positions, z]))
+    own = surface.dips  # they come first
+    rows: list[int | None] = [None] * len(dips)
+    if isinstance(own, Dips):
+        in_use = np.flatnonzero(own.in_use).tolist()
+        rows[: len(in_use)] = map(own.row, in_use)
+    slopes, heights = _slopes(model, which, np.column_stack([dips.positions, dips.heights]))
     normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))
-    cross = norm(np.cross(normals, there))
-    angles = np.degrees(atan2(cross, (normals * there).sum(axis=1)))
-    for k in np.flatnonzero(angles > tolerance).tolist():
-        place = (*dips.positions[k].tolist(), float(heights[k] if np.isnan(z[k]) else z[k]))
-        texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
-        source = "", None, rows[k] if k < len(rows) else None
-        yield Misfit("dip", rock.name, surface.name, *source, place, *texts, float(angles[k]))
+    z = np.where(np.isnan(dips.heights), heights, dips.heights)
+    places = np.column_stack([dips.positions, z])
+    return _differing((entry.rock.name, surface.name), (rows, places, normals), there, tolerance)
 
 
 def _dips_of_field(
@@ -176,18 +174,22 @@ def _dips_of_field(
 ) -> Iterator[Misfit]:
     """The dips of a series that its field does not have; outside of its lattice it has none."""
     dips = next(series for series in rock.series if series.name == own.name).space_dips()
-    if dips is None:
-        return
-    rows = np.flatnonzero(dips.in_use)
-    places, normals = dips.positions[rows], dips.normals[rows]
-    there = own.slopes(places, form.compartments_of(work, places))
+    if dips is not None:
+        used = np.flatnonzero(dips.in_use)
+        places, rows = dips.positions[used], [dips.row(row) for row in used.tolist()]
+        there = own.slopes(places, form.compartments_of(work, places))
+        yield from _differing((rock.name, own.name), (rows, places, dips.normals[used]), there, tolerance)
+
+
+def _differing(of: tuple[str, str], dips: tuple, there: np.ndarray, tolerance: float) -> Iterator[Misfit]:
+    """The dips of a rock mass and something in it whose normals differ from those that the model has, (D, 3).
+    dips: their rows, places and normals."""
+    rows, places, normals = dips
     angles = np.degrees(atan2(norm(np.cross(normals, there)), (normals * there).sum(axis=1)))
     for k in np.flatnonzero(angles > tolerance).tolist():
         texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
         place = tuple(places[k].tolist())
-        yield Misfit(
-            "dip", rock.name, own.name, "", None, dips.row(int(rows[k])), place, *texts, float(angles[k])
-        )
+        yield Misfit("dip", *of, "", None, rows[k], place, *texts, float(angles[k]))
 
 
 def _slopes(

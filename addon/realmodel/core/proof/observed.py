@@ -10,9 +10,8 @@ import numpy as np
 from ..base.errors import counted
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
-from ..readers.tables.observations import LeftOut
+from ..readers.tables.observations import LeftOut, Origin
 from ..results.residuals import heights_of_points
-from ..surfaces.data_sources import depth_of, sources_of
 from .closed_form import ClosedForm, closed_forms
 from .seen_places import NEAR, look
 
@@ -110,16 +109,16 @@ def _observed(work: Work, model: ModelData) -> Observed:
         rock, given = entry.rock, entry.rock.observed
         if given is not None and len(given):
             blocks += _blocks(work, model, number, form)
-            sources = sources_of(given)
             for at, surface in enumerate(rock.surfaces):
-                places = surface.contact_array()[: 0 if surface.is_along_bounds else None]
+                data = entry.data[at]
+                places = data.contacts[: 0 if data.is_along_bounds else None]
                 z = heights_of_points(model, first + at, at, number, places)
                 near = NEAR * float(np.ptp(given.places[:, 2]))
-                for place, height in zip(places.tolist(), z.tolist(), strict=True):
+                for row, (place, height) in enumerate(zip(places.tolist(), z.tolist(), strict=True)):
                     residual = None if height != height else place[2] - height
-                    source = sources.get(tuple(place), ("", None))
+                    source = data.source(data.contacts_from + row)[:2]
                     contacts.append(ObservedContact(rock.name, surface.name, *source, tuple(place), residual))
-                count += 0 if surface.bounds is None else len(surface.bounds)
+                count += len(data.bounds)
                 violated += violated_bounds(model, (first + at, at, number), near)
         left_out += [(rock.name, each) for each in entry.left_out]
         first += len(rock.surfaces)
@@ -132,8 +131,8 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
     of the rock mass."""
     number, at, r = surface
     rock = model.rock_inputs[r].rock
-    bounds = rock.surfaces[at].bounds
-    if bounds is None or not len(bounds):
+    bounds = model.rock_inputs[r].data[at].bounds
+    if not len(bounds):
         return []
     own_field = model.rock_inputs[r].field_of(at)
     places, row = bounds.along(np.inf if own_field is None else own_field.fields[0].lattice.spacing[0])
@@ -145,8 +144,7 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
         ViolatedBound(
             rock.name,
             rock.surfaces[at].name,
-            str(bounds.holes[row]),
-            depth_of(bounds.depths[row]),
+            *Origin.of(bounds.holes[row], bounds.depths[row])[:2],
             tuple(bounds.places[row].tolist()),
             bool(bounds.is_lower[row]),
             float(beyond[row]),

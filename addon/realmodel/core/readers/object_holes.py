@@ -15,10 +15,10 @@ from ..base.errors import InputRefused, counted
 from ..settings.boreholes import Boreholes
 from .object_input import read_objects
 from .objects.geo_object import HOLE, LINES, POINTS, GeoObject, Values
-from .tables.boreholes import Picks
+from .tables.boreholes import Pick, Picks
 from .tables.hole_tables import INTERVALS, PICKS
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
-from .tables.observations import Observations
+from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
 from .tables.unit_names import UnitNames
 
@@ -51,7 +51,7 @@ def read_hole_objects(
 def _add_picks(
     picks: Picks, objects: list[GeoObject], boreholes: Boreholes, scale: np.ndarray, units: UnitNames
 ) -> None:
-    points: dict[str, list[np.ndarray]] = {}
+    points: dict[str, list[Pick]] = {}
     missing = 0
     for obj in objects:
         for code, hole, place in _picks_of(obj, boreholes):
@@ -61,9 +61,9 @@ def _add_picks(
             if not np.isfinite(place).all():
                 missing += 1
                 continue
-            points.setdefault(surface, []).append(place * scale)
+            points.setdefault(surface, []).append((Origin(hole), place * scale))
             picks.holes.setdefault(hole, (_collar(obj, scale), []))[1].append((surface, place * scale))
-    picks.points.update((surface, np.array(places)) for surface, places in points.items())
+    picks.of_surfaces |= points
     if not points:
         raise InputRefused("there are no picks in it", file=boreholes.picks)
     if missing:

@@ -76,9 +76,10 @@ def residuals(model: ModelData) -> list[Residuals]:
     """The residuals of each surface of a model that was interpolated from points, in the model's order."""
     model.require_project("a residual")
     rows, number = [], 0
-    for r, rock in enumerate(model.project.rocks):
+    for r, entry in enumerate(model.rock_inputs):
+        rock = entry.rock
         for at, surface in enumerate(rock.surfaces):
-            points = surface.point_array()
+            points = entry.data[at].points
             if len(points) and number < len(model.surface_names):
                 heights = heights_of_points(model, number, at, r, points)
                 finite = np.isfinite(heights)

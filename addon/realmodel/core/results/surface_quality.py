@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +17,7 @@ from ..settings.methods import METHODS, checked_options
 from ..settings.variogram import NO_DEVIATION, RANGE_BEYOND, Variogram
 from ..surfaces.observed.conformable import alike_of
 from ..surfaces.observed.sheet_series import companions_of
+from ..surfaces.surface_arrays import by_rock
 
 DEFAULT_FOLDS = 10
 _OF_VARIANCES = RANGE_BEYOND, NO_DEVIATION
@@ -73,7 +72,8 @@ def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossV
     result = model.interpolations[number]
     if result is None:
         return None, "its shape is a mesh: nothing was interpolated"
-    surface = [surface for rock in model.project.rocks for surface in rock.surfaces][number]
+    entry, at = by_rock(model.rock_inputs)[number]
+    surface, data = entry.rock.surfaces[at], entry.data[at]
     method, settings = surface.method_options()
     if method == "auto":
         method = result.method
@@ -85,7 +85,7 @@ def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossV
     ]
     if others:
         return None, f"its heights follow another surface ({others[0]})"
-    points = surface.point_array()
+    points = data.points
     if len(points) < 2 or len(distinct_points(points)) < 2:
         return None, "it takes two points or more"
     vertices, triangles = model.surface(number)
@@ -97,25 +97,16 @@ def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossV
         nodes,
         settings,
         triangles if on_mesh else None,
-        dips=surface.known_dips(),
-        bounds=surface.bounds,
-        error=surface.error,
-        companions=_of_rock(model, number, companions_of),
-        alike=_of_rock(model, number, alike_of),
+        dips=data.dips,
+        bounds=data.bounds,
+        error=data.error,
+        companions=companions_of(entry.rock, entry.data, at, {}),
+        alike=alike_of(entry.rock, entry.data, at, {}),
     )
     try:
         return validate(method, task, DEFAULT_FOLDS), ""
     except InputRefused as error:
         return None, str(error)
-
-
-def _of_rock(model: ModelData, number: int, find: Callable) -> Any:
-    """What companions_of or alike_of finds for a surface, by its number in the model."""
-    for rock in model.project.rocks:
-        if number < len(rock.surfaces):
-            return find(rock, number, {})
-        number -= len(rock.surfaces)
-    return None
 
 
 def _deviation(

@@ -66,10 +66,10 @@ def place_level_sets(inputs: list[RockInput]) -> None:
     """Gives surfaces that are level sets a level above all rock, until their fields are made: what comes
     before has rock up to there."""
     for entry in inputs:
-        if any(surface.is_level_set for surface in entry.rock.surfaces):
+        if any(map(entry.rock.is_level_set, entry.rock.surfaces)):
             above = level(entry.planar_mesh(), _top(entry))
             for number, surface in enumerate(entry.rock.surfaces):
-                if surface.is_level_set:
+                if entry.rock.is_level_set(surface):
                     entry.surfaces[number] = above
 
 
@@ -164,10 +164,10 @@ def _top(entry: RockInput, beyond: float = _BEYOND) -> float:
     """An elevation above all sheets and contacts of a rock mass, as far as these are known."""
     known = []
     for number, surface in enumerate(entry.rock.surfaces):
-        sheets = [] if surface.is_level_set else entry.divided().sheets
-        shapes = [entry.surfaces[number], *(own[number] for own in sheets)]
-        known += [shape.vertices[:, 2] for shape in shapes if shape is not None and not surface.is_level_set]
-        known.append(surface.point_array()[:, 2])
+        if not entry.rock.is_level_set(surface):
+            shapes = [entry.surfaces[number], *(own[number] for own in entry.divided().sheets)]
+            known += [shape.vertices[:, 2] for shape in shapes if shape is not None]
+        known.append(entry.data[number].points[:, 2])
     base = entry.rock.base_elevation
     assert base is not None  # check_series
     highest = max((float(each.max()) for each in known if len(each)), default=base)

@@ -132,7 +132,7 @@ def tops_of_faults(structures: Structures, number: int, rock: Rock) -> set[int]:
     youngest = [displaced[number] for displaced in structures.displaced if number in displaced]
     cutting = [n for n, surface in enumerate(rock.surfaces) if n >= min(youngest, default=n + 1)]
     found = {n for n in cutting if n in youngest or RULES[rock.surfaces[n].rule].cuts}
-    found |= {n for n, surface in enumerate(rock.surfaces) if not surface.interpolated}
+    found |= {n for n, surface in enumerate(rock.surfaces) if not rock.is_interpolated(surface)}
     found |= {0} if rock.base_elevation is None and youngest else set()
     waiting = list(found)
     while waiting:
@@ -336,10 +336,11 @@ class _Around:
         points of a surface, some of which are on either side of the fault, to above them."""
         shape = FaultShape(*fault.triangulation(), fault.dies_out)
         z, found = samples.points[:, 2], np.zeros(len(samples.points), bool)
-        for surface in self.entry.rock.surfaces[: self.last + 1]:
-            if not surface.interpolated or surface.method_options()[1].get("extrapolate") == "none":
+        rock = self.entry.rock
+        for surface, data in zip(rock.surfaces[: self.last + 1], self.entry.data, strict=False):
+            if not rock.is_interpolated(surface) or surface.method_options()[1].get("extrapolate") == "none":
                 continue
-            points = np.asarray(surface.points, np.float64).reshape(-1, 3)
+            points = data.points
             sides = fault_sides(self.work, points, shape)
             if not ((sides > 0).any() and (sides < 0).any()):
                 continue

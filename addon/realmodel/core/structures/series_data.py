@@ -12,9 +12,8 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import place_text
 from ..fields import LevelSetData, ScalarField, SlitData
-from ..project.project import Rock
 from ..project.series import Series
-from ..readers.tables.observations import Bounds, LeftOut, source_text
+from ..readers.tables.observations import Bounds, LeftOut, Origin, source_text
 from ..settings.dips import SpaceDips
 from ..surfaces.observed.conformable import mean_error
 from ..surfaces.rock_input import RockInput
@@ -24,13 +23,13 @@ _MOST_BOUNDS = 20_000  # in ways through intervals: more take long, and say hard
 
 @dataclass(frozen=True, eq=False)
 class SeriesData:
-    """rock, numbers: of its surfaces there. contacts: (C, 3) with the number (C,) of the surface in the
-    series that each is on, and its row (C,) among the points of that. dips, normals: (D, 3), with rows (D,).
-    bounds: (B, 3) places, each with the number (B,) in the series of the surface whose level f is at most
-    there, or else at least, as is_lower (B,) bool says, and with its row (B,) among the bounds of that
-    surface."""
+    """entry: of its rock mass; numbers: of its surfaces there. contacts: (C, 3) with the number (C,) of the
+    surface in the series that each is on, and its row (C,) among the points of that. dips, normals: (D, 3),
+    with rows (D,). bounds: (B, 3) places, each with the number (B,) in the series of the surface whose level
+    f is at most there, or else at least, as is_lower (B,) bool says, and with its row (B,) among the bounds
+    of that surface."""
 
-    rock: Rock
+    entry: RockInput
     numbers: list[int]
     contacts: np.ndarray
     surfaces: np.ndarray
@@ -46,19 +45,16 @@ class SeriesData:
     @classmethod
     def of(cls, entry: RockInput, series: Series, numbers: list[int], step: float = np.inf) -> SeriesData:
         """step: how far places within an interval are apart at most."""
-        rock = entry.rock
-        points = [rock.surfaces[number].point_array() for number in numbers]
+        points = [entry.data[number].points for number in numbers]
         dips = series.space_dips() or SpaceDips(np.empty((0, 3)), np.empty((0, 3)))
         of_dips = np.flatnonzero(dips.in_use)
         dip_rows = np.array([dips.row(number) for number in of_dips.tolist()], np.int64)
         positions, normals = dips.positions[of_dips], dips.normals[of_dips]
-        given = [rock.surfaces[number].bounds for number in numbers]
-        step = max(step, sum(_length(each) for each in given if each is not None) / _MOST_BOUNDS)
-        none = np.empty((0, 3)), np.empty(0, np.int64)
-        placed = [none if each is None else each.along(step) for each in given]
-        lower = [np.empty(0, bool) if each is None else each.is_lower for each in given]
+        given = [entry.data[number].bounds for number in numbers]
+        step = max(step, sum(map(_length, given)) / _MOST_BOUNDS)
+        placed = [each.along(step) for each in given]
         return cls(
-            rock,
+            entry,
             numbers,
             np.concatenate(points),
             _owners([len(each) for each in points]),
@@ -68,7 +64,7 @@ class SeriesData:
             dip_rows,
             np.concatenate([places for places, _ in placed]),
             _owners([len(places) for places, _ in placed]),
-            np.concatenate([each[rows] for each, (_, rows) in zip(lower, placed, strict=True)]),
+            np.concatenate([each.is_lower[rows] for each, (_, rows) in zip(given, placed, strict=True)]),
             np.concatenate([rows for _, rows in placed]),
         )
 
@@ -76,7 +72,7 @@ class SeriesData:
         """Those that `chosen`, bool, says of `positions`."""
         contacts, dips, bounds = np.split(chosen, np.cumsum([len(self.contacts), len(self.dips)]))
         return SeriesData(
-            self.rock,
+            self.entry,
             self.numbers,
             *(each[contacts] for each in (self.contacts, self.surfaces, self.contact_rows)),
             *(each[dips] for each in (self.dips, self.normals, self.dip_rows)),
@@ -111,13 +107,13 @@ class SeriesData:
     def missing(self, all_data: SeriesData) -> list[str]:
         """The names of the surfaces of which there are contacts in all data, but not here."""
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
-        return [self.rock.surfaces[self.numbers[each]].name for each in lacks]
+        return [self.entry.rock.surfaces[self.numbers[each]].name for each in lacks]
 
     def level_set_data(self, slits: SlitData | None, keeps_thickness: bool | None) -> LevelSetData:
         """The same for the solver, with what faults that die out say of it, and as of Series."""
         none = np.int32(-1)
         return LevelSetData(
-            [self.rock.surfaces[number].name for number in self.numbers],
+            [self.entry.rock.surfaces[number].name for number in self.numbers],
             self.contacts,
             self.surfaces,
             self.dips,
@@ -127,7 +123,7 @@ class SeriesData:
             np.where(self.is_lower, self.bound_surfaces, none),
             slits,
             self.item,
-            float(np.sqrt(mean_error([self.rock.surfaces[number] for number in self.numbers]))),
+            float(np.sqrt(mean_error([self.entry.data[number] for number in self.numbers]))),
             keeps_thickness,
         )
 
@@ -139,33 +135,21 @@ class SeriesData:
             bounds = self._bounds_of(row)
             at = int(self.bound_rows[row])
             return source_text(str(bounds.holes[at]), float(bounds.depths[at]), self.bounds[row])
-        surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
-        source = self._source(row)
-        return (
-            f"surface '{surface.name}', {source or f'point {surface.point_row(int(self.contact_rows[row]))}'}"
-        )
-
-    def _source(self, row: int) -> str | None:
-        """Where a contact was observed; None where it is a point of its surface."""
-        surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
-        observed = self.rock.observed
-        own = len(surface.point_array()) - len(surface.contact_array())
-        if observed is None or self.contact_rows[row] < own:
-            return None
-        same = np.flatnonzero((observed.places == self.contacts[row]).all(axis=1))
-        return observed.source(int(same[0])) if len(same) else None
+        number, at = self.numbers[self.surfaces[row]], int(self.contact_rows[row])
+        data = self.entry.data[number]
+        is_point = at < data.contacts_from
+        source = f"point {data.row(at)}" if is_point else data.source_text(at)
+        return f"surface '{self.entry.rock.surfaces[number].name}', {source}"
 
     def left_out(self, row: int, against: Sequence[tuple[str, int]]) -> LeftOut:
         """A bound that is not used. against: what it contradicts, by kind and row."""
         bounds, at = self._bounds_of(row), int(self.bound_rows[row])
-        depth = float(bounds.depths[at])
         others = tuple(dict.fromkeys(self._said(*each) for each in against))
         return LeftOut(
             "contradiction",
             f"{self.bound_text(row)}, which contradicts {'; '.join(others) or 'data near it'}",
             self._block_of(row),
-            str(bounds.holes[at]),
-            None if np.isnan(depth) else depth,
+            *Origin.of(bounds.holes[at], bounds.depths[at])[:2],
             tuple(self.bounds[row].tolist()),
             others,
         )
@@ -176,19 +160,20 @@ class SeriesData:
             return self.bound_text(row)
         if kind == "dip":
             return f"{self.item(kind, row)} at {place_text(self.dips[row].tolist())}"
-        name = self.rock.surfaces[self.numbers[self.surfaces[row]]].name
-        return f"{self._source(row) or place_text(self.contacts[row].tolist())}: on '{name}'"
+        number = self.numbers[self.surfaces[row]]
+        text = self.entry.data[number].source_text(int(self.contact_rows[row]))
+        return f"{text}: on '{self.entry.rock.surfaces[number].name}'"
 
     def bound_text(self, row: int) -> str:
         """What a bound says."""
-        name = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].name
+        name = self.entry.rock.surfaces[self.numbers[self.bound_surfaces[row]]].name
         side = "older" if self.is_lower[row] else "younger"
         block = self._block_of(row)
         return f"{self.item('bound', row)}{block and f' in {block!r}'}: on the {side} side of '{name}'"
 
     def _block_of(self, row: int) -> str:
         """The block in which a bound was seen; "" where it is not known."""
-        bounds, at, observed = self._bounds_of(row), int(self.bound_rows[row]), self.rock.observed
+        bounds, at, observed = self._bounds_of(row), int(self.bound_rows[row]), self.entry.rock.observed
         if observed is None:
             return ""
         same = (observed.places == bounds.places[at]).all(axis=1)
@@ -197,9 +182,7 @@ class SeriesData:
         return str(blocks[0]) if len(blocks) == 1 else ""
 
     def _bounds_of(self, row: int) -> Bounds:
-        bounds = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].bounds
-        assert bounds is not None
-        return bounds
+        return self.entry.data[self.numbers[self.bound_surfaces[row]]].bounds
 
 
 def _owners(counts: list[int]) -> np.ndarray:

@@ -16,7 +16,8 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project
 from ..project.structure_entries import Fault
-from ..surfaces.field_data import apply_observations, left_out_warnings
+from ..surfaces.field_data import apply_observations, left_out_warnings, observed_on_mesh
+from ..surfaces.observed.derived import Situation
 from ..surfaces.prepare import (
     interpolate_rock,
     mesh_again,
@@ -60,7 +61,9 @@ def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is
         if entry.region is not None:
             entry.region = Sheet(*map(keep, entry.region))
         if entry.rock.observed is not None and entry.rock.interpolates:
-            apply_observations(work, entry)
+            given = observed_on_mesh(entry, entry.rock.observed)
+            if not given[1].all():  # along inclined holes bounds follow the mesh
+                apply_observations(work, entry, Situation(), given)
 
 
 def make_surfaces(

@@ -226,7 +226,11 @@ def _in_rock(entry: RockInput, number: int, within: Within, pieces: np.ndarray, 
         there = np.flatnonzero(within_rock(work, entry, at + raised) & within(at))
         for younger in range(structure.faults.youngest[number] + 1, len(entry.rock.surfaces)):
             surface = entry.rock.surfaces[younger]
-            if surface.is_level_set or not RULES[surface.rule].cuts or not structure.is_made(younger):
+            if (
+                entry.rock.is_level_set(surface)
+                or not RULES[surface.rule].cuts
+                or not structure.is_made(younger)
+            ):
                 continue
             heights = np.full(len(there), -np.inf)
             for compartment in within.family.members:

@@ -8,13 +8,14 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.units import length_text
-from ..project.project import Rock, surface_item
+from ..project.project import surface_item
+from .rock_input import RockInput
 
 _FARTHEST = 3.0  # times the extent of points and region
 _TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
 
 
-def require_points_near(rock: Rock, unit: str) -> None:
+def require_points_near(entry: RockInput, unit: str) -> None:
     """Refuses a surface whose points are all far away from the region of its rock mass, or whose mesh lies
     beside it.
 
@@ -22,20 +23,22 @@ def require_points_near(rock: Rock, unit: str) -> None:
     the diagonals of both; meshes, which say nothing beyond their borders, where there is any. Raises
     InputRefused with the distance.
     """
+    rock = entry.rock
     if rock.region is None:
         return
     low, high = _box(np.concatenate(rock.rings()))
-    for surface in rock.surfaces:
-        points = surface.point_array() if surface.interpolated else surface.vertices
+    for surface, data in zip(rock.surfaces, entry.data, strict=True):
+        is_interpolated = rock.is_interpolated(surface)
+        points = data.points if is_interpolated else surface.vertices
         if points is None or not len(points):
             continue
         first, last = _box(points[:, :2])
         gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
         away = float(np.hypot(*gap))
-        most = _FARTHEST if surface.interpolated else 0.0
+        most = _FARTHEST if is_interpolated else 0.0
         if away > most * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
             towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
-            what = "its points lie" if surface.interpolated else "its mesh lies"
+            what = "its points lie" if is_interpolated else "its mesh lies"
             raise InputRefused(
                 f"{what} {length_text(away, unit)} {towards} of the region",
                 item=surface_item(rock, surface),

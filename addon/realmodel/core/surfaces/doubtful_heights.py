@@ -16,10 +16,9 @@ from ..base.units import number_text
 from ..base.work import Work, native_module
 from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
-from ..project.project import Rock
+from ..readers.tables.observations import Origin
 from ..settings.methods import METHODS, SURFACE_OPTIONS
 from ..settings.rules import RULES, Rule
-from .data_sources import sources_of_rock
 from .rock_input import RockInput
 from .wrong_sides import heights_at
 
@@ -49,9 +48,8 @@ def doubtful_heights(
         return []
     reach, found = _Reach(work, entry), []
     for number in numbers:
-        points = entry.rock.surfaces[number].points
-        points = np.empty((0, 3)) if points is None else np.ascontiguousarray(points, np.float64)
-        if len(points) and not entry.rock.surfaces[number].is_along_bounds:
+        points = np.ascontiguousarray(entry.data[number].points, np.float64)
+        if len(points) and not entry.data[number].is_along_bounds:
             found.append(_missed(work, entry, number, points, compartment is None))
         if len(points := points if compartment is None else compartment.points):
             found.append(reach.beyond(number, points, compartment))
@@ -69,10 +67,10 @@ def _missed(
     it is an outlier: larger than any that as many normally distributed residuals with the deviation of the
     other ones would have.
     """
-    rock, shape = entry.rock, entry.surface(number)
-    if not rock.surfaces[number].ties and _goes_through_points(entry, number):
+    rock, data, shape = entry.rock, entry.data[number], entry.surface(number)
+    if not rock.surfaces[number].tie and _goes_through_points(entry, number):
         return None  # what its nodes do not resolve says nothing of the points, and is left so on purpose
-    is_tied = shape in entry.untied and len(rock.surfaces[number].tied_points) > 0
+    is_tied = shape in entry.untied and len(data.tied_points(rock.surfaces[number])) > 0
     if is_tied:
         shape = entry.untied[shape]
     z = heights_at(work, shape, points[:, :2])
@@ -84,14 +82,14 @@ def _missed(
     candidates = np.flatnonzero(sizes > _NOTABLE * apart)
     if not len(candidates):
         return None
-    expected = _DEVIATIONS * np.sqrt(rock.surfaces[number].error)
+    expected = _DEVIATIONS * np.sqrt(data.error)
     beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates]) - expected
     worst = int(candidates[beyond_mesh.argmax()])
     largest = float(beyond_mesh.max())
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
         return None
-    place, hole = place_text(points[worst].tolist()), _hole(rock, points[worst])
-    row = rock.surfaces[number].point_row(worst)
+    place, hole = place_text(points[worst].tolist()), _hole(data.source(worst))
+    row = data.row(worst)
     named = f"point {row}" if are_all else "the point"
     side = "above" if points[worst, 2] > z[worst] else "below"
     before = "before it is tied " if is_tied else ""
@@ -154,11 +152,11 @@ def _distance_to_neighbors(
     return float(np.median(apart)) if len(apart) else None
 
 
-def _hole(rock: Rock, point: np.ndarray) -> str:
-    """The borehole that a point comes from, and the depth, as a part of a sentence."""
-    hole, depth = sources_of_rock(rock).get(tuple(point.tolist()), ("", None))
-    at = "" if depth is None else f" at a depth of {depth:.6g}"
-    return f" of borehole '{hole}'{at}" if hole else ""
+def _hole(source: Origin) -> str:
+    """The borehole that a point comes from, the depth and the row, as a part of a sentence."""
+    at = "" if source.depth is None else f" at a depth of {source.depth:.6g}"
+    row = "" if source.file is None else f" ({source.file.name}, line {source.line})"
+    return f" of borehole '{source.hole}'{at}{row}" if source.hole else ""
 
 
 def _remedy(result: Interpolation | None, is_tied: bool) -> str:

@@ -16,12 +16,13 @@ from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_history import body_times
 from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_observed_places
+from ..readers.tables.boreholes import Pick
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips, SpaceDips
 from ..settings.series import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
 from .observed.contradictions import without_contradictions
-from .observed.derived import Derived, Situation, contacts_for, derive, with_contacts
+from .observed.derived import Situation, derive, with_contacts
 from .observed.edge_crossings import with_crossings
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -32,15 +33,15 @@ _LISTED = 12  # observations that a warning names; the report has all
 @dataclass
 class FieldData:
     """Of one rock mass. rock: with arrays in the place of boreholes and observations. picks: of its
-    boreholes. surfaces: of each surface, as it was before it is read, without contacts of earlier readings,
-    the points to be added to it, or None. unnamed: names of picks that no surface from points has. left_out:
-    rows of tables that are not used. map_warnings: sentences. ground: the number of the surface that is the
-    ground of the map, None for none. mapped: (D,) texts, the blocks that the map shows at dips of the rock
-    mass, "" where these do not need it; None without a map."""
+    boreholes. surfaces: each as it was before it is read, with the picks to be added to it, or None.
+    unnamed: names of picks that no
+    surface from points has. left_out: rows of tables that are not used. map_warnings: sentences. ground: the
+    number of the surface that is the ground of the map, None for none. mapped: (D,) texts, the blocks that
+    the map shows at dips of the rock mass, "" where these do not need it; None without a map."""
 
     rock: Rock
     picks: Picks
-    surfaces: list[tuple[Surface, np.ndarray | None]]
+    surfaces: list[tuple[Surface, list[Pick] | None]]
     unnamed: list[str]
     left_out: list[LeftOut]
     map_warnings: list[str]
@@ -49,8 +50,7 @@ class FieldData:
 
 
 def read_field_data(project: Project, rock: Rock) -> FieldData:
-    """Reads the boreholes, observations, map and dips of a rock mass. Contacts are those of surfaces that
-    reach everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
+    """Reads the boreholes, observations, map and dips of a rock mass. Raises InputRefused."""
     given = rock
     rock, map_warnings = with_ground(rock), list[str]()
     bodies = [body.name for body in project.bodies]
@@ -80,13 +80,13 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     observations = Observations.joined(found).along_holes() if found else None
     if observations is not None and not (picks.holes or rock.hole_picks):
         map_warnings += _on_the_ground_alone(rock, observations, dips, series)
-    derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
-        _with_points(_without_picks(surface, picks), number, picks.points.pop(surface.name, None), derived)
+        (_without_picks(surface, picks), picks.of_surfaces.get(surface.name))
         if surface.has_points
         else (surface, None)
-        for number, surface in enumerate(rock.surfaces)
+        for surface in rock.surfaces
     ]
+    unnamed = picks.of_surfaces.keys() - {surface.name for surface in rock.surfaces if surface.has_points}
     read = replace(
         rock,
         boreholes=None,
@@ -99,7 +99,14 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         hole_ends=picks.ends or rock.hole_ends,
     )
     return FieldData(
-        read, picks, surfaces, list(picks.points), left_out, map_warnings, given.ground_number, mapped
+        read,
+        picks,
+        surfaces,
+        [name for name in picks.of_surfaces if name in unnamed],
+        left_out,
+        map_warnings,
+        given.ground_number,
+        mapped,
     )
 
 
@@ -113,7 +120,7 @@ def _on_the_ground_alone(
     shown = [
         surface.name
         for surface in rock.surfaces[:-1]
-        if surface.has_points and surface.points is None and (surface.is_level_set or surface.needs_points)
+        if surface.has_points and surface.points is None and surface.needs_points
     ]
     if not shown:
         return []
@@ -164,7 +171,7 @@ def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -
     return shown
 
 
-def _of_bodies(project: Project, rock: Rock) -> Situation:
+def bodies_of(project: Project, rock: Rock) -> Situation:
     """The bodies that there may be in a rock mass, before their shapes are known."""
     number = [each.name for each in project.rocks].index(rock.name)
     there = [(body, body_times(project, body)) for body in project.bodies]
@@ -185,51 +192,29 @@ def _without_picks(surface: Surface, picks: Picks) -> Surface:
     return replace(surface, left_out=np.concatenate([*known, off]))
 
 
-def _with_points(
-    surface: Surface, number: int, met: np.ndarray | None, derived: Derived | None
-) -> tuple[Surface, np.ndarray | None]:
-    if derived is None:
-        return surface, met
-    if surface.point_file is None:
-        surface = replace(surface, points=surface.own_points())
-    is_alone = surface.points is None and met is None and not surface.is_level_set and surface.needs_points
-    contacts = contacts_for(derived, number, is_alone)
-    surface = replace(surface, contacts=contacts if len(contacts) else None)
-    known = [each for each in (met, contacts) if each is not None and len(each)]
-    return surface, np.concatenate(known) if known else None
-
-
-def observed_on_mesh(
-    entry: RockInput, observations: Observations | None = None
-) -> tuple[Observations, np.ndarray]:
-    """The observations of a RockInput, or those that are given in their place, with more along its intervals
-    where its surfaces are linear only between edges of its planar mesh, once it is meshed; and (N,) bool,
-    those that are not new."""
-    observations = entry.rock.observed if observations is None else observations
-    assert observations is not None
+def observed_on_mesh(entry: RockInput, observations: Observations) -> tuple[Observations, np.ndarray]:
+    """Observations of a RockInput with more along its intervals where its surfaces are linear only between
+    edges of its planar mesh, once it is meshed; and (N,) bool, those that are not new."""
     if entry.region is None or not entry.rock.interpolates:
         return observations, np.ones(len(observations), bool)
     return with_crossings(observations, entry.region)
 
 
 def apply_observations(
-    work: Work,
-    entry: RockInput,
-    situation: Situation | None = None,
-    given: tuple[Observations, np.ndarray] | None = None,
+    work: Work, entry: RockInput, situation: Situation, given: tuple[Observations, np.ndarray]
 ) -> None:
     """Gives the surfaces of a RockInput that is read the contacts and bounds that follow from its
     observations, in the place of those that they have. situation: where these lie, but for where surfaces
     reach. given: as of observed_on_mesh."""
-    observations, is_own = given or observed_on_mesh(entry)
-    situation = replace(situation or Situation(), covered=_covered(work, entry, observations.places))
+    observations, is_own = given
+    situation = replace(situation, covered=_covered(work, entry, observations.places))
     derived = derive(entry.rock, observations, situation)
-    entry.rock = with_contacts(entry.rock, derived)
+    entry.data = with_contacts(entry.rock, entry.data, derived)
     entry.used = derived.used[is_own]
     of_tables = [each for each in entry.left_out if each.kind in IN_TABLES]
     entry.left_out = [*of_tables, *derived.left_out]
     if situation.sides is None or not situation.sides.shape[1]:  # a bound counts on its side of a fault
-        entry.rock, contradictions = without_contradictions(entry.rock, observations)
+        entry.data, contradictions = without_contradictions(entry.rock, entry.data)
         entry.left_out += contradictions
 
 
@@ -251,11 +236,11 @@ def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
     """A warning for each reason why observations of a RockInput are left out, and for each surface that none
     of them is on."""
     found = []
-    for surface in entry.rock.surfaces:
-        if surface.is_along_bounds:
+    for surface, data in zip(entry.rock.surfaces, entry.data, strict=True):
+        if data.is_along_bounds:
             text = (
                 "it has no points, and no observation is on it: it goes through the "
-                f"{len(surface.contact_array())} places nearest to which observations allow it"
+                f"{len(data.points)} places nearest to which observations allow it"
             )
             found.append(BuildWarning(text, "no_contact", entry.rock.name, surface.name))
     texts = left_out_texts(entry.left_out)

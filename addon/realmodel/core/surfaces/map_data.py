@@ -39,7 +39,9 @@ def with_ground(rock: Rock) -> Rock:
     """The rock mass whose youngest surface is made from the ground of its map, where it has no points and no
     mesh."""
     youngest = rock.surfaces[-1]
-    if rock.map is None or not (youngest.interpolated and youngest.points is None and youngest.needs_points):
+    if rock.map is None or not (
+        rock.is_interpolated(youngest) and youngest.points is None and youngest.needs_points
+    ):
         return rock
     if (shape := _ground_shape(rock)) is None:
         return rock
@@ -165,14 +167,14 @@ def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_
     level = surface.options.get("value")
     if surface.method == "constant" and isinstance(level, (int, float)):
         return np.full(len(plan), float(level))
-    if surface.interpolated and surface.points is None:
+    if surface.has_points and surface.points is None:
         what = f"the ground of the map is not known: surface '{surface.name}' has no points or mesh"
         raise rock.refused(what, "map", 'give its heights: ground = "dem.tif"')
-    read = SurfaceInput.of(rock, surface, None, units).read(no_step)
+    read = SurfaceInput.of(rock, surface, units).read(no_step)
     if read.shape is not None:
         return native_module().surface_heights(*read.shape.arrays, np.ascontiguousarray(plan))
     options: dict[str, Any] = dict(CONTINUATION_OPTIONS)
-    return interpolate(read.surface.point_array(), plan, CONTINUATION, **options).z
+    return interpolate(read.data.points, plan, CONTINUATION, **options).z
 
 
 @dataclass(frozen=True, eq=False)

@@ -214,7 +214,7 @@ def _crowded(work: Work, entry: RockInput, mesh: Sheet, least: float) -> tuple[n
     """(K, 2) the places of crowded data, and (K,) how far from each the next datum of its sheet is."""
     places, rooms = [np.empty((0, 2))], [np.empty(0)]
     for number, surface in enumerate(entry.rock.surfaces):
-        if not surface.ties:
+        if not (surface.tie and entry.rock.is_interpolated(surface)):
             continue
         work.check()
         for data in _data_of_sheets(work, entry, number):
@@ -258,15 +258,15 @@ def _apart(
 def _data_of_sheets(work: Work, entry: RockInput, number: int) -> Iterator[TieData]:
     """What each sheet of a surface is to honor: the data on the same sides of all faults that displace it,
     once these are known."""
-    surface = entry.rock.surfaces[number]
-    points, bounds, structure = surface.tied_points, surface.bounds, entry.structure
+    data, structure = entry.data[number], entry.structure
+    points, bounds = data.tied_points(entry.rock.surfaces[number]), data.bounds
     if structure is None or not structure.faults.active(number).any():
         yield tie_data(points, bounds)
         return
-    places = points if bounds is None else np.concatenate([points, bounds.places])
-    sides = sides_of(work, places, structure.faults)[:, structure.faults.active(number)]
+    sides = sides_of(work, np.concatenate([points, bounds.places]), structure.faults)[
+        :, structure.faults.active(number)
+    ]
     rows, sheet = np.unique(sides, axis=0, return_inverse=True)
     for each in range(len(rows)):
         own = sheet.ravel() == each
-        of_bounds = own[len(points) :]
-        yield tie_data(points[own[: len(points)]], None if bounds is None else bounds.some(of_bounds))
+        yield tie_data(points[own[: len(points)]], bounds.some(own[len(points) :]))

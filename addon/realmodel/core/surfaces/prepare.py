@@ -31,9 +31,9 @@ from ..settings.mesh_sizes import AUTO
 from ..settings.series import SHEETS
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
-from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
+from .field_data import FieldData, apply_observations, bodies_of, left_out_warnings, read_field_data
 from .observed.conformable import proposals
-from .observed.kept_contacts import with_kept_bounds
+from .observed.kept_contacts import kept_bounds
 from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
@@ -65,7 +65,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         field = read_field_data(project, rock)
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
         warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
-        asked += [SurfaceInput.of(rock, *each, project.units) for each in field.surfaces]
+        asked += [SurfaceInput.of(rock, each, project.units, met) for each, met in field.surfaces]
         fields.append(field)
         all_warnings.append((warnings, _unnamed(rock, field)))
     found = dict(reader(work, asked))
@@ -83,30 +83,42 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         ]
         warnings += of_picks
         rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
-        shapes, faces = [each.shape for each in own], [each.faces for each in own]
-        entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
-        entry.has_faults = bool(project.faults)
-        if rock.observed is not None:
-            apply_observations(work, entry)
+        entry = RockInput(
+            rock,
+            [each.shape for each in own],
+            interpolations=[None] * len(own),
+            file_faces=[each.faces for each in own],
+            warnings=warnings,
+            left_out=field.left_out,
+            has_faults=bool(project.faults),
+            data=[each.data for each in own],
+        )
+        if (seen := rock.observed) is not None:
+            apply_observations(work, entry, bodies_of(project, given), (seen, np.ones(len(seen), bool)))
         else:
-            entry.rock = with_kept_bounds(entry.rock)
+            kept = kept_bounds(rock, entry.data)
+            entry.data = [replace(data, bounds=own) for data, own in zip(entry.data, kept, strict=True)]
+        _require_points(entry)
         apply_dips(work, entry, field.ground, field.mapped)
         if not (project.faults or project.bodies):  # else once it is known where these are
             entry.warnings += left_out_warnings(entry)
-        require_points_near(entry.rock, project.units)
+        require_points_near(entry, project.units)
         inputs.append(entry)
     return inputs
 
 
+def _require_points(entry: RockInput) -> None:
+    """Refuses a surface of a RockInput of which nothing is known."""
+    for surface, data in zip(entry.rock.surfaces, entry.data, strict=True):
+        if surface.has_points and surface.needs_points and not len(data.points):
+            what = "it has no points, and no borehole or observation tells of it"
+            raise InputRefused(what, file=surface.shape_file, item=surface_item(entry.rock, surface))
+
+
 def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
     """The warnings about units in the headers of the tables of dips and observations of a rock mass."""
-    of_series, of_surfaces = (
-        [each.dip_file for each in rock.series],
-        [each.dip_file for each in rock.surfaces],
-    )
-    dips = [rock.dip_file, *of_series, *of_surfaces]
     found: list[BuildWarning] = []
-    for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in dips)):
+    for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in rock.dip_files)):
         if given is not None:
             with naming(rock.item):
                 texts = other_units_in(given, Path(given.file), columns, units)
@@ -155,7 +167,7 @@ def with_arrays(project: Project) -> Project:
                     with naming(surface_item(rock, surface)):
                         surface = replace(surface, dips=read_dips(surface.dip_file, project.units))
                 if met is not None:
-                    surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
+                    surface = SurfaceInput.of(rock, surface, project.units, met).read(no_step).surface
                 surfaces.append(surface)
             series = [
                 replace(each, dips=as_given(each.dips)) if isinstance(each.dips, (Dips, SpaceDips)) else each
@@ -240,15 +252,17 @@ def mesh_again(work: Work, entry: RockInput, keep: StoreArray = as_it_is) -> boo
 
 def _planar_mesh(work: Work, entry: RockInput) -> Sheet:
     """The planar mesh of a rock mass; contacts that it could not tell apart are vertices."""
-    rock, points = entry.rock, entry.rock.constraint_points()
+    rock = entry.rock
+    given_points = [point for point in rock.constraints if len(point) == 1]
+    points = np.concatenate(given_points) if given_points else None
     options = MeshOptions(
         rock.edge_length,
         rock.mesher,
         rock.triangles,
         rock.size,
-        rock.constraint_lines(),
+        [line for line in rock.constraints if len(line) > 1],
         points,
-        _density_points(rock) if rock.edge_length == AUTO else None,
+        _density_points(entry) if rock.edge_length == AUTO else None,
     )
     mesh = Sheet(*mesh_rings(work, rock.rings(), options))
     known = np.empty((0, 2)) if points is None else points
@@ -272,9 +286,10 @@ def _planar_mesh(work: Work, entry: RockInput) -> Sheet:
     return mesh
 
 
-def _density_points(rock: Rock) -> np.ndarray:
+def _density_points(entry: RockInput) -> np.ndarray:
     """(P, 2) the points of all surfaces of a rock mass, which decide an automatic edge length."""
-    given = [surface.point_array()[:, :2] for surface in rock.surfaces if surface.interpolated]
+    pairs = zip(entry.rock.surfaces, entry.data, strict=True)
+    given = [data.points[:, :2] for surface, data in pairs if entry.rock.is_interpolated(surface)]
     return np.concatenate(given) if given else np.empty((0, 2))
 
 
@@ -288,7 +303,7 @@ def propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> No
         faults = structure.faults
         sides = {each: np.where(faults.active(each), structure.points[each], 0) for each in chosen}
     with work.part(0.0, 0.0), work.phase(0.0, 1.0, "comparing surfaces"):
-        entry.warnings += proposals(work, entry.rock, chosen, sides)
+        entry.warnings += proposals(work, entry.rock, entry.data, chosen, sides)
 
 
 def interpolate_rock(
@@ -301,7 +316,7 @@ def interpolate_rock(
     finished surfaces; unless it is as_it_is, their interpolations and attributes are dropped."""
     waiting = interpolation_order(entry.rock, stage)
     if entry.draws is None:
-        entry.warnings += points_above_younger(entry.rock, waiting)
+        entry.warnings += points_above_younger(entry, waiting)
         propose_series(work, entry, waiting)
     for number in work.share_out(waiting):
         with work.phase(0.0, 1.0, f"interpolating {entry.rock.surfaces[number].name}"):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, place_text
+from ..base.errors import InputRefused, place_text
 from ..base.work import Work
 from ..heights import heights
 from ..heights.interpolation import Task
@@ -46,12 +46,12 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
     for series in rock.series:
         if isinstance(series.dips, Dips):
             parts.append((series.dips, _of_sheets(entry, series, series.dips)))
-    surfaces = list(rock.surfaces)
-    for number, surface in enumerate(surfaces):
-        own = Dips.joined([dips.some(counts[:, number]) for dips, counts in parts])
-        own = Dips(own.positions, own.gradients, own.heights)  # without names, and all in use
-        surfaces[number] = replace(surface, rock_dips=own if len(own) else None)
-    entry.rock = replace(rock, surfaces=surfaces)
+    for number, data in enumerate(entry.data):
+        found = Dips.joined([dips.some(counts[:, number]) for dips, counts in parts])
+        if len(found):
+            of_rock = Dips(found.positions, found.gradients, found.heights)  # without names, and all in use
+            dips = of_rock if data.dips is None else Dips.joined([data.dips, of_rock])
+            entry.data[number] = replace(data, dips=dips)
 
 
 def _of_sheets(entry: RockInput, series: Series, dips: Dips) -> np.ndarray:
@@ -93,15 +93,15 @@ def _of_rock(
     for row in np.flatnonzero(is_known & ~counts.any(axis=1)).tolist():
         entry.left_out.append(LeftOut("dip_surface", _called(dips, row), place=_place(dips, row)))
     for number, surface in enumerate(rock.surfaces):
-        if counts[:, number].any() and not uses_dips(surface):
+        if counts[:, number].any() and not uses_dips(rock, surface):
             entry.warnings.append(_not_used(rock, number, int(counts[:, number].sum())))
             counts[:, number] = False
     return counts
 
 
-def uses_dips(surface: Surface) -> bool:
+def uses_dips(rock: Rock, surface: Surface) -> bool:
     """Whether dips can have an effect on a surface."""
-    return surface.interpolated and METHODS[surface.method or DEFAULT_METHOD].is_constrained
+    return rock.is_interpolated(surface) and METHODS[surface.method or DEFAULT_METHOD].is_constrained
 
 
 def _named(entry: RockInput, dips: Dips, ground: int | None) -> tuple[np.ndarray, np.ndarray]:
@@ -141,31 +141,29 @@ def _of_default_rules(rock: Rock, count: int) -> list[BuildWarning]:
 def _require_dips(rock: Rock, number: int) -> None:
     """Refuses dips that name a surface which cannot use them."""
     surface = rock.surfaces[number]
-    if uses_dips(surface):
+    if uses_dips(rock, surface):
         return
     advice = "leave them out"
-    if surface.is_level_set:
+    if rock.is_level_set(surface):
         advice = "give them to its series"
-    elif surface.interpolated:
+    elif surface.has_points:
         advice = f"{', '.join(name for name, each in METHODS.items() if each.is_constrained)} use them"
     file, line = rock.place_of("dips")
-    what = f"dips of the rock mass name it, but {_why_none(surface)}"
+    what = f"dips of the rock mass name it, but {_why_none(rock, surface)}"
     raise InputRefused(what, file=file, line=line, item=surface_item(rock, surface), advice=advice)
 
 
 def _not_used(rock: Rock, number: int, count: int) -> BuildWarning:
     surface = rock.surfaces[number]
-    text = f"{count} dips of blocks of the rock mass would count for it, but {_why_none(surface)}"
+    text = f"{count} dips of blocks of the rock mass would count for it, but {_why_none(rock, surface)}"
     return BuildWarning(text, "dips", rock.name, surface.name)
 
 
-def _why_none(surface: Surface) -> str:
+def _why_none(rock: Rock, surface: Surface) -> str:
     """Why dips of the rock mass have no effect on a surface."""
-    if surface.is_level_set:
+    if rock.is_level_set(surface):
         return f"it is a level set of series '{surface.series}', which has its own"
-    return (
-        f"method '{surface.method}' does not use dips" if surface.interpolated else "a ready mesh uses none"
-    )
+    return f"method '{surface.method}' does not use dips" if surface.has_points else "a ready mesh uses none"
 
 
 def _by_blocks(
@@ -196,30 +194,29 @@ def _by_blocks(
 
 def _heights_by_dips(work: Work, entry: RockInput, number: int, dips: Dips, counts: np.ndarray) -> np.ndarray:
     """(D,) heights of a surface of few points at dips, from its points and the dips that count for it."""
-    surface, plan = entry.rock.surfaces[number], np.ascontiguousarray(dips.positions)
-    own = surface.known_dips()
+    plan, own = np.ascontiguousarray(dips.positions), entry.data[number].dips
     joined = Dips.joined([*([] if own is None else [own]), dips.some(counts)])
     slopes = Dips(joined.positions, joined.gradients) if len(joined) else None
-    with naming(surface_item(entry.rock, surface), surface.shape_source):
+    with entry.named(number):
         settings = checked_options(DEFAULT_METHOD, DEFAULT_OPTIONS)
-        return heights(DEFAULT_METHOD, Task(work, surface.point_array(), plan, settings, dips=slopes)).z
+        return heights(DEFAULT_METHOD, Task(work, entry.data[number].points, plan, settings, dips=slopes)).z
 
 
 def _first_heights(work: Work, entry: RockInput, number: int, plan: np.ndarray) -> np.ndarray | None:
     """(N,) heights of a surface at places (N, 2) as its points alone show them, NaN where it has none; None
     where its points are few and it uses dips."""
     surface, shape = entry.rock.surfaces[number], entry.surfaces[number]
-    if not surface.interpolated and shape is not None:
+    if shape is not None and not entry.rock.is_interpolated(surface):
         return heights_at(work, shape, plan)
-    points = surface.point_array()
+    points = entry.data[number].points
     method, settings = surface.method_options()
     if len(points):
-        if uses_dips(surface) and len(points) < _SHOWN_BY_POINTS:
+        if uses_dips(entry.rock, surface) and len(points) < _SHOWN_BY_POINTS:
             return None
         method, settings = CONTINUATION, checked_options(CONTINUATION, CONTINUATION_OPTIONS)
     elif any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS) or METHODS[method].on_mesh:
         return np.full(len(plan), np.nan)
-    with naming(surface_item(entry.rock, surface), surface.shape_source):
+    with entry.named(number):
         return heights(method, Task(work, points, plan, settings)).z
 
 

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, naming
 from ..base.sheet import Sheet
 from ..base.stored_objects import NOT_STORED
 from ..base.triangles import median_edge
@@ -17,9 +18,10 @@ from ..fields import FieldDraws, LevelSolid, ScalarField
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
 from ..heights.realizations.draws import Draw
-from ..project.project import Rock
+from ..project.project import Rock, surface_item
 from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS
+from .observed.surface_data import SurfaceData
 from .rock_structure import RockStructure
 from .sides import RockFaults
 
@@ -28,22 +30,20 @@ from .sides import RockFaults
 class RockInput:
     """A rock mass, read and interpolated.
 
-    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its triangulation
-    in plan, or None. interpolations: the result for each surface, None for ready meshes. file_faces: for
-    each surface None, or the face of its file that each triangle belongs to. attributes: of the vertices
-    of each interpolated surface, by its number (`variance`, `distance`). warnings: of reading and
-    interpolating. structure: the compartments of a rock mass with faults, and their sheets; a surface is
-    all its sheets. overlapping: by number, the error of a surface whose triangles overlap in a sheet
-    because of a fault. draws: how each surface is drawn in a realization of an ensemble; else None.
-    field_draws: the same of series of fields, by their names.
-    left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
-    edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
-    has_faults: whether the project has faults, which may divide it. fields: of series whose surfaces are
-    level sets; such a surface is a level set, in each compartment of its field. level_solids: of fields,
-    until cells are made of them. untied: of sheets that were tied to their data what they were before, until
-    the warnings about doubtful heights are made. joint_fits: what was fitted to the data of several surfaces,
-    as of Alike.
-    """
+    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its triangulation in
+    plan, or None. interpolations: the result for each surface, None for ready meshes. file_faces: for each
+    surface None, or the face of its file that each triangle belongs to. attributes: of the vertices of each
+    interpolated surface, by its number (`variance`, `distance`). warnings: of reading and interpolating.
+    structure: the compartments of a rock mass with faults, and their sheets; a surface is all its sheets.
+    overlapping: by number, the error of a surface whose triangles overlap in a sheet because of a fault.
+    draws: how each surface is drawn in a realization of an ensemble; else None. field_draws: the same of
+    series of fields, by their names. left_out: the observations that are not used. used: of Rock.observations
+    (N,) bool, those that are. edge: of the region's mesh the median edge before contacts became its vertices;
+    None where none did. has_faults: whether the project has faults, which may divide it. data: what is known
+    of each surface. fields: of series whose surfaces are level sets; such a surface is a level set, in each
+    compartment of its field. level_solids: of fields, until cells are made of them. untied: of sheets that
+    were tied to their data what they were before, until the warnings about doubtful heights are made.
+    joint_fits: what was fitted to the data of several surfaces, as of Alike."""
 
     rock: Rock
     surfaces: list[Sheet | None]
@@ -60,16 +60,25 @@ class RockInput:
     used: np.ndarray | None = None
     edge: float | None = None
     has_faults: bool = False
+    data: list[SurfaceData] = field(default_factory=list)
     fields: list[SeriesField] = field(default_factory=list)
     level_solids: dict[ScalarField, list[LevelSolid]] = field(default_factory=dict, metadata=NOT_STORED)
     untied: dict[Sheet, Sheet] = field(default_factory=dict, metadata=NOT_STORED)
     joint_fits: dict[bytes, Any] = field(default_factory=dict, metadata=NOT_STORED)
+
+    def __post_init__(self) -> None:
+        self.data = self.data or [SurfaceData() for _ in self.rock.surfaces]
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
         surface = self.surfaces[number]
         assert surface is not None
         return surface
+
+    def named(self, number: int) -> AbstractContextManager:
+        """Within it errors name a surface, and where its shape comes from."""
+        surface = self.rock.surfaces[number]
+        return naming(surface_item(self.rock, surface), surface.shape_source)
 
     def planar_mesh(self) -> Sheet:
         """The triangulation of the region of a rock mass that has one and is meshed."""
@@ -99,7 +108,7 @@ class RockInput:
     @property
     def is_clipped(self) -> bool:
         """Whether there is a region that ends its surfaces; those on its own mesh end where it ends."""
-        return self.region is not None and not all(surface.interpolated for surface in self.rock.surfaces)
+        return self.region is not None and not all(map(self.rock.is_interpolated, self.rock.surfaces))
 
     @property
     def reaches_base(self) -> bool:
@@ -107,7 +116,9 @@ class RockInput:
         base, given = self.rock.base_elevation, zip(self.rock.surfaces, self.surfaces, strict=True)
         if base is None:
             return False
-        heights = [each.vertices[:, 2] for of, each in given if each is not None and not of.is_level_set]
+        heights = [
+            each.vertices[:, 2] for of, each in given if each is not None and not self.rock.is_level_set(of)
+        ]
         return any(len(z) > 0 and z.min() <= base for z in heights)
 
     def native(self) -> tuple:
@@ -121,11 +132,12 @@ class RockInput:
         """The entry with the surfaces up to m only; the region stays the same. A surface that depends on a
         removed one keeps its heights as a ready mesh, if it has them already."""
         gone = {surface.name for surface in self.rock.surfaces[m + 1 :]}
-        surfaces = self.rock.surfaces[: m + 1]
+        surfaces, data = self.rock.surfaces[: m + 1], self.data[: m + 1]
         for number, surface in enumerate(surfaces):
             shape = self.surfaces[number]
             if shape is not None and gone.intersection(named_surfaces(self.rock, number)):
                 vertices, triangles = shape
+                data[number] = data[number].through(np.empty((0, 3)))
                 surfaces[number] = replace(
                     surface,
                     points=None,
@@ -152,6 +164,7 @@ class RockInput:
             used=self.used,
             edge=self.edge,
             has_faults=self.has_faults,
+            data=data,
             fields=[kept for each in self.fields if (kept := each.stage(m)) is not None],
         )
 

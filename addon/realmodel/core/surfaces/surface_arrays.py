@@ -57,7 +57,7 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     """(Ts,) int32: of each triangle of all surfaces the sheet of its surface that it is of, from 0; a surface
     that no fault displaces has one."""
     found = [np.zeros(0, np.int64)]
-    for entry, number in _by_rock(inputs):
+    for entry, number in by_rock(inputs):
         sizes = _sizes(entry, number)
         found.append(np.repeat(np.arange(len(sizes)), sizes))
     return np.concatenate(found).astype(np.int32)
@@ -66,10 +66,10 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
 def sheet_sizes(inputs: list[RockInput], number: int) -> list[int]:
     """How many triangles the sheets of one surface have, by its global index: they are its own one sheet
     after another."""
-    return _sizes(*_by_rock(inputs)[number])
+    return _sizes(*by_rock(inputs)[number])
 
 
-def _by_rock(inputs: list[RockInput]) -> list[tuple[RockInput, int]]:
+def by_rock(inputs: list[RockInput]) -> list[tuple[RockInput, int]]:
     """Of each surface, by its global index, its rock mass and its number there."""
     return [(entry, number) for entry in inputs for number in range(len(entry.surfaces))]
 
@@ -81,7 +81,7 @@ def _sizes(entry: RockInput, number: int) -> list[int]:
 def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:
     """The attributes (V,) of the vertices of one surface, by its global index: `height`; `variance` and
     `distance`, NaN where there are none."""
-    interfaces = [entry.attributes.get(k, {}) for entry, k in _by_rock(inputs)]
+    interfaces = [entry.attributes.get(k, {}) for entry, k in by_rock(inputs)]
     known = interfaces[number] if number < len(interfaces) else {}  # faults and bodies have none
     unknown = np.full(len(vertices), np.nan)
     return {

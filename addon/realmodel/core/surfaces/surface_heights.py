@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, place_text
+from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..heights import Interpolation, heights
@@ -21,10 +21,11 @@ from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, raised_heights, tie_data
 from ..heights.true_thickness import Base
-from ..project.project import Rock, Surface, surface_item
+from ..project.project import Rock, Surface
 from ..settings.methods import METHODS, checked_options
 from .observed.conformable import alike_of
 from .observed.sheet_series import bounds_beside, companions_of
+from .observed.surface_data import SurfaceData
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
 
@@ -57,12 +58,12 @@ def needed_surfaces(rock: Rock, number: int) -> list[int]:
     return needs
 
 
-def counts_by_node(rock: Rock, number: int, surface: Surface) -> bool:
+def counts_by_node(rock: Rock, number: int, surface: Surface, data: SurfaceData) -> bool:
     """Whether heights of a surface, in the place of one of a rock mass, follow at each node from points near
     it alone, without other surfaces and nodes."""
     method, settings = surface.method_options()
-    is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
-    is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
+    is_tied = surface.tie and (len(data.bounds) > 0 or len(data.tied_points(surface)) > 0)
+    is_more_known = data.dips is not None or len(data.bounds) > 0 or data.error > 0
     if (
         needed_surfaces(rock, number)
         or surface.series is not None  # the other sheets count, too
@@ -70,8 +71,8 @@ def counts_by_node(rock: Rock, number: int, surface: Surface) -> bool:
         or settings.get("extrapolate") == "none"
         or settings.get("neighbours") == 0  # all points are one system
         or (METHODS[method].is_constrained and is_more_known)  # these count for all nodes together
-        or (METHODS[method].needs_points(settings) and not len(surface.point_array()))
-        or (surface.ties and surface.is_along_bounds)  # where bounds do not hold, its points yield
+        or (METHODS[method].needs_points(settings) and not len(data.points))
+        or (surface.tie and data.is_along_bounds)  # where bounds do not hold, its points yield
         or (method == "plane" and settings["extrapolate"] == "nearest")  # its points count only there
     ):
         return False
@@ -94,7 +95,7 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
 
     for number in range(len(rock.surfaces) if last is None else min(last + 1, len(rock.surfaces))):
         visit(number)
-    return [number for number in order if rock.surfaces[number].interpolated]
+    return [number for number in order if rock.is_interpolated(rock.surfaces[number])]
 
 
 def _vertex_attributes(work: Work, points: np.ndarray, result: Interpolation, region: Sheet) -> dict:
@@ -116,30 +117,30 @@ def _vertex_attributes(work: Work, points: np.ndarray, result: Interpolation, re
 def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None = None) -> None:
     """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
     keeps it above the older one where it has a minimum thickness."""
-    rock, surface = entry.rock, entry.rock.surfaces[number]
+    rock, surface, data = entry.rock, entry.rock.surfaces[number], entry.data[number]
     nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
     others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
-    with naming(surface_item(rock, surface), surface.shape_source):
+    with entry.named(number):
         if trend is not None:
             result, free = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            companions = companions_of(rock, number, entry.joint_fits)
-            task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            task = replace(task, dips=surface.known_dips(), companions=companions, ties=surface.ties)
-            task = replace(task, alike=alike_of(rock, number, entry.joint_fits))
-            bounds = bounds_beside(surface, companions)
-            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness, error=surface.error)
-            result, free = _tied(task, give(method, task), surface)
+            companions = companions_of(rock, entry.data, number, entry.joint_fits)
+            task = Task(work, data.points, nodes, settings, triangles, surfaces=others)
+            task = replace(task, dips=data.dips, companions=companions, ties=surface.tie)
+            task = replace(task, alike=alike_of(rock, entry.data, number, entry.joint_fits))
+            bounds = bounds_beside(data.bounds, companions)
+            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness, error=data.error)
+            result, free = _tied(task, give(method, task), surface, data)
         shape = where_known(nodes, triangles, result.z)
-        if trend is not None and not len(surface.point_array()):
+        if trend is not None and not len(data.points):
             attributes = trend.attributes
         else:
-            attributes = _vertex_attributes(work, surface.point_array(), result, region)
+            attributes = _vertex_attributes(work, data.points, result, region)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
-            warnings += _older_points_above(work, rock, number, shape)
+            warnings += _older_points_above(work, entry, number, shape)
             shape, raised = _above_older(work, entry, number, shape)
             warnings += raised
     if free is not result.z and entry.draws is None:
@@ -150,15 +151,17 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
     entry.warnings += warnings
 
 
-def _tied(task: Task, result: Interpolation, surface: Surface) -> tuple[Interpolation, np.ndarray]:
+def _tied(
+    task: Task, result: Interpolation, surface: Surface, own: SurfaceData
+) -> tuple[Interpolation, np.ndarray]:
     """The heights with which a surface honors its points and bounds on the mesh of its region; and those that
     it had, the same array where it keeps them."""
-    if not surface.ties or task.triangles is None or not len(task.triangles):
+    if not surface.tie or task.triangles is None or not len(task.triangles):
         return result, result.z
     free = result.z
-    data = tie_data(surface.tied_points, task.bounds)
+    data = tie_data(own.tied_points(surface), task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
-    if warnings and surface.is_along_bounds:  # the places that it was put through yield to its bounds
+    if warnings and own.is_along_bounds:  # the places that it was put through yield to its bounds
         data = tie_data(np.empty((0, 3)), task.bounds)
         z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
     if z is not free:
@@ -170,9 +173,9 @@ def _on_trend(
     work: Work, entry: RockInput, number: int, trend: Trend, others: dict
 ) -> tuple[Interpolation, np.ndarray]:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method, as of _tied."""
-    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
-    dips = surface.known_dips()
-    points, mis_ties = without_mis_ties(surface.point_array())
+    surface, own, (nodes, triangles) = entry.rock.surfaces[number], entry.data[number], entry.planar_mesh()
+    dips = own.dips
+    points, mis_ties = without_mis_ties(own.points)
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2])
     away = away[np.isfinite(away[:, 2])]
@@ -195,16 +198,16 @@ def _on_trend(
             "beyond a fault"
         )
     result = replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
-    return _tied(replace(task, bounds=surface.bounds), result, surface)
+    return _tied(replace(task, bounds=own.bounds), result, surface, own)
 
 
-def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> list[BuildWarning]:
+def _older_points_above(work: Work, entry: RockInput, number: int, shape: Sheet) -> list[BuildWarning]:
     """The points of the older surface above one that is to keep off it, before this is raised."""
-    points = rock.surfaces[number - 1].point_array()
+    points = entry.data[number - 1].points
     if not len(points):
         return []
     z = heights_at(work, shape, points[:, :2])
-    return listed(rock, number - 1, points[:, 2] - z, "above", number)
+    return listed(entry, number - 1, points[:, 2] - z, "above", number)
 
 
 def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Sheet:
@@ -248,9 +251,10 @@ def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tup
     if raised is None:
         return shape, []
     has_limits = any(key in surface.options for key in BOUNDS)  # they come before data
-    if surface.ties and not has_limits:
+    if surface.tie and not has_limits:
         plan = np.ascontiguousarray(vertices[:, :2])
-        data = tie_data(surface.tied_points, surface.bounds)
+        own = entry.data[number]
+        data = tie_data(own.tied_points(surface), own.bounds)
         raised = raised_heights(work, plan, triangles, raised, least, data)
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterable, Iterator, Sized
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.algebra import are_among, ascending
-from ..base.errors import InputRefused, naming
+from ..base.errors import naming
 from ..base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MappedArrays, in_memory, in_pieces
 from ..base.sheet import Sheet
 from ..base.text import Step, no_step
@@ -22,16 +21,19 @@ from ..base.work import Work
 from ..heights.interpolate import checked_points
 from ..project.project import Rock, Surface, surface_item
 from ..readers import read_dips, read_mesh, read_point_file
+from ..readers.tables.boreholes import Pick, picks_of
 from ..settings.dips import Dips
+from .observed.surface_data import Sources, SurfaceData
 
 
 @dataclass(frozen=True)
 class ReadSurface:
-    """surface: with arrays in the place of files. shape: the triangulation of a ready mesh, else None. faces:
-    (T,) the face of its file that each triangle belongs to, None where these are equal. warnings:
-    sentences."""
+    """surface: with arrays in the place of files. data: what it says itself, and picks do. shape: the
+    triangulation of a ready mesh, else None. faces: (T,) the face of its file that each triangle belongs to,
+    None where these are equal. warnings: sentences."""
 
     surface: Surface
+    data: SurfaceData
     shape: Sheet | None
     faces: np.ndarray | None
     warnings: list[str]
@@ -42,9 +44,10 @@ class ReadSurface:
         surface, shape = self.surface, self.shape
         faces = None if self.faces is None else change(self.faces)
         if shape is None:
-            rows = None if surface.point_rows is None else change(surface.point_rows)
-            surface = replace(surface, points=change(surface.points), point_rows=rows)
-            return replace(self, surface=surface, faces=faces)
+            rows = None if self.data.rows is None else change(self.data.rows)
+            data = replace(self.data, points=change(self.data.points), rows=rows)
+            points = None if surface.points is None else data.points
+            return replace(self, surface=replace(surface, points=points), data=data, faces=faces)
         vertices, triangles = map(change, shape)
         surface = replace(surface, vertices=vertices, triangles=triangles)
         return replace(self, surface=surface, shape=Sheet(vertices, triangles), faces=faces)
@@ -54,22 +57,23 @@ class ReadSurface:
 class SurfaceInput:
     """A surface before it is read, with all that reading it needs: another process may read it. rock: the
     name of its rock mass; boreholes: the last file of boreholes, or that of observations or of a map, if
-    any; met: the points where they meet it."""
+    any; met: the picks of boreholes that are no points of it yet; picks: those that are."""
 
     rock: str
     surface: Surface
     boreholes: Path | None
-    met: np.ndarray | None
+    met: list[Pick] | None
+    picks: list[Pick]
     units: str
 
     @classmethod
-    def of(cls, rock: Rock, surface: Surface, met: np.ndarray | None, units: str) -> SurfaceInput:
+    def of(cls, rock: Rock, surface: Surface, units: str, met: list[Pick] | None = None) -> SurfaceInput:
         boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
         if boreholes is None and rock.observation_file is not None:
             boreholes = Path(rock.observation_file.file)
         if boreholes is None and rock.map is not None:
             boreholes = Path(rock.map.file)
-        return cls(rock.name, surface, boreholes, met, units)
+        return cls(rock.name, surface, boreholes, met, picks_of(rock.hole_picks, surface.name), units)
 
     def read(self, step: Step = no_step, arrays: MappedArrays | None = None) -> ReadSurface:
         """arrays: where those that come from files are kept; None: in memory. Raises InputRefused, naming the
@@ -80,17 +84,17 @@ class SurfaceInput:
             file = self.boreholes
         with naming(surface_item(Rock(self.rock, []), surface)):
             if surface.has_points:
-                points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
-                points, rows = self._in_order(points, arrays)
-                read = replace(
-                    surface, points=points, dips=self._dips(step), shape_file=file, point_rows=rows
-                )
-                return ReadSurface(read, None, None, warnings)
+                points, warnings = self._points(step, in_memory if arrays is None else arrays.gather)
+                data = self._in_order(points, arrays)
+                own, dips = data.points if len(points) else None, self._dips(step)
+                read = replace(surface, points=own, dips=dips, shape_file=file)
+                used = None if dips is None else dips.used_only()
+                return ReadSurface(read, replace(data, dips=used), None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
-        return ReadSurface(surface, Sheet(vertices, triangles), faces, warnings)
+        return ReadSurface(surface, SurfaceData(), Sheet(vertices, triangles), faces, warnings)
 
-    def _points(self, file: Path | None, step: Step, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
+    def _points(self, step: Step, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
         points: Any = surface.points
         warnings: list[str] = []
@@ -101,37 +105,35 @@ class SurfaceInput:
             points = points if len(points) else None
         if self.met is not None:
             own = np.empty((0, 3)) if points is None else checked_points(points)
-            points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
-        if points is None and surface.needs_points:
-            raise InputRefused("it has no points, and no borehole or observation tells of it", file=file)
-        if points is None or (isinstance(points, Sized) and not len(points) and not surface.needs_points):
+            points = gather((*in_pieces(own), np.array([place for _, place in self.met])), np.empty((0, 3)))
+        if points is None or (isinstance(points, Sized) and not len(points)):
             return np.empty((0, 3)), warnings
         checked = checked_points(points)
         # checked_points may return another array with the same values
         is_kept = surface.point_file is not None or self.met is not None
         return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
 
-    def _in_order(
-        self, points: np.ndarray, arrays: MappedArrays | None
-    ) -> tuple[np.ndarray, np.ndarray | None]:
-        """The points (P, 3) in the order of their coordinates, contacts after all others; and the numbers
-        that they had, None where these are the same. The order of rows must not decide a result."""
-        count, rows = len(points) - len(self.surface.contact_array()), self.surface.point_rows
-        rows = rows if rows is not None and len(rows) == count else None
-        order = ascending(*points[:count].T) if arrays is None else arrays.ascending(points[:count])
+    def _in_order(self, points: np.ndarray, arrays: MappedArrays | None) -> SurfaceData:
+        """The points (P, 3) in the order of their coordinates. The order of rows must not decide a result."""
+        count = len(points)
+        order = ascending(*points.T) if arrays is None else arrays.ascending(points)
         every = (
             np.arange(first, min(first + ROWS_AT_ONCE, count)) for first in range(0, count, ROWS_AT_ONCE)
         )
-        if all(map(np.array_equal, in_pieces(order), every)):
-            return points, rows
-        gather = in_memory if arrays is None else arrays.gather
-        pieces = (points[piece] for piece in in_pieces(order))
-        rows = order if rows is None else rows[order]
-        return gather(itertools.chain(pieces, [points[count:]]), np.empty((0, 3))), rows
+        rows = None
+        if not all(map(np.array_equal, in_pieces(order), every)):
+            gather, rows = in_memory if arrays is None else arrays.gather, order
+            points = gather((points[piece] for piece in in_pieces(order)), np.empty((0, 3)))
+        if self.met is None:
+            return SurfaceData(points, count, _sources_among(points, self.picks), rows=rows)
+        first = count - len(self.met)
+        at = np.flatnonzero(order >= first).tolist()
+        return SurfaceData(points, count, {row: (self.met[order[row] - first][0],) for row in at}, rows=rows)
 
     def _dips(self, step: Step) -> Dips | None:
         file = self.surface.dip_file
-        dips = self.surface.own_dips() if file is None else read_dips(file, self.units, step)
+        dips = self.surface.dips if file is None else read_dips(file, self.units, step)
+        assert dips is None or isinstance(dips, Dips)
         return None if dips is None else dips.checked()
 
     def _mesh(
@@ -147,6 +149,20 @@ class SurfaceInput:
             mesh = read_mesh(surface.mesh_file, step, arrays.rows)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
         return vertices, mesh.triangles, mesh.face_of_triangle, warnings
+
+
+def _sources_among(points: np.ndarray, picks: list[Pick]) -> Sources:
+    """The sources of the picks that are among points (P, 3), as of arrays that were read before; each is of a
+    point of its own where several lie at one place."""
+    rows: dict[tuple, list[int]] = {}
+    for row in np.flatnonzero(np.isin(points[:, 0], [place[0] for _, place in picks])).tolist():
+        rows.setdefault(tuple(points[row].tolist()), []).append(row)
+    found: Sources = {}
+    for source, place in picks:
+        if here := rows.get(tuple(map(float, place))):
+            row = here.pop(0) if len(here) > 1 else here[0]
+            found[row] = (*found.get(row, ()), source)
+    return found
 
 
 def _without(pieces: Iterable[np.ndarray], left_out: ArrayLike) -> Iterator[np.ndarray]:

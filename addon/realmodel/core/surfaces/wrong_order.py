@@ -14,25 +14,25 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import number_list, place_text
-from ..project.project import Rock
 from ..settings.rules import RULES
+from .observed.surface_data import SurfaceData
+from .rock_input import RockInput
 from .shared_places import is_raster, places_of
 from .wrong_sides import WrongPoints, points_that_lie
 
 _MOST = 20_000  # points that are picked; more are a survey, and may be of another time
 
 
-def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarning]:
-    """The points of surfaces, of these numbers, that contradict the order of a rock mass with arrays.
+def points_above_younger(entry: RockInput, numbers: Collection[int]) -> list[BuildWarning]:
+    """The points of surfaces, of these numbers, that contradict the order of a RockInput that is read.
 
-    Two points in one hole (Rock.hole_picks) contradict it wherever the older one lies higher. Points with
+    Two points in one hole contradict it wherever the older one lies higher. Points with
     the same x and y do where most of two surfaces are so: single ones may be of a surface that was continued
     above the ground. Rasters are left out: they may be of one ground at several times.
     """
-    surfaces = rock.surfaces
-    picks = _Picks(rock)
-    known = [n for n in sorted(numbers) if _may_be_picks(surfaces[n].known_points())]
-    points = {n: surfaces[n].point_array() for n in known}
+    surfaces, data = entry.rock.surfaces, entry.data
+    known = [n for n in sorted(numbers) if _may_be_picks(data[n].known_points)]
+    points = {n: data[n].points for n in known}
     places = dict(zip(known, places_of(list(points.values())), strict=True)) if known else {}
     found: dict[int, WrongPoints] = {}
     holes: dict[int, list[str]] = {}
@@ -41,7 +41,7 @@ def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarn
             continue  # the points of the younger one are looked at instead: wrong_sides
         if younger == older + 1 and surfaces[younger].minimum_thickness is not None:
             continue  # found where this is imposed
-        own, other, names = picks.shared(older, younger)
+        own, other, names = _in_one_hole(data[older], data[younger])
         if not len(own):
             own, other = places[older].shared_with(places[younger])
         above = points[older][own]
@@ -55,46 +55,33 @@ def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarn
             holes.setdefault(older, []).extend(
                 name for name, by in zip(names, beyond, strict=False) if by > 0
             )
-    return [_warning(rock, older, wrong, holes[older]) for older, wrong in found.items()]
+    return [_warning(entry, older, wrong, holes[older]) for older, wrong in found.items()]
 
 
 def _may_be_picks(points: np.ndarray) -> bool:
     return 0 < len(points) <= _MOST and not is_raster(points)
 
 
-def _warning(rock: Rock, older: int, wrong: WrongPoints, holes: list[str]) -> BuildWarning:
-    surface = rock.surfaces[older]
-    row = surface.point_row(wrong.worst)
+def _warning(entry: RockInput, older: int, wrong: WrongPoints, holes: list[str]) -> BuildWarning:
+    rock, data = entry.rock, entry.data[older]
+    row = data.row(wrong.worst)
     names = number_list([f"'{rock.surfaces[younger].name}'" for younger in wrong.others])
     text = (
-        f"{points_that_lie(len(wrong.items), len(surface.point_array()))} above those of {names} at the "
+        f"{points_that_lie(len(wrong.items), len(data.points))} above those of {names} at the "
         f"same place, the farthest by {wrong.by:.4g}: point {row} at {place_text(wrong.place)}"
     )
     if holes:
         text += f"; holes {number_list(dict.fromkeys(holes))}"
     text += "; a younger surface removes what is above it: check the order of the surfaces, and these points"
-    return BuildWarning(text, "wrong_side", rock.name, surface.name, wrong.rows(surface))
+    return BuildWarning(text, "wrong_side", rock.name, rock.surfaces[older].name, wrong.rows(data))
 
 
-class _Picks:
-    """The picks of the boreholes of a rock mass, by their surfaces and holes."""
-
-    def __init__(self, rock: Rock):
-        self._of: dict[int, dict[str, int]] = {}
-        for number, surface in enumerate(rock.surfaces):
-            met = [
-                (hole, tuple(place))
-                for hole, (_, picks) in rock.hole_picks.items()
-                for name, place in picks
-                if name == surface.name
-            ]
-            if met:
-                rows = {tuple(place): row for row, place in enumerate(surface.point_array().tolist())}
-                self._of[number] = {hole: rows[place] for hole, place in met if place in rows}
-
-    def shared(self, first: int, second: int) -> tuple[np.ndarray, np.ndarray, list[str]]:
-        """The numbers of the points of two surfaces in the holes that meet both, (N,) each, and the holes."""
-        own, other = self._of.get(first, {}), self._of.get(second, {})
-        holes = [hole for hole in own if hole in other]
-        rows = np.array([(own[hole], other[hole]) for hole in holes], int).reshape(-1, 2)
-        return rows[:, 0], rows[:, 1], holes
+def _in_one_hole(first: SurfaceData, second: SurfaceData) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """The numbers of the points of two surfaces in the holes that meet both, (N,) each, and the holes."""
+    own, other = (
+        {source.hole: row for row, found in each.sources.items() for source in found}
+        for each in (first, second)
+    )
+    holes = sorted(own.keys() & other.keys())
+    rows = np.array([(own[hole], other[hole]) for hole in holes], int).reshape(-1, 2)
+    return rows[:, 0], rows[:, 1], holes

@@ -12,8 +12,8 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..project.project import Rock, Surface
 from ..settings.rules import RULES, Rule
+from .observed.surface_data import SurfaceData
 from .rock_input import RockInput
 
 _TIED = 1e-9  # of the range of its points: how near to them a surface is
@@ -61,9 +61,9 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
     minimum thickness keeps it above the one before it. What an older surface's points do above a younger
     one is no contradiction: there the younger one ends, or has cut.
     """
-    rock, surfaces, shapes = entry.rock, entry.rock.surfaces, entry.surfaces
-    points = {number: surfaces[number].known_points() for number in numbers}
-    points = {number: own for number, own in points.items() if len(own) and number > 0}
+    surfaces, shapes = entry.rock.surfaces, entry.surfaces
+    points = {number: entry.data[number].known_points for number in numbers if number > 0}
+    points = {number: known for number, known in points.items() if len(known)}
     beneath = {number: _Beneath(len(own)) for number, own in points.items()}
     for older in range(max(points, default=0)):
         shape = shapes[older]
@@ -80,7 +80,7 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
         is_kept_off = surfaces[number].minimum_thickness is not None
         if is_kept_off and below.last is not None and shapes[number - 1] is not None:
             floor.raise_to(below.last, number - 1)
-        warnings += listed(rock, number, floor.z - points[number][:, 2], "below", floor.surface)
+        warnings += listed(entry, number, floor.z - points[number][:, 2], "below", floor.surface)
     return warnings
 
 
@@ -162,16 +162,17 @@ class WrongPoints:
         )
         return replace(worst, items=items, others=others)
 
-    def rows(self, surface: Surface) -> tuple[int, ...]:
+    def rows(self, data: SurfaceData) -> tuple[int, ...]:
         """The numbers that the points had in the table or array that they come from."""
-        return tuple(sorted(map(surface.point_row, self.items)))
+        return tuple(sorted(map(data.row, self.items)))
 
     def is_part_of_survey(self, count: int) -> bool:
         """Whether they are a part of a survey of so many points, and not errors."""
         return count >= _SURVEY and _FEW < len(self.items) / count < 1 - _FEW
 
-    def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
+    def warning(self, entry: RockInput, number: int, count: int, side: str) -> BuildWarning:
         """count: of all points of the surface."""
+        rock, data = entry.rock, entry.data[number]
         names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
         surface = rock.surfaces[number]
         ends = side == "below" and not RULES[surface.rule].cuts and surface.minimum_thickness is None
@@ -179,20 +180,20 @@ class WrongPoints:
         advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
             f"{points_that_lie(len(self.items), count)} {side} {names}, the farthest by "
-            f"{self.by:.4g}: point {surface.point_row(self.worst)} at {place_text(self.place)}"
-            f"{advice or self._of_extrapolated(rock)}"
+            f"{self.by:.4g}: point {data.row(self.worst)} at {place_text(self.place)}"
+            f"{advice or self._of_extrapolated(entry)}"
         )
         kind = "ends" if is_meant else "wrong_side"
-        return BuildWarning(text, kind, rock.name, surface.name, self.rows(surface))
+        return BuildWarning(text, kind, rock.name, surface.name, self.rows(data))
 
-    def _of_extrapolated(self, rock: Rock) -> str:
+    def _of_extrapolated(self, entry: RockInput) -> str:
         """What to add where the farthest point is beside the data of surfaces that it lies beyond."""
         place = np.array([self.place[:2]])
         named = []
         for number in self.others:
-            points = rock.surfaces[number].known_points()
+            points = entry.data[number].known_points
             if len(points) and native_module().outside_hull(points, place)[0]:
-                named.append(f"'{rock.surfaces[number].name}'")
+                named.append(f"'{entry.rock.surfaces[number].name}'")
         if not named:
             return ""
         be = "is" if len(named) == 1 else "are"
@@ -205,10 +206,10 @@ def points_that_lie(some: int, count: int) -> str:
 
 
 def listed(
-    rock: Rock, number: int, beyond: np.ndarray, side: str, others: int | np.ndarray
+    entry: RockInput, number: int, beyond: np.ndarray, side: str, others: int | np.ndarray
 ) -> list[BuildWarning]:
     """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
     others: the numbers of these surfaces, one or (N,)."""
-    points = rock.surfaces[number].point_array()
+    points = entry.data[number].points
     found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
-    return [] if found is None else [found.warning(rock, number, len(points), side)]
+    return [] if found is None else [found.warning(entry, number, len(points), side)]

@@ -58,7 +58,7 @@ def without_shape(rock: Rock) -> Rock:
             rule=surface.rule,
             property=surface.property,
             block=surface.block,
-            series=surface.series if surface.is_level_set else None,
+            series=surface.series if rock.is_level_set(surface) else None,
             shape_file=surface.shape_source()[0],
         )
         for surface in rock.surfaces

@@ -390,7 +390,7 @@ def _have_one_mesh(inputs: list[RockInput]) -> bool:
     if len(inputs) > 1 or inputs[0].region is None:
         return False
     rock, nodes = inputs[0].rock, len(inputs[0].region.vertices)
-    return all(surface.interpolated for surface in rock.surfaces) and all(
+    return all(map(rock.is_interpolated, rock.surfaces)) and all(
         len(inputs[0].surface(number).vertices) == nodes for number in range(len(rock.surfaces))
     )
 

@@ -16,6 +16,7 @@ from ...project.library import Property
 from ...project.project import Rock
 from ...readers.tables.observations import Observations
 from ...surfaces.observed.derived import BlockNumbers
+from ...surfaces.rock_input import RockInput
 from ..shapes.parts import FaceTriangles, Part, distinct_names, model_parts, surface_parts
 
 WALL, BASE, CUT = "wall", "base", "cut"
@@ -148,7 +149,7 @@ def _holes(model: ModelData) -> list[Hole]:
         for surface, number in number_of.items()
         if model.surface_kind[surface] == _BODY
     }
-    for rock in model.project.rocks:
+    for rock, entry in zip(model.project.rocks, model.rock_inputs, strict=True):
         beneath = [number_of.get(first + k, -1) for k in range(len(rock.surfaces))]
         first += len(rock.surfaces)
         logs = {} if rock.observed is None else rock.observed.logs()
@@ -157,7 +158,7 @@ def _holes(model: ModelData) -> list[Hole]:
             if name in logs:
                 numbers = BlockNumbers(rock, list(bodies)).of(logs[name].blocks)
                 blocks = np.array([*beneath, *bodies.values(), -1])[numbers]
-                holes.append(_logged(rock, logs[name], blocks.tolist(), collar, picks))
+                holes.append(_logged(entry, logs[name], blocks.tolist(), collar, picks))
             elif (hole := _picked(rock, name, beneath, collar, picks)) is not None:
                 holes.append(hole)
     return holes
@@ -188,7 +189,7 @@ def _picked(
 
 
 def _logged(
-    rock: Rock,
+    entry: RockInput,
     log: Observations,
     blocks: Sequence[int],
     collar: tuple[float, ...] | None,
@@ -200,7 +201,9 @@ def _logged(
     if collar is not None:
         made.go_to(collar, -1)
     contacts = {
-        tuple(place): surface.name for surface in rock.surfaces for place in surface.contact_array().tolist()
+        tuple(place): surface.name
+        for surface, data in zip(entry.rock.surfaces, entry.data, strict=True)
+        for place in data.contacts.tolist()
     }
     last = None
     for place, block, is_inside in zip(log.places.tolist(), blocks, log.goes_on.tolist(), strict=True):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,24 +15,46 @@ from ...settings.boreholes import Boreholes
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
 from .holes import Holes
 from .intervals import read_intervals
-from .observations import LeftOut, Observations
+from .observations import LeftOut, Observations, Origin
 from .unit_names import UnitNames
+
+Pick = tuple[Origin, np.ndarray]  # with its place (3,), model units
 
 
 @dataclass
 class Picks:
-    """points by surface name, (P, 3) float64; holes: of each hole by name its collar (3,), where it is known,
-    and (surface, place (3,)) of its picks, and of the tops of its intervals, the highest first; warnings,
-    sentences. ends: where holes end (3,), as far as their collars say. observations: of the blocks of
-    intervals; left_out: intervals that are not used. switched_off: as points, those of rows that are."""
+    """of_surfaces: where holes met surfaces, by the names of these; holes: of each hole by name its collar
+    (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
+    highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
+    of the blocks of intervals; left_out: intervals that are not used. switched_off: as points, those of rows
+    that are."""
 
-    points: dict[str, np.ndarray] = field(default_factory=dict)
+    of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     ends: dict[str, np.ndarray] = field(default_factory=dict)
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
     switched_off: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def points(self) -> dict[str, np.ndarray]:
+        """(P, 3) float64 the points of each surface, by its name."""
+        return {name: np.array([place for _, place in picks]) for name, picks in self.of_surfaces.items()}
+
+
+def picks_of(holes: Mapping, surface: str) -> list[Pick]:
+    """The picks of a surface among those of holes (Picks.holes), whose depths are known where they are
+    vertical and have a collar."""
+    found: list[Pick] = []
+    for hole, (collar, picks) in holes.items():
+        is_below = [collar is not None and tuple(collar[:2]) == tuple(place[:2]) for _, place in picks]
+        found += [
+            (Origin(hole, float(collar[2] - place[2]) if below else None), place)
+            for (name, place), below in zip(picks, is_below, strict=True)
+            if name == surface
+        ]
+    return found
 
 
 def read_borehole_tables(
@@ -57,7 +80,8 @@ def read_borehole_tables(
         found.ends |= logged.ends
     for _, places in found.holes.values():
         places.sort(key=lambda pick: (-pick[1][2], pick[0]))
-    found.points, found.ends = dict(sorted(found.points.items())), dict(sorted(found.ends.items()))
+    found.of_surfaces = dict(sorted(found.of_surfaces.items()))
+    found.ends = dict(sorted(found.ends.items()))
     found.holes = dict(sorted(found.holes.items()))
     found.warnings += holes.warnings()
     return found
@@ -66,8 +90,8 @@ def read_borehole_tables(
 def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Picks:
     given = holes.given
     assert given.picks is not None
-    found: dict[str, list] = {}
-    off: dict[str, list] = {}
+    found: dict[str, list[Pick]] = {}
+    off: dict[str, list[np.ndarray]] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
     missing = 0
@@ -86,22 +110,26 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             continue
         begin = holes.begin_of(row)
         if column == "depth":
-            place = holes.place(row, row.number("depth"), scale)
+            depth = row.number("depth")
+            place, depth = holes.place(row, depth, scale), depth * scale[2]
         else:
             holes.refuse_deviated(row)
             place = np.array([begin[0], begin[1], row.number(column)]) * scale
-        (found if row.is_used else off).setdefault(name, []).append(place)
+            depth = begin[2] * scale[2] - place[2]  # NaN without the height of the collar
         if not row.is_used:
+            off.setdefault(name, []).append(place)
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = holes.hole_of(row)
+        source = Origin.of(hole, depth, row.table.file, row.line)
+        found.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:
             ends[hole] = holes.place(row, holes.ends[hole], scale)
     if not (found or off):
         raise InputRefused("there are no picks in it", file=given.picks)
-    points, switched_off = ({name: np.array(of) for name, of in each.items()} for each in (found, off))
-    picks = Picks(points, met, ends=ends, switched_off=switched_off)
+    switched_off = {name: np.array(places) for name, places in off.items()}
+    picks = Picks(found, met, ends=ends, switched_off=switched_off)
     if missing:
         picks.warnings.append(f"{given.picks}: left out: {counted(missing, 'pick')} without a depth")
     return picks

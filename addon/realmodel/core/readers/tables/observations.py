@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -198,6 +200,21 @@ def source_text(hole: str, depth: float, place: Sequence[float] | np.ndarray) ->
     if not hole:
         return at
     return f"hole '{hole}' at {at if np.isnan(depth) else format(depth, '.9g')}"
+
+
+class Origin(NamedTuple):
+    """Where a datum comes from. hole: the borehole, "" for none; depth: along it, model units, None where it
+    is not known. file, line: of its row in a table, None and 0 where it has none."""
+
+    hole: str = ""
+    depth: float | None = None
+    file: Path | None = None
+    line: int = 0
+
+    @classmethod
+    def of(cls, hole: str, depth: float, file: Path | None = None, line: int = 0) -> Origin:
+        """The same of a depth that is NaN where it is not known."""
+        return cls(str(hole), None if np.isnan(depth) else float(depth), file, line)
 
 
 @dataclass(frozen=True)

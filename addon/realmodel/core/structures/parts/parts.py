@@ -194,11 +194,11 @@ def box_around(inputs: list[RockInput], structures: Structures, has_sheets: bool
         if entry.region is not None:
             x.append(entry.region.vertices[:, 0])
             y.append(entry.region.vertices[:, 1])
-        for number, (surface, shape) in enumerate(zip(entry.rock.surfaces, entry.surfaces, strict=True)):
+        for number, (data, shape) in enumerate(zip(entry.data, entry.surfaces, strict=True)):
             has_made = has_sheets and entry.divided().is_made(number)  # not younger than the stage
             shapes = entry.divided().distinct(number) if has_made else [shape]
             is_known &= None not in shapes
-            for given in (surface.points if shape is None else shape.vertices for shape in shapes):
+            for given in (data.points if shape is None else shape.vertices for shape in shapes):
                 places = np.asarray(given, np.float64).reshape(-1, 3)
                 z.append(places[:, 2])
                 if entry.region is None:
@@ -229,7 +229,7 @@ def add_compartments(structures: Structures, inputs: list[RockInput]) -> None:
         rows = np.unique(structures.sides[:, faults.numbers], axis=0)
         # level sets have a place (place_level_sets) until their fields are made
         placed = [
-            shape if surface.is_level_set else None
+            shape if entry.rock.is_level_set(surface) else None
             for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True)
         ]
         sheets: list[list[Sheet | None]] = [list(placed) for _ in rows]

@@ -4,15 +4,13 @@ of a neighbor, shifted by the throw of the fault between them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused
-from ...project.project import Rock, surface_item
 from ...surfaces.rock_input import RockInput, named_surfaces
 from ...surfaces.surface_heights import needed_surfaces
 from .borrowed import between_faults
@@ -58,7 +56,7 @@ class CompartmentSheets:
         own = [family for family in self.own if family.key not in self.made]
         if not own or not self._is_ready():
             return False
-        with named(self.entry.rock, self.number):
+        with self.entry.named(self.number):
             self.made |= {family.key: self.surface.sheets(family) for family in own}
         return True
 
@@ -109,7 +107,7 @@ class CompartmentSheets:
                 heights.insert(0, first.vertices[:, 2])
                 trends[sides] = between_faults(throws.work, first, heights, faults)
             self.surface.adopt(trends, taken[0])
-        with named(self.entry.rock, self.number):
+        with self.entry.named(self.number):
             trends = _drawn_together(self.surface, family, trends)
             self.made[family.key] = self.surface.sheets(family, trends)
         self.entry.divided().warnings.append((list(family.members), self._warning(family, sources)))
@@ -193,7 +191,7 @@ class CompartmentSheets:
     def _is_ready(self, others: Iterable[int] | None = None) -> bool:
         """Whether the surfaces that this one needs, or some others, are finished."""
         rock = self.entry.rock
-        if not rock.surfaces[self.number].interpolated:
+        if not rock.is_interpolated(rock.surfaces[self.number]):
             return True
         needed = needed_surfaces(rock, self.number) if others is None else others
         return all(self.entry.divided().sheets[0][other] is not None for other in needed)
@@ -274,19 +272,6 @@ def make_borrowed(
                 each.tell(throws)
                 finish(each)
         unfinished = [each for each in unfinished if each.waiting]
-
-
-@contextmanager
-def named(rock: Rock, number: int) -> Iterator[None]:
-    """Within it errors name a surface of a rock mass."""
-    try:
-        yield
-    except InputRefused as error:
-        if error.item is not None and error.item.startswith("rock '"):
-            raise
-        surface = rock.surfaces[number]
-        file, line = surface.shape_source()
-        raise error.within(surface_item(rock, surface), file=file, line=line) from error
 
 
 def _moved(shift: Shift) -> str:

@@ -251,8 +251,8 @@ def _fitted(data: _Data, numbers: list[int], faults: int) -> tuple[np.ndarray, n
 def _takes_part(entry: RockInput, number: int) -> bool:
     """Whether a surface is one of few points that faults part which do not die out, and nothing else says
     what it is."""
-    surface, faults = entry.rock.surfaces[number], entry.divided().faults
-    if not surface.interpolated or not 0 < len(surface.point_array()) <= _MOST:
+    surface, data, faults = entry.rock.surfaces[number], entry.data[number], entry.divided().faults
+    if not entry.rock.is_interpolated(surface) or not 0 < len(data.points) <= _MOST:
         return False
     method, settings = surface.method_options()
     dies_out = np.array(faults.dies_out, bool)[faults.active(number)]
@@ -262,8 +262,8 @@ def _takes_part(entry: RockInput, number: int) -> bool:
         and all(settings.get(option) is None for option in ("dip", *BOUNDS))
         and surface.tie
         and surface.minimum_thickness is None
-        and surface.known_dips() is None
-        and not surface.has_bounds
+        and data.dips is None
+        and not len(data.bounds)
         and not needed_surfaces(entry.rock, number)
         and not dies_out.any()
     )
@@ -272,8 +272,8 @@ def _takes_part(entry: RockInput, number: int) -> bool:
 def _parted(work: Work, entry: RockInput, number: int) -> tuple[np.ndarray, np.ndarray] | None:
     """The points (P, 3) of a surface whose sides are known by their places, and the keys (P, F) of their
     families; None where these are one."""
-    points = entry.rock.surfaces[number].point_array()
-    structure, contacts = entry.divided(), entry.rock.surfaces[number].contact_array()
+    points, contacts = entry.data[number].points, entry.data[number].contacts
+    structure = entry.divided()
     sides, moved, _ = point_sides(work, points, entry, number)
     rows = np.where(structure.faults.active(number), sides, 0)
     kept = ~(contradicting(points, rows, contacts) | moved.any(axis=1))

@@ -24,6 +24,7 @@ from ...settings.methods import METHODS
 from ...settings.variogram import lacks_deviation
 from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
+from ...surfaces.observed.surface_data import SurfaceData
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import (
@@ -57,8 +58,8 @@ class InterpolatedSurface:
 
     def __init__(self, work: Work, entry: RockInput, number: int):
         self.work, self.entry, self.number = work, entry, number
-        self.surface = entry.rock.surfaces[number]
-        self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
+        self.surface, self.known = entry.rock.surfaces[number], entry.data[number]
+        self.points = self.known.points
         structure = entry.divided()
         self.placed = point_sides(work, self.points, entry, number)
         structure.points[number] = self.placed.sides
@@ -71,10 +72,9 @@ class InterpolatedSurface:
         self._warn_of_no_throws()
         self.counts = self._that_count()
         self.keys = keys_of(entry.divided(), number, self.placed.sides)
-        self.dips, self.dip_sides = sided_dips(work, self.surface, entry)
-        self.bounds = self.surface.bounds
-        if self.bounds is not None:
-            self.bound_sides = sides_of(work, self.bounds.places, structure.faults)
+        self.dips, self.dip_sides = sided_dips(work, self.known, entry)
+        self.bounds = self.known.bounds
+        self.bound_sides = sides_of(work, self.bounds.places, structure.faults)
         # of a sheet its interpolation, and the diagnostics of its vertices
         self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
         self.most: tuple[int, Interpolation | None] = (-1, None)
@@ -83,7 +83,7 @@ class InterpolatedSurface:
         """Leaves out points that others at their place in plan contradict, with a warning."""
         faults = self.entry.divided().faults
         rows = np.where(faults.active(self.number), self.placed.sides, 0)
-        left_out = contradicting(self.points, rows, self.surface.contact_array())
+        left_out = contradicting(self.points, rows, self.known.contacts)
         if not left_out.any():
             return
         first = self.points[np.flatnonzero(left_out)[0]]
@@ -168,24 +168,22 @@ class InterpolatedSurface:
 
     def _beside_points(self, family: Family) -> list[np.ndarray]:
         """(P, 3) the points in its compartments of each of the sheets that it is interpolated with."""
-        surfaces = self.entry.rock.surfaces
         others = [each for each in sheets_beside(self.entry.rock, self.number) if each != self.number]
-        return [self._with_own_points(family, surfaces[each]).point_array() for each in others]
+        return [self._with_own_points(family, each).points for each in others]
 
     def _own_dips(self, family: Family) -> Dips | None:
         return None if self.dips is None else self.dips.some(self._within(family).has(self.dip_sides))
 
-    def _constrained(self, surface: Surface, family: Family, beside: Sequence[tuple] = ()) -> Surface:
-        """The surface with its dips and bounds in a family's compartments. beside: faults that die out there,
+    def _constrained(self, family: Family, beside: Sequence[tuple] = ()) -> SurfaceData:
+        """Its data with the dips and bounds in a family's compartments. beside: faults that die out there,
         the side of each that is asked for, and its trace: what lies beside that on the other side does not
         count."""
-        dips, bounds = self.dips, surface.bounds
+        dips = self.dips
         if dips is not None:
             dips = dips.some(self._that_constrain(family, dips.positions, self.dip_sides, beside))
-        if self.bounds is not None:
-            plan = np.ascontiguousarray(self.bounds.places[:, :2])
-            bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
-        return replace(surface, dips=dips, rock_dips=None, bounds=bounds)
+        plan = np.ascontiguousarray(self.bounds.places[:, :2])
+        bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
+        return replace(self.known, dips=dips, bounds=bounds)
 
     def _that_constrain(
         self, family: Family, plan: np.ndarray, sides: np.ndarray, beside: Sequence[tuple]
@@ -255,8 +253,8 @@ class InterpolatedSurface:
             return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
         trend = None if trends is None else trends[first]
-        constrained = self._constrained(self.surface, family)
-        common = self._interpolated(family, first, own, constrained, trend)
+        constrained = self._constrained(family)
+        common = self._interpolated(family, first, own, self.surface, constrained, trend)
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.divided().faults.shapes[fault] for fault in family.dying]
@@ -278,9 +276,9 @@ class InterpolatedSurface:
             for side in (-1, 1)
         }
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
-        settled = _settled(constrained, self.made[common][0])
+        settled = _settled(self.surface, self.made[common][0])
         shows_none = bool(lacks_deviation(self.made[common][0].warnings))
-        counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
+        counts_by_node = trends is None and self._counts_by_node(settled, constrained) and known.all()
         whole_of: dict[tuple[int, ...], np.ndarray] = {}
 
         def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
@@ -301,20 +299,21 @@ class InterpolatedSurface:
                 for number, side in zip(met, sides, strict=True)
                 if side
             ]
-            surface = self._constrained(settled, family, beside)
+            data = self._constrained(family, beside)
             lips = [
                 Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
                 for number, side in zip(met, sides, strict=True)
                 if side
             ]
             if counts_by_node:
-                return self._values_at(family, self._points(family, visible, lips), surface, nodes[some])
+                own_data = data.through(self._points(family, visible, lips))
+                return self._values_at(family, settled, own_data, nodes[some])
             if sides not in whole_of:
                 whole = list(first)
                 for number, side in zip(met, sides, strict=True):
                     whole[number] = side
                 trend = None if trends is None else trends[of_members[sides]]
-                sheet = self._interpolated(family, tuple(whole), visible, surface, trend, lips)
+                sheet = self._interpolated(family, tuple(whole), visible, settled, data, trend, lips)
                 whole_of[sides] = self._values_on_nodes(sheet)
             return whole_of[sides][some]
 
@@ -333,11 +332,13 @@ class InterpolatedSurface:
         """Sheets without points, within the bounds of the surface."""
         settings = self.surface.method_options()[1]
         is_bounded = any(settings.get(option) is not None for option in BOUNDS)
-        surface = self._constrained(self.surface, family)
-        if surface.minimum_thickness is None and not is_bounded and not surface.has_bounds:
+        surface, data = self.surface, self._constrained(family)
+        if surface.minimum_thickness is None and not is_bounded and not len(data.bounds):
             return trends
         none = np.zeros(len(self.points), bool)
-        return shared({s: self._interpolated(family, s, none, surface, trend) for s, trend in trends.items()})
+        return shared(
+            {s: self._interpolated(family, s, none, surface, data, trend) for s, trend in trends.items()}
+        )
 
     def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
@@ -379,15 +380,16 @@ class InterpolatedSurface:
         family: Family,
         sides: tuple[int, ...],
         own: np.ndarray,
-        surface: Surface | None = None,
+        surface: Surface,
+        data: SurfaceData,
         trend: Sheet | None = None,
         lips: Sequence[Lip] = (),
     ) -> Sheet:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. trend: a sheet that was made here, on which the points are interpolated. lips: at
-        faults that die out here, of these points."""
-        points = self._points(family, own, None if trend is not None else lips)
-        one = self._from_points(family, sides, points, surface or self.surface, self.entry.region, trend)
+        other options; data: in the compartments. trend: a sheet that was made here, on which the points are
+        interpolated. lips: at faults that die out here, of these points."""
+        data = data.through(self._points(family, own, None if trend is not None else lips))
+        one = self._from_points(family, sides, surface, data, self.entry.region, trend)
         sheet = one.surface(self.number)
         result = one.interpolation(self.number)
         self.made[sheet] = result, one.attributes[self.number]
@@ -419,20 +421,19 @@ class InterpolatedSurface:
         self,
         family: Family,
         sides: tuple[int, ...],
-        points: np.ndarray,
         surface: Surface,
+        data: SurfaceData,
         region: Sheet | None,
         trend: Sheet | None = None,
     ) -> RockInput:
-        """The RockInput with the surface from points (P, 3) on the mesh of a region, and warnings."""
+        """The RockInput with the surface from its data on the mesh of a region, and warnings."""
         entry = self.entry
-        surfaces = list(entry.rock.surfaces)
-        surfaces[self.number] = replace(surface, points=points, tie=surface.tie and not self.ties_at_end)
-        if self.surface.minimum_thickness is not None:
-            surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
-        for other in self._that_say_more():
-            if other != self.number:
-                surfaces[other] = self._with_own_points(family, entry.rock.surfaces[other])
+        surfaces, every = list(entry.rock.surfaces), list(entry.data)
+        surfaces[self.number] = replace(surface, tie=surface.tie and not self.ties_at_end)
+        every[self.number] = data
+        below = [self.number - 1] if self.surface.minimum_thickness is not None else []
+        for other in {*below, *self._that_say_more()} - {self.number}:
+            every[other] = self._with_own_points(family, other)
         shapes: list[Sheet | None] = [None] * len(surfaces)
         for other in needed_surfaces(entry.rock, self.number):
             shapes[other] = self._as_seen(family, sides, other)
@@ -445,6 +446,7 @@ class InterpolatedSurface:
             warnings=[],
             attributes={},
             structure=None,
+            data=every,
         )
         give_heights(self.work, one, self.number, None if trend is None else self._trend(trend))
         return one
@@ -453,20 +455,19 @@ class InterpolatedSurface:
         """The surfaces whose data count for it, itself included."""
         rock = self.entry.rock
         beside = sheets_beside(rock, self.number)
-        if beside or (self.dips is None and self.bounds is None):
-            return beside
-        return conformable_run(rock, self.number)
+        return beside or conformable_run(rock, self.entry.data, self.number)
 
-    def _counts_by_node(self, surface: Surface) -> bool:
+    def _counts_by_node(self, surface: Surface, data: SurfaceData) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
-        return self.entry.draws is None and counts_by_node(self.entry.rock, self.number, surface)
+        return self.entry.draws is None and counts_by_node(self.entry.rock, self.number, surface, data)
 
     def _values_at(
-        self, family: Family, points: np.ndarray, surface: Surface, nodes: np.ndarray
+        self, family: Family, surface: Surface, data: SurfaceData, nodes: np.ndarray
     ) -> np.ndarray:
-        """As _values_on_nodes, at some nodes alone, from points (P, 3), of a surface that counts by node."""
+        """As _values_on_nodes, at some nodes alone, of a surface that counts by node."""
         region = Sheet(np.ascontiguousarray(nodes), np.empty((0, 3), np.int32))
-        one = self._from_points(family, (), points, surface, region)
+        one = self._from_points(family, (), surface, data, region)
+        points = data.points
         result = one.interpolation(self.number)
         method, z = result.method, result.z
         for text in (*few_points(points, method, z), *runs_away(points, z, method)):
@@ -497,17 +498,16 @@ class InterpolatedSurface:
         lips, options = [*parting, *lips], self.surface.method_options()
         return beyond_lips(self.work, points, lips, self.placed.reach, *options)
 
-    def _with_own_points(self, family: Family, surface: Surface) -> Surface:
-        """Another surface with only its points and dips in the family's compartments."""
-        if surface.points is None:
-            return surface
-        dips, sides = sided_dips(self.work, surface, self.entry)
+    def _with_own_points(self, family: Family, other: int) -> SurfaceData:
+        """The data of another surface with only its points and dips in the family's compartments."""
+        data = self.entry.data[other]
+        if not self.entry.rock.surfaces[other].has_points:
+            return data
+        dips, sides = sided_dips(self.work, data, self.entry)
         if dips is not None:
             dips = dips.some(self._within(family).has(sides))
-        surface = replace(surface, dips=dips, rock_dips=None)
-        points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-        placed = point_sides(self.work, points, self.entry, self.number)
-        return replace(surface, points=points[self._within(family).has(placed.sides)])
+        placed = point_sides(self.work, data.points, self.entry, self.number)
+        return replace(data, dips=dips).some(self._within(family).has(placed.sides))
 
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Sheet:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of
@@ -553,9 +553,8 @@ class InterpolatedSurface:
             settings.get(option) is None for option in BOUNDS
         )
         dies_out = faults.active(self.number) & np.array(faults.dies_out, bool)
-        has_data = self.bounds is not None or len(self.surface.tied_points) > 0
         is_divided = self.steps is not None or bool(dies_out.any())
-        return self.surface.ties and is_free and has_data and is_divided
+        return self.surface.tie and is_free and is_divided
 
     def tied(self, sheets: list[Sheet]) -> tuple[list[Sheet], list[BuildWarning]]:
         """Its different sheets, tied to the data in their compartments; the same objects where they were. And
@@ -575,10 +574,13 @@ class InterpolatedSurface:
         of_points = sheet_of(self.placed.sides)
         certain = self.counts & ~self.placed.moved.any(axis=1)
         # As in _certain: what lies on the other side alone does not show a sheet.
-        is_tied = self.counts & np.isin(of_points, of_points[certain]) & (len(self.surface.tied_points) > 0)
+        is_tied = (
+            self.counts
+            & np.isin(of_points, of_points[certain])
+            & (len(self.known.tied_points(self.surface)) > 0)
+        )
         of_points = np.where(is_tied, of_points, -1)
-        of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
-        data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
+        data = data_of_sheets(self.points, self.bounds, of_points, sheet_of(self.bound_sides), len(sheets))
         sided = sides, weights_of_sheets(structure, mesh, z, sides)
         tied, texts = tied_sheets(self.work, mesh, z, sided, data)
         name, rock = self.surface.name, self.entry.rock.name

@@ -18,8 +18,8 @@ from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import SortedPoints, first_at_each_place
-from ...project.project import Surface
 from ...settings.dips import Dips
+from ...surfaces.observed.surface_data import SurfaceData
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import FaultShape, sides_of
 
@@ -63,7 +63,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
     reach, away[:, active], _ = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
-    near &= ~are_among(points, entry.rock.surfaces[number].contact_array())[:, None]
+    near &= ~are_among(points, entry.data[number].contacts)[:, None]
     agreement = _Agreement(
         work=work,
         points=points,
@@ -283,14 +283,14 @@ def at_height(dips: Dips, height: float | np.ndarray) -> np.ndarray:
     return np.column_stack([dips.positions, np.where(np.isfinite(dips.heights), dips.heights, height)])
 
 
-def sided_dips(work: Work, surface: Surface, entry: RockInput) -> tuple[Dips | None, np.ndarray]:
+def sided_dips(work: Work, data: SurfaceData, entry: RockInput) -> tuple[Dips | None, np.ndarray]:
     """The dips of a surface and, for each, its sides (D, F) of the faults. A dip without a height has that of
     the nearest point of the surface."""
-    dips, faults = surface.known_dips(), entry.divided().faults
+    dips, faults = data.dips, entry.divided().faults
     if dips is None or not len(dips):
         return None, np.zeros((0, len(faults)), np.int8)
     height = np.zeros(len(dips))
-    points = surface.point_array()
+    points = data.points
     if len(points):
         nearest = (1, 0, 0.0)
         positions = np.ascontiguousarray(dips.positions)

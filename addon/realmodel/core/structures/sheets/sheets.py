@@ -20,7 +20,7 @@ from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import sides_of
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
-from .compartment_sheets import CompartmentSheets, make_borrowed, named
+from .compartment_sheets import CompartmentSheets, make_borrowed
 from .fitted_throws import fit_throws
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
@@ -56,8 +56,8 @@ def make_sheets(
     steps = np.linspace(0.0, 1.0, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
     def begin(part: Work, number: int) -> CompartmentSheets:
-        kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
-        with named(rock, number):
+        kind = InterpolatedSurface if rock.is_interpolated(rock.surfaces[number]) else ReadyMesh
+        with entry.named(number):
             sheets = CompartmentSheets(entry, number, kind(part, entry, number))
         sheets.make_own()
         if not sheets.waiting:
@@ -69,7 +69,7 @@ def make_sheets(
             return begin(part, number)
 
     def finish(sheets: CompartmentSheets) -> None:
-        with named(rock, sheets.number):
+        with entry.named(sheets.number):
             sheets.finish()
         _keep(entry, sheets.number, keep)
 
@@ -139,18 +139,17 @@ def _keep(entry: RockInput, number: int, keep: StoreArray) -> None:
 def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray) -> None:
     """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
     compartment."""
-    structure, surfaces = entry.divided(), entry.rock.surfaces
-    points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
+    structure, data = entry.divided(), entry.data[number]
+    points = data.points
     sides = structure.points[number]
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
-        its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
         one = replace(
             entry,
-            rock=replace(entry.rock, surfaces=its),
             surfaces=structure.sheets[compartment],
             warnings=[],
             structure=None,
+            data=[*entry.data[:number], data.some(own), *entry.data[number + 1 :]],
         )
 
         def holds(places: np.ndarray, row: np.ndarray = row) -> np.ndarray:

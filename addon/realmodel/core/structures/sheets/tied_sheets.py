@@ -11,7 +11,7 @@ import numpy as np
 from ...base.sheet import Sheet
 from ...base.triangles import median_edge
 from ...base.work import Work
-from ...heights.ties import TieData, correction_of_sheets, missed_warnings, tie_data, tied_heights
+from ...heights.ties import TieData, correction, missed_warnings, tie_data, tied_heights
 from ...readers.tables.observations import Bounds
 from ...surfaces.rock_structure import RockStructure
 from .tips import share_of_sides
@@ -46,14 +46,11 @@ def weights_of_sheets(structure: RockStructure, mesh: Sheet, z: np.ndarray, side
 
 
 def data_of_sheets(
-    points: np.ndarray, bounds: Bounds | None, of_points: np.ndarray, of_bounds: np.ndarray, count: int
+    points: np.ndarray, bounds: Bounds, of_points: np.ndarray, of_bounds: np.ndarray, count: int
 ) -> tuple[TieData, np.ndarray]:
     """What points (P, 3) and bounds ask of so many sheets together, and (C,) int32, of which. of_points,
     of_bounds: to which each counts; -1: none."""
-    each = [
-        tie_data(points[of_points == sheet], None if bounds is None else bounds.some(of_bounds == sheet))
-        for sheet in range(count)
-    ]
+    each = [tie_data(points[of_points == sheet], bounds.some(of_bounds == sheet)) for sheet in range(count)]
     first = [np.arange(len(own.places)) < own.contacts for own in each]
     order = np.argsort(~np.concatenate(first), kind="stable")
     sheets = np.repeat(np.arange(count, dtype=np.int32), [len(own.places) for own in each])
@@ -77,7 +74,7 @@ def tied_sheets(
     nodes, triangles = mesh
     sides, weights = sided
     asked, of_sheet = data
-    terms, after = correction_of_sheets(
+    terms, after = correction(
         work, nodes, triangles, (np.ascontiguousarray(z), sides, weights), asked, of_sheet
     )
     rows = list(z)

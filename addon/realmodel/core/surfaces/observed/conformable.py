@@ -21,6 +21,7 @@ from ...project.project import Rock, Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS, checked_options
 from ...settings.rules import RULES
+from .surface_data import SurfaceData
 
 _MOST_ALIKE = 10_000  # points of a surface: more are a survey, which says of itself how its heights vary
 # contacts of a surface: fewer do not show that it follows another one; more show its own shape, and take long
@@ -47,57 +48,63 @@ class _Part:
     error: float
 
 
-def conformable_run(rock: Rock, number: int) -> list[int]:
+def conformable_run(rock: Rock, data: Sequence[SurfaceData], number: int) -> list[int]:
     """The surfaces that are interpolated with a variogram in the run of consecutive ones that their rules
     call conformable, oldest first, with one of them; none where it has no other, or is in a series. What
     protects itself, and what cuts older rock, has a shape of its own."""
     surfaces = rock.surfaces
 
+    def is_kriged(other: int) -> bool:
+        return _is_kriged(surfaces[other], data[other])
+
     def belongs(other: int) -> bool:
         rule = RULES[surfaces[other].rule]
         return not rule.protects and (other == 0 or not rule.cuts)
 
-    if not belongs(number) or not _is_kriged(surfaces[number]):
+    if not belongs(number) or not is_kriged(number):
         return []
     first, last = number, number
     while first > 0 and belongs(first - 1):
         first -= 1
     while last + 1 < len(surfaces) and belongs(last + 1):
         last += 1
-    run = [other for other in range(first, last + 1) if _is_kriged(surfaces[other])]
+    run = [other for other in range(first, last + 1) if is_kriged(other)]
     return run if len(run) > 1 else []
 
 
-def _is_kriged(surface: Surface) -> bool:
+def _is_kriged(surface: Surface, data: SurfaceData) -> bool:
     """Whether a surface that is read is interpolated from points with a variogram, by itself."""
-    if surface.series is not None or not surface.interpolated:
+    if surface.series is not None or not surface.has_points:
         return False
-    if not 0 < len(surface.point_array()) <= _MOST_ALIKE:
+    if not 0 < len(data.points) <= _MOST_ALIKE:
         return False
     return METHODS[surface.method_options()[0]].may_be_kriged
 
 
-def alike_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Alike | None:
+def alike_of(rock: Rock, data: Sequence[SurfaceData], number: int, known: dict[bytes, Any]) -> Alike | None:
     """The surfaces whose data say how heights of one vary; None where there are no others. known: as of
     Alike."""
-    run = conformable_run(rock, number)
+    run = conformable_run(rock, data, number)
     if not run:
         return None
-    surfaces = [rock.surfaces[each] for each in run]
-    points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
-    dips = [each.known_dips() for each in surfaces]
-    return Alike(run.index(number), points, dips, known, mean_error(surfaces))
+    beside = [data[each] for each in run]
+    points = [np.ascontiguousarray(each.points) for each in beside]
+    return Alike(run.index(number), points, [each.dips for each in beside], known, mean_error(beside))
 
 
-def mean_error(surfaces: Sequence[Surface]) -> float:
+def mean_error(surfaces: Sequence[SurfaceData]) -> float:
     """The mean variance of the errors of the heights of all points of surfaces that are read."""
-    counts = [len(each.point_array()) for each in surfaces]
+    counts = [len(each.points) for each in surfaces]
     squares = sum(count * each.error for count, each in zip(counts, surfaces, strict=True))
     return squares / max(sum(counts), 1)
 
 
 def proposals(
-    work: Work, rock: Rock, numbers: Sequence[int], sides: Mapping[int, np.ndarray] | None = None
+    work: Work,
+    rock: Rock,
+    data: Sequence[SurfaceData],
+    numbers: Sequence[int],
+    sides: Mapping[int, np.ndarray] | None = None,
 ) -> list[BuildWarning]:
     """A warning for each run of consecutive surfaces among those of a rock mass with these numbers whose
     contacts, left out one by one, are estimated better with those of the next surface: they are conformable,
@@ -106,12 +113,12 @@ def proposals(
     runs: list[list[int]] = []
     errors: dict[tuple[int, int], _Compared] = {}
     fits: dict[bytes, Any] = {}
-    known = [number for number in numbers if _is_known(rock, number)]
+    known = [number for number in numbers if _is_known(rock, data, number)]
     for one, other in pairwise(known):
         if other != one + 1:
             continue
         pair = (one, other)
-        found = _compared(work, _parts(rock, fits, pair, sides))
+        found = _compared(work, _parts(rock, data, fits, pair, sides))
         if found is None or not found.together < _BETTER**2 * found.alone:
             continue
         errors[one, other] = found
@@ -122,21 +129,25 @@ def proposals(
     return [_proposal(rock, run, [errors[pair] for pair in pairwise(run)]) for run in runs]
 
 
-def _is_known(rock: Rock, number: int) -> bool:
+def _is_known(rock: Rock, data: Sequence[SurfaceData], number: int) -> bool:
     surface = rock.surfaces[number]
-    count = len(surface.point_array()) if surface.interpolated else 0
+    count = len(data[number].points) if surface.has_points else 0
     return surface.series is None and _LEAST <= count <= _MOST
 
 
 def _parts(
-    rock: Rock, known: dict[bytes, Any], pair: tuple[int, int], sides: Mapping[int, np.ndarray] | None
+    rock: Rock,
+    data: Sequence[SurfaceData],
+    known: dict[bytes, Any],
+    pair: tuple[int, int],
+    sides: Mapping[int, np.ndarray] | None,
 ) -> list[_Part]:
     """The data of two surfaces, by the parts of space where both have enough points. known: as of Alike."""
-    surfaces = [rock.surfaces[number] for number in pair]
-    points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
+    surfaces = [data[number] for number in pair]
+    points = [np.ascontiguousarray(each.points) for each in surfaces]
     if sides is None:
-        alike = [alike_of(rock, number, known) for number in pair]
-        return [_Part(points, [each.known_dips() for each in surfaces], alike, mean_error(surfaces))]
+        alike = [alike_of(rock, data, number, known) for number in pair]
+        return [_Part(points, [each.dips for each in surfaces], alike, mean_error(surfaces))]
     of_points = [sides[number] for number in pair]
     found = []
     for key in np.unique(of_points[0], axis=0):

@@ -4,6 +4,7 @@ may have any heights elsewhere. The fewest are left out (bounded.consistent), an
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,57 +12,54 @@ import numpy as np
 from ...heights.bounded import consistent
 from ...heights.mis_ties import without_mis_ties
 from ...project.project import Rock, Surface
-from ...readers.tables.observations import Bounds, LeftOut, Observations, source_text
+from ...readers.tables.observations import Bounds, LeftOut, Origin
+from .surface_data import SurfaceData
 
 _LISTED = 4  # others that a text names; all are in `contradicts`
 
 
-def without_contradictions(rock: Rock, observations: Observations) -> tuple[Rock, list[LeftOut]]:
-    """A rock mass without faults, without bounds that contradict; and these bounds. Those of a surface that
-    goes through places on its bounds, as it has no points, stay as they are."""
-    surfaces, left_out = list(rock.surfaces), []
-    for number, surface in enumerate(surfaces):
-        bounds = surface.bounds
-        if not surface.interpolated or bounds is None or not len(bounds) or not len(surface.point_array()):
+def without_contradictions(
+    rock: Rock, data: Sequence[SurfaceData]
+) -> tuple[list[SurfaceData], list[LeftOut]]:
+    """The data of the surfaces of a rock mass without faults, without bounds that contradict; and these
+    bounds. Those of a surface that goes through places on its bounds, as it has no points, stay as they
+    are."""
+    found, left_out = list(data), list[LeftOut]()
+    for number, (surface, own) in enumerate(zip(rock.surfaces, data, strict=True)):
+        bounds = own.bounds
+        if not (len(bounds) and len(own.points)) or own.is_along_bounds or not rock.is_interpolated(surface):
             continue
-        if surface.is_along_bounds:
-            continue
-        points, _ = without_mis_ties(surface.point_array())
+        points, _ = without_mis_ties(own.points)
         wrong = consistent(np.ascontiguousarray(points), bounds).left_out
         if not len(wrong):
             continue
-        left_out += [_listed(surface, points, bounds, wrong, row, observations) for row in wrong.tolist()]
+        left_out += [_listed(surface, own, bounds, wrong, row) for row in wrong.tolist()]
         kept = np.ones(len(bounds), bool)
         kept[wrong] = False
-        surfaces[number] = replace(surface, bounds=bounds.some(kept))
-    return replace(rock, surfaces=surfaces), left_out
+        found[number] = replace(own, bounds=bounds.some(kept))
+    return found, left_out
 
 
-def _listed(
-    surface: Surface, points: np.ndarray, bounds: Bounds, wrong: np.ndarray, row: int, given: Observations
-) -> LeftOut:
+def _listed(surface: Surface, data: SurfaceData, bounds: Bounds, wrong: np.ndarray, row: int) -> LeftOut:
     """A bound that is left out, with the points and the bounds that are not which it contradicts."""
     place, is_lower = bounds.places[row], bool(bounds.is_lower[row])
     sign = 1.0 if is_lower else -1.0
     others = []
-    for point in points[(points[:, :2] == place[:2]).all(axis=1)]:
-        if sign * (place[2] - point[2]) > 0:
-            same = np.flatnonzero((given.places == point).all(axis=1))
-            at = given.source(int(same[0])) if len(same) else source_text("", np.nan, point)
-            others.append(f"{at}: '{surface.name}' lies at {point[2]:.9g}")
+    for number in np.flatnonzero((data.points[:, :2] == place[:2]).all(axis=1)).tolist():
+        height = float(data.points[number, 2])
+        if sign * (place[2] - height) > 0:
+            others.append(f"{data.source_text(number)}: '{surface.name}' lies at {height:.9g}")
     over = (bounds.places[:, :2] == place[:2]).all(axis=1) & (bounds.is_lower != is_lower)
     over &= sign * (place[2] - bounds.places[:, 2]) > 0
     over[wrong] = False
     others += [_said(surface, bounds, other) for other in np.flatnonzero(over).tolist()]
     named = "; ".join(others[:_LISTED])
     text = f"{_said(surface, bounds, row)}, which contradicts {named}"
-    depth = float(bounds.depths[row])
     return LeftOut(
         "contradiction",
         text,
         "",
-        str(bounds.holes[row]),
-        None if np.isnan(depth) else depth,
+        *Origin.of(bounds.holes[row], bounds.depths[row])[:2],
         tuple(place.tolist()),
         tuple(others),
     )

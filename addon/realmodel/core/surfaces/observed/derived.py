@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...project.project import Rock
-from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, along_bounds
+from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, Origin, along_bounds
 from .columns import in_wrong_order
 from .kept_contacts import kept_bounds
 from .level_sets import FieldStatements
 from .succession import Succession
+from .surface_data import Sources, SurfaceData
 
 
 @dataclass(frozen=True)
@@ -42,11 +43,13 @@ class Situation:
 
 @dataclass
 class Derived:
-    """What observations say of each surface of a rock mass. contacts: (C, 3) places on it; errors: (C,) how
-    far the height of each may be off. bounds: heights that it lies at or above, or at or below, at other
-    places. used: (N,) bool, the observations that these follow from; left_out: those that are not used."""
+    """What observations say of each surface of a rock mass. contacts: (C, 3) places on it; sources: of these;
+    errors: (C,) how far the height of each may be off. bounds: heights that it lies at or above, or at or
+    below, at other places. used: (N,) bool, the observations that these follow from; left_out: those that are
+    not used."""
 
     contacts: list[np.ndarray]
+    sources: list[Sources]
     errors: list[np.ndarray]
     bounds: list[Bounds]
     used: np.ndarray
@@ -101,18 +104,16 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     own = blocks[rows]
     ordered = np.where(own < len(rock.surfaces), own, -1)
     _, parts = _numbered(_sides(situation, len(observations))[rows])
-    is_sheet = np.array([not surface.is_level_set for surface in rock.surfaces], bool)
+    is_sheet = np.array([not rock.is_level_set(surface) for surface in rock.surfaces], bool)
     may = Succession([surface.rule for surface in rock.surfaces]).may_lie_above(is_sheet)
     wrong = rows[in_wrong_order(observations.some(rows), ordered, parts, may)]
     is_wrong = np.isin(np.arange(len(observations)), wrong)
     left_out.add(is_wrong, "wrong_order", "an older block lies above a younger one here, or a block twice")
     used &= ~is_wrong
-    contacts, errors, bounds, not_adjacent = _of_used(
-        rock, observations, situation, blocks, np.flatnonzero(used)
-    )
+    found, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
     text = "it meets a block here that is not next to it in its series: no surface is known to be here"
     left_out.add(np.isin(np.arange(len(observations)), not_adjacent), "not_adjacent", text)
-    return Derived(contacts, errors, bounds, used, left_out.entries)
+    return Derived(*found, used, left_out.entries)
 
 
 class _Listed:
@@ -130,13 +131,11 @@ class _Listed:
                 before == row - 1 and given.holes[row] != "" and given.holes[row] == given.holes[row - 1]
             )
             if not (follows and given.blocks[row] == given.blocks[row - 1]):
-                depth = float(given.depths[row])
                 entry = LeftOut(
                     kind,
                     f"{given.source(row)}, '{given.blocks[row]}': {text}",
                     str(given.blocks[row]),
-                    str(given.holes[row]),
-                    None if np.isnan(depth) else depth,
+                    *Origin.of(given.holes[row], given.depths[row])[:2],
                     tuple(given.places[row].tolist()),
                 )
                 self.entries.append(entry)
@@ -194,9 +193,9 @@ def _of_used(
     situation: Situation,
     blocks: np.ndarray,
     used: np.ndarray,
-) -> tuple[list[np.ndarray], list[np.ndarray], list[Bounds], np.ndarray]:
-    """The contacts of each surface, their errors, and its bounds from the observations that are used, their
-    rows; and the rows at places where blocks meet that no surface of their series divides."""
+) -> tuple[tuple[list[np.ndarray], list[Sources], list[np.ndarray], list[Bounds]], np.ndarray]:
+    """The contacts of each surface, their sources and errors, and its bounds from the observations that are
+    used, their rows; and the rows at places where blocks meet that no surface of their series divides."""
     places, sides = observations.places[used] + 0.0, _sides(situation, len(observations))[used]
     above, below = _statements(rock, situation, blocks, used)
     first, place = _numbered(np.column_stack([places, sides]))
@@ -209,16 +208,16 @@ def _of_used(
     _, column = _numbered(np.column_stack([places[:, :2], sides]))
     seen_on, errors_of = observations.seen_on[used], observations.errors[used]
     fields = FieldStatements(rock, observations, used, (above, below), (place, first_rows))
-    contacts, errors, bounds = [], [], []
+    contacts, sources, errors, bounds = [], [], [], []
     for number, surface in enumerate(rock.surfaces):
-        if surface.is_level_set:
-            contacts.append(places[fields.contacts[number]])
-            errors.append(errors_of[fields.contacts[number]])
+        is_level_set = number in fields.contacts
+        on = fields.contacts[number] if is_level_set else np.sort(first_rows[meets[:, number]])
+        contacts.append(places[on])
+        sources.append(_sources_at(place, on, observations.holes[used], observations.depths[used]))
+        errors.append(errors_of[on])
+        if is_level_set:
             bounds.append(fields.bounds(number))
             continue
-        on = np.sort(first_rows[meets[:, number]])
-        contacts.append(places[on])
-        errors.append(errors_of[on])
         # bounds from both sides, not a contact: the points of a grid are only those of the grid
         is_on = seen_on == surface.name
         lower, upper = (
@@ -238,7 +237,20 @@ def _of_used(
                 observations.depths[rows],
             )
         )
-    return contacts, errors, bounds, used[fields.not_adjacent]
+    return (contacts, sources, errors, bounds), used[fields.not_adjacent]
+
+
+def _sources_at(place: np.ndarray, on: np.ndarray, holes: np.ndarray, depths: np.ndarray) -> Sources:
+    """The sources of contacts by their rows (C,): the holes at their places. place, holes, depths: (U,), of
+    all rows."""
+    number = np.full(len(place), -1)
+    number[place[on]] = np.arange(len(on))
+    found: Sources = {}
+    for row in np.flatnonzero((number[place] >= 0) & (holes != "")).tolist():
+        at, hole = int(number[place[row]]), str(holes[row])
+        if all(hole != each.hole for each in found.get(at, ())):
+            found[at] = (*found.get(at, ()), Origin.of(hole, depths[row]))
+    return found
 
 
 def _statements(
@@ -321,30 +333,29 @@ def _tightest(
     return np.sort(every[best[is_bound[best]]])
 
 
-def contacts_for(derived: Derived, number: int, is_alone: bool) -> np.ndarray:
-    """(C, 3) the contacts of a surface. is_alone: it has no other points, and needs some: where there is no
-    contact either, places on its bounds."""
-    contacts = derived.contacts[number]
-    return along_bounds(derived.bounds[number]) if is_alone and not len(contacts) else contacts
-
-
-def with_contacts(rock: Rock, derived: Derived) -> Rock:
-    """A rock mass whose points are arrays, with these contacts in the place of those that its surfaces had
-    from observations, and with the bounds and those by contacts of older surfaces."""
-    surfaces = list(rock.surfaces)
-    bounds = [Bounds.joined(each) for each in zip(derived.bounds, kept_bounds(rock), strict=True)]
-    derived = replace(derived, bounds=bounds)
-    for number, surface in enumerate(surfaces):
-        surfaces[number] = replace(surface, bounds=derived.bounds[number])
-        if not surface.has_points:
-            continue
-        own = surface.own_points()
-        is_alone = own is None and not surface.is_level_set and surface.needs_points
-        contacts = contacts_for(derived, number, is_alone)
-        if not np.array_equal(contacts, surface.contact_array()):
-            known = contacts if own is None else np.concatenate([own, contacts])
-            surfaces[number] = replace(surfaces[number], points=known, contacts=contacts)
-        count = len(surfaces[number].point_array())
-        error = float(np.sum(derived.errors[number] ** 2)) / count if count else 0.0
-        surfaces[number] = replace(surfaces[number], error=error)
-    return replace(rock, surfaces=surfaces)
+def with_contacts(rock: Rock, data: Sequence[SurfaceData], derived: Derived) -> list[SurfaceData]:
+    """The data of the surfaces of a rock mass with these contacts in the place of those that they had from
+    observations, and with the bounds and those by contacts of older surfaces. A surface that has no point, no
+    contact, and needs some, goes through places on its bounds."""
+    found = []
+    for number, (surface, own, kept) in enumerate(
+        zip(rock.surfaces, data, kept_bounds(rock, data), strict=True)
+    ):
+        bounds = Bounds.joined([derived.bounds[number], kept])
+        own = replace(own, bounds=bounds)
+        if surface.has_points:
+            contacts = derived.contacts[number]
+            is_alone = not (len(contacts) or own.contacts_from or rock.is_level_set(surface))
+            if is_along_bounds := is_alone and surface.needs_points and len(bounds) > 0:
+                contacts = along_bounds(bounds)
+            points = np.concatenate([own.own, contacts]) if len(contacts) else own.own
+            own = replace(
+                own,
+                points=points,
+                sources=own.picks
+                | {own.contacts_from + row: each for row, each in derived.sources[number].items()},
+                error=float(np.sum(derived.errors[number] ** 2)) / max(len(points), 1),
+                is_along_bounds=is_along_bounds,
+            )
+        found.append(own)
+    return found

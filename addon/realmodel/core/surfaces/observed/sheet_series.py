@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ...heights.companions import Companions
-from ...project.project import Rock, Surface
+from ...project.project import Rock
 from ...readers.tables.observations import Bounds
 from ...settings.series import SHEETS
 from .conformable import mean_error
+from .surface_data import SurfaceData
 
 
 def sheets_beside(rock: Rock, number: int) -> list[int]:
@@ -35,24 +37,26 @@ def with_least_thickness(rock: Rock) -> Rock:
     return replace(rock, surfaces=surfaces)
 
 
-def companions_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Companions | None:
+def companions_of(
+    rock: Rock, data: Sequence[SurfaceData], number: int, known: dict[bytes, Any]
+) -> Companions | None:
     """The sheets with which a surface is interpolated; None where none of the others has points. known: as
     of Alike."""
     beside = sheets_beside(rock, number)
-    points = [np.ascontiguousarray(rock.surfaces[each].point_array()) for each in beside]
-    if not any(len(own) for each, own in zip(beside, points, strict=True) if each != number):
+    if not any(len(data[each].points) for each in beside if each != number):
         return None
-    dips = [rock.surfaces[each].known_dips() for each in beside]
-    error = mean_error([rock.surfaces[each] for each in beside])
-    return Companions(beside.index(number), points, dips, known, error)
+    sheets = [data[each] for each in beside]
+    points = [np.ascontiguousarray(each.points) for each in sheets]
+    dips = [each.dips for each in sheets]
+    return Companions(beside.index(number), points, dips, known, mean_error(sheets))
 
 
-def bounds_beside(surface: Surface, companions: Companions | None) -> Bounds | None:
-    """The bounds of a surface and those by the contacts of the other sheets: it lies at or above the older
+def bounds_beside(bounds: Bounds, companions: Companions | None) -> Bounds:
+    """Bounds of a surface, and those by the contacts of the other sheets: it lies at or above the older
     ones, and at or below the younger ones."""
     if companions is None:
-        return surface.bounds
-    parts = [] if surface.bounds is None else [surface.bounds]
+        return bounds
+    parts = [bounds]
     for other, points in enumerate(companions.points):
         if other != companions.own and len(points):
             is_older = np.full(len(points), other < companions.own)
