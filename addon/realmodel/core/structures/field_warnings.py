@@ -47,12 +47,12 @@ def warn_of_direction(entry: RockInput, series: Series, compartments: list[str])
 
 def warn_of_distance(entry: RockInput, series: Series, places: np.ndarray) -> None:
     """Adds the warning that some of the data of a series, at places (N, 3), lie far from the region."""
-    found = farthest(entry.planar_mesh().vertices[:, :2], places)
-    if found is None:
+    outlier = farthest(entry.planar_mesh().vertices[:, :2], places)
+    if outlier is None:
         return
     text = (
-        f"{series.item}: data lie up to {found[1]:.3g} beyond the region, as at "
-        f"{place_text(places[found[0]])}: the lattice of the field reaches there, and an automatic "
+        f"{series.item}: data lie up to {outlier[1]:.3g} beyond the region, as at "
+        f"{place_text(places[outlier[0]])}: the lattice of the field reaches there, and an automatic "
         "resolution is coarser for it; check their coordinates"
     )
     entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name))
@@ -65,11 +65,11 @@ def leave_out(entry: RockInput, series: Series, data: SeriesData, field: SolvedF
     contradicted = field.contradicted or [[] for _ in field.bounds_missed]
     for row, against in zip(field.bounds_missed.tolist(), contradicted, strict=True):
         others.setdefault(data.bound_text(row), data.left_out(row, against))
-    found = list(others.values())
-    if found:
-        entry.left_out += found
-        text = f"{len(found)} {KINDS['contradiction']}"
-        _add(entry, series, text, "contradiction", [each.text for each in found])
+    left_out = list(others.values())
+    if left_out:
+        entry.left_out += left_out
+        text = f"{len(left_out)} {KINDS['contradiction']}"
+        _add(entry, series, text, "contradiction", [bound.text for bound in left_out])
 
 
 def warn_of_field(

@@ -77,16 +77,18 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
     """Gives rock masses whose other surfaces and compartments are made the fields of their series, and their
     surfaces the level sets of these. Raises InputRefused."""
     for entry in work.share_out(inputs):
-        given = [series for series in entry.rock.series if series.kind == FIELD]
-        waiting = [each for each in given if stage is None or entry.rock.members(each)[0] <= stage]
+        field_series = [series for series in entry.rock.series if series.kind == FIELD]
+        waiting = [
+            series for series in field_series if stage is None or entry.rock.members(series)[0] <= stage
+        ]
         entry.fields = []
         top = _top_of_fields(entry) if waiting else 0.0
         for series in work.share_out(waiting):
             with work.phase(0.0, 1.0, f"making the field of {series.name}"):
                 entry.fields.append(_field_of(work, entry, series, top))
     for entry in inputs:
-        for own in entry.fields:
-            _take_level_sets(work, entry, own)
+        for series_field in entry.fields:
+            _take_level_sets(work, entry, series_field)
 
 
 def with_levels(work: Work, entry: RockInput) -> RockStructure:
@@ -99,10 +101,12 @@ def with_levels(work: Work, entry: RockInput) -> RockStructure:
         return structure
     trial = replace(entry, warnings=[], left_out=[])  # what it says is said when the fields are made
     top = _top_of_fields(trial)
-    sheets = [list(own) for own in structure.sheets]
-    for own in (_field_of(work, trial, series, top) for series in waiting):
-        for field, compartments in own.distinct().items():
-            for number, sheet in zip(own.numbers, _single_heights(entry.planar_mesh(), field), strict=True):
+    sheets = [list(row) for row in structure.sheets]
+    for series_field in (_field_of(work, trial, series, top) for series in waiting):
+        for field, compartments in series_field.distinct().items():
+            for number, sheet in zip(
+                series_field.numbers, _single_heights(entry.planar_mesh(), field), strict=True
+            ):
                 for compartment in compartments:
                     sheets[compartment][number] = sheet
     return replace(structure, sheets=sheets)
@@ -120,32 +124,32 @@ def _single_heights(plan: Sheet, field: ScalarField) -> list[Sheet | None]:
         part = nodes[start : start + some]
         places = np.column_stack([np.repeat(part, len(z), axis=0), np.tile(z, len(part))])
         f = field.at(places).reshape(len(part), len(z))
-        for own, level_of in zip(heights, field.levels, strict=True):
+        for level_heights, level_of in zip(heights, field.levels, strict=True):
             over = f - level_of
             passes = (over[:, :-1] < 0) != (over[:, 1:] < 0)
             at = passes.argmax(axis=1)[:, None]
-            begin, end = (np.take_along_axis(over, each, axis=1)[:, 0] for each in (at, at + 1))
+            begin, end = (np.take_along_axis(over, index, axis=1)[:, 0] for index in (at, at + 1))
             step = np.where(end != begin, end - begin, 1.0)
-            found = z[at[:, 0]] - begin / step * (z[1] - z[0])
-            own[start : start + some] = np.where(passes.sum(axis=1) == 1, found, np.nan)
-    there = np.isfinite(heights)[:, plan.triangles].all(axis=2).any(axis=1)
+            crossings = z[at[:, 0]] - begin / step * (z[1] - z[0])
+            level_heights[start : start + some] = np.where(passes.sum(axis=1) == 1, crossings, np.nan)
+    have_triangles = np.isfinite(heights)[:, plan.triangles].all(axis=2).any(axis=1)
     return [
-        where_known(nodes, plan.triangles, own) if known else None
-        for own, known in zip(heights, there.tolist(), strict=True)
+        where_known(nodes, plan.triangles, level_heights) if has_triangle else None
+        for level_heights, has_triangle in zip(heights, have_triangles.tolist(), strict=True)
     ]
 
 
 def lattices(entry: RockInput) -> list[tuple[SeriesData, Lattice]]:
     """The data and the lattice of each series of a rock mass, which is read, whose surfaces are level sets;
     as far as they are known before other surfaces are made. Raises InputRefused."""
-    given = [series for series in entry.rock.series if series.kind == FIELD]
-    waiting = [series for series in given if entry.rock.members(series)]
+    field_series = [series for series in entry.rock.series if series.kind == FIELD]
+    waiting = [series for series in field_series if entry.rock.members(series)]
     top = _top(entry) if waiting else 0.0
-    found = []
+    pairs = []
     for series in waiting:
         data = SeriesData.of(entry, series, entry.rock.members(series))
-        found.append((data, _lattice(entry, series, data.positions(), top)))
-    return found
+        pairs.append((data, _lattice(entry, series, data.positions(), top)))
+    return pairs
 
 
 def spacing(entry: RockInput) -> float:
@@ -162,15 +166,15 @@ def _top_of_fields(entry: RockInput) -> float:
 
 def _top(entry: RockInput, beyond: float = _BEYOND) -> float:
     """An elevation above all sheets and contacts of a rock mass, as far as these are known."""
-    known = []
+    elevations = []
     for number, surface in enumerate(entry.rock.surfaces):
         if not entry.rock.is_level_set(surface):
-            shapes = [entry.surfaces[number], *(own[number] for own in entry.divided().sheets)]
-            known += [shape.vertices[:, 2] for shape in shapes if shape is not None]
-        known.append(entry.data[number].points[:, 2])
+            shapes = [entry.surfaces[number], *(sheets[number] for sheets in entry.divided().sheets)]
+            elevations += [shape.vertices[:, 2] for shape in shapes if shape is not None]
+        elevations.append(entry.data[number].points[:, 2])
     base = entry.rock.base_elevation
     assert base is not None  # check_series
-    highest = max((float(each.max()) for each in known if len(each)), default=base)
+    highest = max((float(z.max()) for z in elevations if len(z)), default=base)
     return highest + beyond * (highest - base) + 1e-3
 
 
@@ -187,30 +191,30 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     draws = entry.field_draws.get(series.name)
     for number, family in enumerate(work.share_out(shared)):
         within = Within(work, structure, numbers[-1], family)
-        names = [structure.names[each] for each in family.members]
+        names = [structure.names[compartment] for compartment in family.members]
         chosen = _chosen(entry, series, data, within.has(sides), names)
         _warn_of_sides(entry, series, data, sides, family)
-        own = data.some(chosen)
+        chosen_data = data.some(chosen)
         with naming(f"{entry.rock.item}, {series.item}"):
             slits = Slits.of(entry, family, within, lattice)
             where = slits.numbers(sides[chosen])
-            parts = [own.contacts, own.dips, own.bounds]
-            known = own.level_set_data(slits.data(work, parts, where), series.keeps_thickness)
+            parts = [chosen_data.contacts, chosen_data.dips, chosen_data.bounds]
+            level_data = chosen_data.level_set_data(slits.data(work, parts, where), series.keeps_thickness)
             if draws is None:
-                field = solve_field(lattice, known, work)
+                field = solve_field(lattice, level_data, work)
             else:
-                field = draws.field(lattice, known, work, number)
-        leave_out(entry, series, own, field)
+                field = draws.field(lattice, level_data, work, number)
+        leave_out(entry, series, chosen_data, field)
         warn_of_volumes(entry, series, numbers, field)
-        kept = own.kept_rows(field.bounds_missed)
-        solved = _Solved([field, *field.others], slits, where[kept], is_drawn=draws is not None)
-        made = _through_data(work, entry, series, own.some(kept), solved)
-        for side, each in enumerate(made):
-            points = each.critical_points
+        kept_rows = chosen_data.kept_rows(field.bounds_missed)
+        solved = _Solved([field, *field.others], slits, where[kept_rows], is_drawn=draws is not None)
+        made = _through_data(work, entry, series, chosen_data.some(kept_rows), solved)
+        for side, solved_field in enumerate(made):
+            points = solved_field.critical_points
             own_sides = sides_of(work, points, structure.faults)
             critical.append(points[within.has(own_sides) & (slits.numbers(own_sides) == side)])
-        for each, members_of in zip(made, slits.members, strict=True):
-            fields |= dict.fromkeys(members_of, each)
+        for solved_field, members_of in zip(made, slits.members, strict=True):
+            fields |= dict.fromkeys(members_of, solved_field)
     points = np.concatenate(critical)
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
     of_compartment = [fields[number] for number in range(len(structure.compartments))]
@@ -222,11 +226,11 @@ def _chosen(
 ) -> np.ndarray:
     """(N,) bool: the data that the field of compartments, by their names, is made of: those `here`, with a
     warning more where these do not say enough."""
-    own = data.some(here)
-    if lacks := own.missing(data):
+    data_here = data.some(here)
+    if lacks := data_here.missing(data):
         warn_of_lacks(entry, series, lacks, names)
         return np.ones(len(here), bool)
-    if len(data.numbers) == 1 and len(data.dips) and not len(own.dips):
+    if len(data.numbers) == 1 and len(data.dips) and not len(data_here.dips):
         warn_of_direction(entry, series, names)
         return here | data.of_dips()
     return here
@@ -273,10 +277,10 @@ def _through_data(
 
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
         made = through(data.contacts, data.surfaces, of_contacts)
-        kept = ~are_among(data.bounds, data.contacts)
-        pinned = np.zeros(len(kept), bool)
+        is_free = ~are_among(data.bounds, data.contacts)
+        pinned = np.zeros(len(is_free), bool)
         for _ in range(_ROUNDS):
-            new = kept & ~pinned & data.is_off(made, of_bounds, _NEAR)
+            new = is_free & ~pinned & data.is_off(made, of_bounds, _NEAR)
             if not new.any():
                 break
             pinned |= new
@@ -296,16 +300,16 @@ def _families(entry: RockInput, series: Series, numbers: list[int], count: int) 
     structure = entry.divided()
     faults = structure.faults
     active = faults.active(numbers[-1])
-    item = f"{entry.rock.item}, {series.item}"
+    series_item = f"{entry.rock.item}, {series.item}"
     for number in np.flatnonzero(faults.active(numbers[0]) & ~active):
         what = f"fault '{faults.names[number]}' displaces some of its surfaces, but not all"
-        raise series.refused(what, "name", "divide it into two series, or change 'youngest'", item)
-    found = sorted(families(structure, numbers[-1]), key=lambda family: family.key)
-    if len(found) < 2 or len(structure.compartments) > MOST_TOGETHER or count > _FEW:
-        return found
+        raise series.refused(what, "name", "divide it into two series, or change 'youngest'", series_item)
+    separate = sorted(families(structure, numbers[-1]), key=lambda family: family.key)
+    if len(separate) < 2 or len(structure.compartments) > MOST_TOGETHER or count > _FEW:
+        return separate
     faulted = np.flatnonzero(active)
     rows = structure.compartments[:, faulted].tolist()
-    key = tuple(DIES_OUT if each else 0 for each in active.tolist())
+    key = tuple(DIES_OUT if is_active else 0 for is_active in active.tolist())
     return [Family(key, dict(enumerate(map(tuple, rows))), tuple(faulted.tolist()))]
 
 
@@ -337,16 +341,21 @@ def _short(step: float) -> tuple[float, float]:
     return math.ldexp(round(math.ldexp(part, _DIGITS)), exponent - _DIGITS), unit
 
 
-def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
+def _take_level_sets(work: Work, entry: RockInput, series_field: SeriesField) -> None:
     """Sets the surfaces of a rock mass, and its sheets in compartments, that are level sets of a field."""
     with refused_as(lambda error: InputRefused(str(error), item=entry.rock.item, place=error.place)):
-        solids = {field: level_solids(work, field) for field in own.distinct()}
+        solids = {field: level_solids(work, field) for field in series_field.distinct()}
     entry.level_solids |= solids
-    sheets = {field: [solid.level_set for solid in each] for field, each in solids.items()}
-    for number in own.numbers:
-        warn_of_contacts(entry, own, number, {field: sheets[field][number - own.first] for field in sheets})
-        each = [sheets[field][number - own.first] for field in own.fields]
+    sheets = {field: [solid.level_set for solid in field_solids] for field, field_solids in solids.items()}
+    for number in series_field.numbers:
+        warn_of_contacts(
+            entry,
+            series_field,
+            number,
+            {field: sheets[field][number - series_field.first] for field in sheets},
+        )
+        level_sets = [sheets[field][number - series_field.first] for field in series_field.fields]
         if entry.structure is not None:
-            for compartment, sheet in zip(entry.structure.sheets, each, strict=True):
+            for compartment, sheet in zip(entry.structure.sheets, level_sets, strict=True):
                 compartment[number] = sheet
-        entry.surfaces[number] = joined(list(dict.fromkeys(each)))
+        entry.surfaces[number] = joined(list(dict.fromkeys(level_sets)))

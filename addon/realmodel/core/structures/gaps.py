@@ -55,7 +55,7 @@ class _Samples(NamedTuple):
 
     def some(self, chosen: np.ndarray) -> _Samples:
         """Some of them, (N,) bool."""
-        return _Samples(*(each[chosen] for each in self))
+        return _Samples(*(column[chosen] for column in self))
 
 
 # whether points (N, 3) are in the rock, as far as one thing tells that ends it, by what it is called
@@ -64,7 +64,7 @@ _Conditions = dict[str, Callable[[np.ndarray], np.ndarray]]
 
 def gap_widths(structures: Structures, inputs: list[RockInput]) -> dict[int, float]:
     """How wide the gaps are that close_gaps closes, for each rock mass (RockInput) that faults displace."""
-    displaced = sorted({rock for each in structures.displaced for rock in each})
+    displaced = sorted({rock for rocks in structures.displaced for rock in rocks})
     return {rock: _GAP * edge_length(inputs[rock]) for rock in displaced}
 
 
@@ -101,7 +101,7 @@ def close_gaps(
     number_of = {fault.name: number for number, fault in enumerate(faults)}
     waiting = list(range(len(faults)))
     while waiting:  # each after those at which it ends
-        number = next(n for n in waiting if not any(number_of[each] in waiting for each in faults[n].ends_at))
+        number = next(n for n in waiting if not any(number_of[name] in waiting for name in faults[n].ends_at))
         waiting.remove(number)
         ends = [faults[number_of[name]] for name in faults[number].ends_at]
         around = [
@@ -111,8 +111,8 @@ def close_gaps(
         ]
         if not len(_outer_border(faults[number]).edges):
             continue
-        for each in around:
-            faults[number], more = each.closed(faults[number], ends, box, has_sheets)
+        for surrounding in around:
+            faults[number], more = surrounding.closed(faults[number], ends, box, has_sheets)
             warnings += more
         for name in faults[number].ends_at if around else ():
             other = number_of[name]
@@ -120,8 +120,8 @@ def close_gaps(
             warnings += more
         ends = [faults[number_of[name]] for name in faults[number].ends_at]
         require_meeting(faults[number], ends)
-        for each in around:
-            each.require_end(faults[number], ends, box, has_sheets)
+        for surrounding in around:
+            surrounding.require_end(faults[number], ends, box, has_sheets)
     return faults, warnings
 
 
@@ -131,15 +131,15 @@ def tops_of_faults(structures: Structures, number: int, rock: Rock) -> set[int]:
     ready meshes."""
     youngest = [displaced[number] for displaced in structures.displaced if number in displaced]
     cutting = [n for n, surface in enumerate(rock.surfaces) if n >= min(youngest, default=n + 1)]
-    found = {n for n in cutting if n in youngest or RULES[rock.surfaces[n].rule].cuts}
-    found |= {n for n, surface in enumerate(rock.surfaces) if not rock.is_interpolated(surface)}
-    found |= {0} if rock.base_elevation is None and youngest else set()
-    waiting = list(found)
+    tops = {n for n in cutting if n in youngest or RULES[rock.surfaces[n].rule].cuts}
+    tops |= {n for n, surface in enumerate(rock.surfaces) if not rock.is_interpolated(surface)}
+    tops |= {0} if rock.base_elevation is None and youngest else set()
+    waiting = list(tops)
     while waiting:
-        more = set(needed_surfaces(rock, waiting.pop())) - found
-        found |= more
+        more = set(needed_surfaces(rock, waiting.pop())) - tops
+        tops |= more
         waiting += more
-    return found
+    return tops
 
 
 class _Around:
@@ -221,16 +221,16 @@ class _Around:
         inside[inside] = _in_all(conditions, points[inside])
         near = inside.copy()
         near[inside] = ~_in_all(ending, points[inside] + self.width * way[inside])
-        of_side, of_near = (np.bincount(side, weight * each) for each in (inside, near))
+        of_side, of_near = (np.bincount(side, weight * mask) for mask in (inside, near))
         near &= (of_near >= _SHARE * of_side)[side]
         samples = _Samples(points, edge, weight, way, side, inside, near)
         self.looked_at = fault, samples
         return samples
 
     def _conditions(self, fault: Fault, ends: list[Fault], has_sheets: bool) -> _Conditions:
-        found = self._walls() | {other.item: self._side_of(fault, other) for other in ends}
-        found |= self._base(has_sheets)
-        return found | self._tops() if has_sheets else found
+        conditions = self._walls() | {other.item: self._side_of(fault, other) for other in ends}
+        conditions |= self._base(has_sheets)
+        return conditions | self._tops() if has_sheets else conditions
 
     def _base(self, has_sheets: bool) -> _Conditions:
         """Whether points are above the base of the rock mass; without one above its oldest surface, once that
@@ -248,17 +248,17 @@ class _Around:
         surfaces = entry.surfaces[: self.last + 1]
         if entry.region is not None:
             shapes = [level(Sheet(*triangulate_rings(entry.rock.rings())), 0.0)]
-        known = [surface for surface in surfaces if surface is not None]
-        covers = known if len(known) == len(surfaces) else []
+        made = [surface for surface in surfaces if surface is not None]
+        covers = made if len(made) == len(surfaces) else []
 
         def over(points: np.ndarray) -> np.ndarray:
-            found = np.ones(len(points), bool)
+            is_over = np.ones(len(points), bool)
             for some in (shapes, covers):
                 left = np.arange(len(points)) if some else np.empty(0, np.int64)
-                for each in some:
-                    left = left[np.isnan(self._heights(each, points[left]))] if len(left) else left
-                found[left] = False
-            return found
+                for shape in some:
+                    left = left[np.isnan(self._heights(shape, points[left]))] if len(left) else left
+                is_over[left] = False
+            return is_over
 
         return {"the wall": over}
 
@@ -268,10 +268,10 @@ class _Around:
         vertices, triangles = fault.triangulation()
         a, b, c = vertices[triangles].transpose(1, 0, 2)
         area = norm(np.cross(b - a, c - a))
-        kept = dot(fault_sides(self.work, (a + b + c) / 3, shape), area) > 0
+        is_positive = dot(fault_sides(self.work, (a + b + c) / 3, shape), area) > 0
 
         def beside(points: np.ndarray) -> np.ndarray:
-            return (fault_sides(self.work, points, shape) > 0) == kept
+            return (fault_sides(self.work, points, shape) > 0) == is_positive
 
         return beside
 
@@ -303,13 +303,13 @@ class _Around:
             active[structure.faults.numbers.index(self.number)] = False
         sides = sides_of(self.work, points, structure.faults, np.flatnonzero(active).tolist())
         for sheet in structure.distinct(surface):
-            own = [n for n, sheets in enumerate(structure.sheets) if sheets[surface] is sheet]
-            rows = np.unique(structure.compartments[own][:, active], axis=0)
-            there = (sides[:, None, active] == rows).all(axis=2).any(axis=1)
-            if not there.any():
+            compartments = [n for n, sheets in enumerate(structure.sheets) if sheets[surface] is sheet]
+            rows = np.unique(structure.compartments[compartments][:, active], axis=0)
+            is_inside = (sides[:, None, active] == rows).all(axis=2).any(axis=1)
+            if not is_inside.any():
                 continue
-            z = self._heights(sheet, points[there])
-            low[there], high[there] = np.fmin(low[there], z), np.fmax(high[there], z)
+            z = self._heights(sheet, points[is_inside])
+            low[is_inside], high[is_inside] = np.fmin(low[is_inside], z), np.fmax(high[is_inside], z)
         return low, high
 
     def _heights(self, sheet: Sheet, points: np.ndarray) -> np.ndarray:
@@ -322,20 +322,20 @@ class _Around:
         conditions = self._conditions(fault, ends, has_sheets)
         samples = self._looked_at(fault, _outer_border(fault), conditions, box, ends)
         if has_sheets:  # between the two sheets there is different rock on its two sides
-            found = samples.inside.copy()
-            points = samples.points[found]
+            is_end = samples.inside.copy()
+            points = samples.points[is_end]
             low, high = self.sheets_at(self.last, points)
-            found[found] = (low < points[:, 2]) & (points[:, 2] < high)
+            is_end[is_end] = (low < points[:, 2]) & (points[:, 2] < high)
         else:
-            found = self._passing(fault, samples)
-        if found.any():
-            raise ends_inside(fault, tuple(samples.points[int(found.argmax())].tolist()))
+            is_end = self._passing(fault, samples)
+        if is_end.any():
+            raise ends_inside(fault, tuple(samples.points[int(is_end.argmax())].tolist()))
 
     def _passing(self, fault: Fault, samples: _Samples) -> np.ndarray:
         """(N,) bool: of places on the border those of a side of it that is inside the rock from below all
         points of a surface, some of which are on either side of the fault, to above them."""
         shape = FaultShape(*fault.triangulation(), fault.dies_out)
-        z, found = samples.points[:, 2], np.zeros(len(samples.points), bool)
+        z, passing = samples.points[:, 2], np.zeros(len(samples.points), bool)
         rock = self.entry.rock
         for surface, data in zip(rock.surfaces[: self.last + 1], self.entry.data, strict=False):
             if not rock.is_interpolated(surface) or surface.method_options()[1].get("extrapolate") == "none":
@@ -347,12 +347,12 @@ class _Around:
             low, high = points[:, 2].min(), points[:, 2].max()
             low, high = low - _MARGIN * (high - low), high + _MARGIN * (high - low)
             for number in np.unique(samples.side[samples.inside]):
-                own = samples.side == number
-                between = own & (z >= low) & (z <= high)
-                passes = (samples.inside & own & (z < low)).any() and (own & (z > high)).any()
+                on_side = samples.side == number
+                between = on_side & (z >= low) & (z <= high)
+                passes = (samples.inside & on_side & (z < low)).any() and (on_side & (z > high)).any()
                 if passes and between.any() and samples.inside[between].all():
-                    found |= between
-        return found
+                    passing |= between
+        return passing
 
     def _warnings(self, fault: Fault, conditions: _Conditions, samples: _Samples) -> list[BuildWarning]:
         """One for each thing that the border did not reach, with the widest gap. samples: where it does
@@ -365,9 +365,9 @@ class _Around:
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         warnings = []
         for name, is_inside in conditions.items():
-            own = np.flatnonzero(~is_inside(points + high[:, None] * way))
-            if len(own):
-                widest = own[int(high[own].argmax())]
+            rows = np.flatnonzero(~is_inside(points + high[:, None] * way))
+            if len(rows):
+                widest = rows[int(high[rows].argmax())]
                 text = (
                     f"{fault.item}: its border ends up to {high[widest]:.4g} before {name}, near "
                     f"{place_text(points[widest])}: it is continued to it"
@@ -378,11 +378,11 @@ class _Around:
 
 def _in_all(conditions: _Conditions, points: np.ndarray) -> np.ndarray:
     """(N,) bool: the points that meet all conditions."""
-    found = np.ones(len(points), bool)
+    meets = np.ones(len(points), bool)
     for holds in conditions.values():
-        if found.any():
-            found[found] = holds(points[found])
-    return found
+        if meets.any():
+            meets[meets] = holds(points[meets])
+    return meets
 
 
 def _smoothed(vertices: np.ndarray, border: Border, width: float) -> np.ndarray:
@@ -393,8 +393,8 @@ def _smoothed(vertices: np.ndarray, border: Border, width: float) -> np.ndarray:
     way = border.away
     for _ in range(min(_STEPS, int(np.ceil((width / np.median(size)) ** 2)))):
         total = np.zeros((len(vertices), 3))
-        for own in (a, b):
-            np.add.at(total, own, size[:, None] * way)
+        for vertex in (a, b):
+            np.add.at(total, vertex, size[:, None] * way)
         way = total[a] + total[b]
         way /= np.maximum(norm(way), np.finfo(float).tiny)[:, None]
     return way
@@ -421,10 +421,10 @@ def _sides_of_border(vertices: np.ndarray, border: Border, ways: np.ndarray) -> 
     continued upward, downward, or to one end."""
     along, down, _ = plane_axes(principal_axes(vertices[np.unique(border.edges)])[1][2])
     shares = np.column_stack([sign * dot(ways, axis) for axis in (along, down) for sign in (-1, 1)])
-    kind, found, count = shares.argmax(axis=1), np.zeros(len(ways), np.int64), 0
-    for each in range(4):
-        own = np.flatnonzero(kind == each)
-        if len(own):
-            found[own] = connected(border.edges[own]) + count
-            count = int(found[own].max()) + 1
-    return found
+    kind, sides, count = shares.argmax(axis=1), np.zeros(len(ways), np.int64), 0
+    for number in range(4):
+        edges = np.flatnonzero(kind == number)
+        if len(edges):
+            sides[edges] = connected(border.edges[edges]) + count
+            count = int(sides[edges].max()) + 1
+    return sides

@@ -52,17 +52,17 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             within = np.array(inside, bool).reshape(len(shapes), len(places)).T
             return sides_of(work, places, entry.divided().faults), within
 
-        given, is_own, edge = entry.rock.observed, np.ones(len(entry.rock.observed), bool), None
-        across = np.zeros(len(given), bool)
+        observations, is_own, edge = entry.rock.observed, np.ones(len(entry.rock.observed), bool), None
+        across = np.zeros(len(observations), bool)
         if entry.region is not None:
             edge = entry.median_edge() if entry.rock.interpolates else spacing(entry)
-            given, is_own, across = _with_both_sides(entry, shapes, sides, _BESIDE * edge)
-            given, is_kept = observed_on_mesh(entry, given)
+            observations, is_own, across = _with_both_sides(entry, shapes, sides, _BESIDE * edge)
+            observations, is_kept = observed_on_mesh(entry, observations)
             at = np.cumsum(is_kept) - 1
             is_own, across = is_kept & is_own[at], is_kept & across[at]
         situation = Situation(
             None,
-            *sides(given.places),
+            *sides(observations.places),
             after=[after for _, after in bodies],
             bodies=[body.name for body, _ in bodies],
             voids=[body.void for body, _ in bodies],
@@ -70,11 +70,11 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             displaced=_displaced(entry),
         )
         if edge is not None:
-            disputed, length = _between(entry, given, _NEAR * edge, situation)
+            disputed, length = _between(entry, observations, _NEAR * edge, situation)
             is_rounding = length <= _LOGGED * edge
-            parted = _parted(given, _NEAR * edge, sides) | (disputed & is_rounding)
+            parted = _parted(observations, _NEAR * edge, sides) | (disputed & is_rounding)
             situation = replace(situation, parted=parted, disputed=disputed & ~is_rounding)
-        apply_observations(work, entry, situation, (given, is_own))
+        apply_observations(work, entry, situation, (observations, is_own))
 
 
 def _with_both_sides(
@@ -83,15 +83,15 @@ def _with_both_sides(
     """The observations of a RockInput, with a place more on each side of a fault, and of the border of a
     body, wherever an interval that is used passes it; and (N,) bool twice, those that are given, and of the
     two on both sides the second. off: how far from it the places are, and from the ends of ways at least."""
-    given = entry.rock.observed
-    assert given is not None
-    end = np.flatnonzero(in_one_interval(given, given.in_use))
-    first, last = given.places[end - 1], given.places[end]
+    observations = entry.rock.observed
+    assert observations is not None
+    end = np.flatnonzero(in_one_interval(observations, observations.in_use))
+    first, last = observations.places[end - 1], observations.places[end]
     length = norm(last - first)
     is_long = length > 2 * off
     end, first, last, length = end[is_long], first[is_long], last[is_long], length[is_long]
     if not len(end):
-        return given, np.ones(len(given), bool), np.zeros(len(given), bool)
+        return observations, np.ones(len(observations), bool), np.zeros(len(observations), bool)
     walls = walls_of(entry.divided().faults.shapes, box_of(first, last))
     walls = np.concatenate([walls, *(body.vertices[body.triangles] for body in bodies)])
     way, shares = parts_of_lines(first, last, walls)
@@ -99,20 +99,20 @@ def _with_both_sides(
     way, at = way[passes], shares[passes, 0]
     beside = off / length
     ways = [way, way]
-    found = [at - beside[way], at + beside[way]]
+    share_parts = [at - beside[way], at + beside[way]]
     for share, place in ((beside, first), (1.0 - beside, last)):  # an end that lies on a fault
         inner = first + share[:, None] * (last - first)
         on = [(a != b).any(axis=1) for a, b in zip(sides(place), sides(inner), strict=True)]
         ways.append(np.flatnonzero(np.logical_or(*on)))
-        found.append(share[ways[-1]])
-    way, share = np.concatenate(ways), np.concatenate(found)
+        share_parts.append(share[ways[-1]])
+    way, share = np.concatenate(ways), np.concatenate(share_parts)
     is_second = np.zeros(len(way), bool)
-    is_second[len(at) : 2 * len(at)] = found[0] >= beside[ways[0]]
-    kept = (share >= beside[way]) & (share <= 1.0 - beside[way])
-    order = np.lexsort((share[kept], way[kept]))
-    more, is_own = with_places(given, end[way[kept][order]], share[kept][order])
+    is_second[len(at) : 2 * len(at)] = share_parts[0] >= beside[ways[0]]
+    is_within = (share >= beside[way]) & (share <= 1.0 - beside[way])
+    order = np.lexsort((share[is_within], way[is_within]))
+    more, is_own = with_places(observations, end[way[is_within][order]], share[is_within][order])
     across = np.zeros(len(more), bool)
-    across[~is_own] = is_second[kept][order]
+    across[~is_own] = is_second[is_within][order]
     return more, is_own, across
 
 
@@ -120,8 +120,8 @@ def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
     """(N,) bool: which places (N, 3) lie in a body."""
     if not len(places):
         return np.zeros(0, bool)
-    given: list[tuple] = [(*body.arrays, True, [], False)]
-    return work.native(native_module().structure_sides, given, np.ascontiguousarray(places)) < 0
+    arguments: list[tuple] = [(*body.arrays, True, [], False)]
+    return work.native(native_module().structure_sides, arguments, np.ascontiguousarray(places)) < 0
 
 
 def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:
@@ -138,9 +138,9 @@ def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndar
     if meets.any():
         shifts = reach * np.array([[0, 0, 0], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], float)
         around = (places[meets] + shifts[:, None]).reshape(-1, 3)
-        found = np.concatenate([each.astype(np.int8) for each in sides(around)], axis=1)
-        found = found.reshape(len(shifts), -1, found.shape[1])
-        meets[meets] = (found != found[:1]).any(axis=(0, 2))
+        sides_around = np.concatenate([columns.astype(np.int8) for columns in sides(around)], axis=1)
+        sides_around = sides_around.reshape(len(shifts), -1, sides_around.shape[1])
+        meets[meets] = (sides_around != sides_around[:1]).any(axis=(0, 2))
         parted[alone] = meets[place]
     return parted
 
@@ -175,7 +175,7 @@ def _between(
         away = norm(places[inner] - places[end])
         near = is_end & (away <= reach)
         near &= passes_body | (passed & may_divide[number[end], number[other]]).any(axis=1)
-        for one, two, far in zip(*(each[near].tolist() for each in (end, inner, away)), strict=True):
+        for one, two, far in zip(*(column[near].tolist() for column in (end, inner, away)), strict=True):
             part = slice(min(one, two), max(one, two) + 1)
             chosen[part], length[part] = True, np.maximum(length[part], far)
     return chosen, length

@@ -50,21 +50,26 @@ class SeriesData:
         of_dips = np.flatnonzero(dips.in_use)
         dip_rows = np.array([dips.row(number) for number in of_dips.tolist()], np.int64)
         positions, normals = dips.positions[of_dips], dips.normals[of_dips]
-        given = [entry.data[number].bounds for number in numbers]
-        step = max(step, sum(map(_length, given)) / _MOST_BOUNDS)
-        placed = [each.along(step) for each in given]
+        bounds = [entry.data[number].bounds for number in numbers]
+        step = max(step, sum(map(_length, bounds)) / _MOST_BOUNDS)
+        placed = [surface_bounds.along(step) for surface_bounds in bounds]
         return cls(
             entry,
             numbers,
             np.concatenate(points),
-            _owners([len(each) for each in points]),
-            np.concatenate([np.arange(len(each)) for each in points]),
+            _owners([len(surface_points) for surface_points in points]),
+            np.concatenate([np.arange(len(surface_points)) for surface_points in points]),
             positions,
             normals / norm(normals)[:, None],
             dip_rows,
             np.concatenate([places for places, _ in placed]),
             _owners([len(places) for places, _ in placed]),
-            np.concatenate([each.is_lower[rows] for each, (_, rows) in zip(given, placed, strict=True)]),
+            np.concatenate(
+                [
+                    surface_bounds.is_lower[rows]
+                    for surface_bounds, (_, rows) in zip(bounds, placed, strict=True)
+                ]
+            ),
             np.concatenate([rows for _, rows in placed]),
         )
 
@@ -74,9 +79,12 @@ class SeriesData:
         return SeriesData(
             self.entry,
             self.numbers,
-            *(each[contacts] for each in (self.contacts, self.surfaces, self.contact_rows)),
-            *(each[dips] for each in (self.dips, self.normals, self.dip_rows)),
-            *(each[bounds] for each in (self.bounds, self.bound_surfaces, self.is_lower, self.bound_rows)),
+            *(column[contacts] for column in (self.contacts, self.surfaces, self.contact_rows)),
+            *(column[dips] for column in (self.dips, self.normals, self.dip_rows)),
+            *(
+                column[bounds]
+                for column in (self.bounds, self.bound_surfaces, self.is_lower, self.bound_rows)
+            ),
         )
 
     def kept_rows(self, rows: np.ndarray) -> np.ndarray:
@@ -107,7 +115,7 @@ class SeriesData:
     def missing(self, all_data: SeriesData) -> list[str]:
         """The names of the surfaces of which there are contacts in all data, but not here."""
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
-        return [self.entry.rock.surfaces[self.numbers[each]].name for each in lacks]
+        return [self.entry.rock.surfaces[self.numbers[row]].name for row in lacks]
 
     def level_set_data(self, slits: SlitData | None, keeps_thickness: bool | None) -> LevelSetData:
         """The same for the solver, with what faults that die out say of it, and as of Series."""
@@ -144,7 +152,7 @@ class SeriesData:
     def left_out(self, row: int, against: Sequence[tuple[str, int]]) -> LeftOut:
         """A bound that is not used. against: what it contradicts, by kind and row."""
         bounds, at = self._bounds_of(row), int(self.bound_rows[row])
-        others = tuple(dict.fromkeys(self._said(*each) for each in against))
+        others = tuple(dict.fromkeys(self._said(*kind_and_row) for kind_and_row in against))
         return LeftOut(
             "contradiction",
             f"{self.bound_text(row)}, which contradicts {'; '.join(others) or 'data near it'}",

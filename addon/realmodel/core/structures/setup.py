@@ -61,9 +61,9 @@ def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is
         if entry.region is not None:
             entry.region = Sheet(*map(keep, entry.region))
         if entry.rock.observed is not None and entry.rock.interpolates:
-            given = observed_on_mesh(entry, entry.rock.observed)
-            if not given[1].all():  # along inclined holes bounds follow the mesh
-                apply_observations(work, entry, Situation(), given)
+            on_mesh = observed_on_mesh(entry, entry.rock.observed)
+            if not on_mesh[1].all():  # along inclined holes bounds follow the mesh
+                apply_observations(work, entry, Situation(), on_mesh)
 
 
 def make_surfaces(
@@ -135,7 +135,7 @@ def make_structures(
             _make_all(work, inputs, None, stage, keep)
         for entry in inputs:
             numbers = {surface.name: number for number, surface in enumerate(entry.rock.surfaces)}
-            entry.divided().warnings.sort(key=lambda each: numbers[each[1].surface or ""])
+            entry.divided().warnings.sort(key=lambda row: numbers[row[1].surface or ""])
             warn_of_doubts(work, entry, stage, keep)
         wider = box_around(inputs, structures, has_sheets=True)
         if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():

@@ -77,14 +77,14 @@ class Slits:
         faults = entry.divided().faults
         order = [number for number in faults.order() if number in family.dying]
         columns = [family.dying.index(number) for number in order]
-        sides = sorted({tuple(own[at] for at in columns) for own in family.members.values()})
+        sides = sorted({tuple(row[at] for at in columns) for row in family.members.values()})
         members = [
-            [n for n, own in family.members.items() if tuple(own[at] for at in columns) == each]
-            for each in sides
+            [n for n, row in family.members.items() if tuple(row[at] for at in columns) == combination]
+            for combination in sides
         ]
         slits: list[Slit] = []
         for number in order:
-            branches = [n for n, own in enumerate(faults.ends) if number in [other for other, _ in own]]
+            branches = [n for n, pairs in enumerate(faults.ends) if number in [other for other, _ in pairs]]
             dividing = [n for n in branches if not faults.dies_out[n]]
             if dividing and faults.dies_out[number]:
                 raise InputRefused(
@@ -108,8 +108,8 @@ class Slits:
     def numbers(self, sides: np.ndarray) -> np.ndarray:
         """(N,) the combination that places are on, by their sides (N, faults) of all faults; 0 where there is
         none such."""
-        own = sides[:, [slit.number for slit in self.slits]]
-        return (own[None] == self.combinations[:, None]).all(axis=2).argmax(axis=0)
+        slit_sides = sides[:, [slit.number for slit in self.slits]]
+        return (slit_sides[None] == self.combinations[:, None]).all(axis=2).argmax(axis=0)
 
     def shared(self, points: np.ndarray, numbers: np.ndarray) -> SharedCorners:
         """What the fields have in common, with points (C, 3) on combinations (C,): one beyond tips is a
@@ -124,10 +124,10 @@ class Slits:
         if not self.slits:
             return None
         every = np.concatenate(parts)
-        own = self.combinations[numbers]
+        combinations = self.combinations[numbers]
         mouths = self._columns([slit.mouth(work, every) for slit in self.slits], len(every))
         ends = np.cumsum([len(part) for part in parts])[:2]
-        contacts, dips, bounds = np.split(0.5 * own * mouths, ends)
+        contacts, dips, bounds = np.split(0.5 * combinations * mouths, ends)
         _, of_dips, of_bounds = np.split(numbers, ends)
         slopes = np.empty((len(dips), len(self.slits), 3))
         step = _STEP * self.lattice.spacing[0]
@@ -143,46 +143,46 @@ class Slits:
 
     def _normals(self) -> np.ndarray:
         """(F, 3) the normals of the faults, in the mean over their areas."""
-        found = np.empty((len(self.slits), 3))
+        normals = np.empty((len(self.slits), 3))
         for n, slit in enumerate(self.slits):
             a, b, c = slit.shape.vertices[slit.shape.triangles].transpose(1, 0, 2)
-            found[n] = np.cross(b - a, c - a).sum(axis=0)
-        size = norm(found)[:, None]
-        return np.where(size > 0, found / np.where(size > 0, size, 1.0), [0.0, 0.0, 1.0])
+            normals[n] = np.cross(b - a, c - a).sum(axis=0)
+        size = norm(normals)[:, None]
+        return np.where(size > 0, normals / np.where(size > 0, size, 1.0), [0.0, 0.0, 1.0])
 
     def _beside(self, work: Work, points: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """(N, F) the coordinates at points beside places on combinations (N,): beyond tips by their own
         sides, else as if no fault were between."""
-        found = self.combinations[numbers].astype(float)
+        coordinates = self.combinations[numbers].astype(float)
         for n, slit in enumerate(self.slits):
             here = np.flatnonzero(self._meets(slit, points))
-            found[here, n] = fault_sides(work, points[here], slit.shape)
+            coordinates[here, n] = fault_sides(work, points[here], slit.shape)
             for at, side in slit.ends:
-                found[found[:, at] == -side, n] = 0.0
+                coordinates[coordinates[:, at] == -side, n] = 0.0
         mouths = self._columns([slit.mouth(work, points) for slit in self.slits], len(points))
-        return 0.5 * found * mouths
+        return 0.5 * coordinates * mouths
 
     @cached_property
     def _same(self) -> np.ndarray:
         """(S, nodes) int64, as SlitData has it."""
         sides, nodes, _ = self.of_nodes.shape
-        found = np.arange(sides * nodes).reshape(sides, nodes)
+        numbers = np.arange(sides * nodes).reshape(sides, nodes)
         for number in range(sides):
             for earlier in reversed(range(number)):
                 alike = (self.of_nodes[number] == self.of_nodes[earlier]).all(axis=1)
-                found[number, alike] = found[earlier, alike]
-        return found
+                numbers[number, alike] = numbers[earlier, alike]
+        return numbers
 
     def _meets(self, slit: Slit, points: np.ndarray) -> np.ndarray:
         """(N,) bool: which points lie in the cells of a slit, or touch them."""
-        found = np.zeros(len(points), bool)
+        meets = np.zeros(len(points), bool)
         for way in np.stack(np.meshgrid(*[(-_BESIDE, _BESIDE)] * 3), -1).reshape(-1, 3):
-            found |= slit.cells[tuple(_cell_of(self.lattice, points, way).T)]
-        return found
+            meets |= slit.cells[tuple(_cell_of(self.lattice, points, way).T)]
+        return meets
 
     @staticmethod
-    def _columns(each: list[np.ndarray], count: int) -> np.ndarray:
-        return np.column_stack([np.empty((count, 0)), *each])
+    def _columns(columns: list[np.ndarray], count: int) -> np.ndarray:
+        return np.column_stack([np.empty((count, 0)), *columns])
 
 
 def _slit(
@@ -209,8 +209,8 @@ def _slit(
     if len(pieces):
         vertices = shape.vertices[np.unique(shape.triangles)]
         near = vertices[((vertices >= box[0]) & (vertices <= box[1])).all(axis=1)]
-        found = within.work.native(native_module().nearest_triangles, pieces, np.ascontiguousarray(near))
-        reach = float(found[1].max(initial=lattice.spacing[0]))
+        nearest = within.work.native(native_module().nearest_triangles, pieces, np.ascontiguousarray(near))
+        reach = float(nearest[1].max(initial=lattice.spacing[0]))
     return Slit(shape, number, pieces, cells, reach, tuple((at, side) for at, side, _ in ends))
 
 
@@ -221,9 +221,9 @@ def _in_rock(entry: RockInput, number: int, within: Within, pieces: np.ndarray, 
     low, high = extents(pieces)
     box = [np.where(corner, high, low) for corner in ([0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0])]
     raised = np.array([0.0, 0.0, size])
-    found = np.zeros(len(pieces), bool)
+    is_in_rock = np.zeros(len(pieces), bool)
     for at in (*pieces.transpose(1, 0, 2), pieces.mean(axis=1), *box):
-        there = np.flatnonzero(within_rock(work, entry, at + raised) & within(at))
+        rows = np.flatnonzero(within_rock(work, entry, at + raised) & within(at))
         for younger in range(structure.faults.youngest[number] + 1, len(entry.rock.surfaces)):
             surface = entry.rock.surfaces[younger]
             if (
@@ -232,30 +232,30 @@ def _in_rock(entry: RockInput, number: int, within: Within, pieces: np.ndarray, 
                 or not structure.is_made(younger)
             ):
                 continue
-            heights = np.full(len(there), -np.inf)
+            heights = np.full(len(rows), -np.inf)
             for compartment in within.family.members:
-                own = heights_at(work, structure.sheet(compartment, younger), at[there, :2])
-                heights = np.fmax(heights, own)
-            there = there[(at[there, 2] - size <= heights) | np.isinf(heights)]
-        found[there] = True
-    return found
+                z = heights_at(work, structure.sheet(compartment, younger), at[rows, :2])
+                heights = np.fmax(heights, z)
+            rows = rows[(at[rows, 2] - size <= heights) | np.isinf(heights)]
+        is_in_rock[rows] = True
+    return is_in_rock
 
 
 def _divided(triangles: np.ndarray, size: float, box: np.ndarray) -> np.ndarray:
     """Triangles (T, 3, 3) in a box, halved along their longest edges until these are at most of a size."""
-    found = [np.empty((0, 3, 3))]
+    pieces = [np.empty((0, 3, 3))]
     while len(triangles):
         low, high = extents(triangles)
         triangles = triangles[((low <= box[1]) & (high >= box[0])).all(axis=1)]
         lengths = norm(np.roll(triangles, -1, axis=1) - triangles)
         longest = lengths.argmax(axis=1)
         is_small = lengths.max(axis=1, initial=0.0) <= size
-        found.append(triangles[is_small])
+        pieces.append(triangles[is_small])
         corner, rows = longest[~is_small], triangles[~is_small]
         a, b, c = (rows[np.arange(len(rows)), (corner + k) % 3] for k in range(3))
         middle = 0.5 * (a + b)
         triangles = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-    return np.concatenate(found)
+    return np.concatenate(pieces)
 
 
 def _cell_of(lattice: Lattice, points: np.ndarray, moved: np.ndarray) -> np.ndarray:
@@ -266,8 +266,8 @@ def _cell_of(lattice: Lattice, points: np.ndarray, moved: np.ndarray) -> np.ndar
 
 def _corners(cells: np.ndarray) -> np.ndarray:
     """(x + 1, y + 1, z + 1) bool: the nodes of cells (x, y, z) bool."""
-    found = np.zeros(np.add(cells.shape, 1), bool)
+    nodes = np.zeros(np.add(cells.shape, 1), bool)
     nx, ny, nz = cells.shape
     for i, j, k in np.ndindex(2, 2, 2):
-        found[i : i + nx, j : j + ny, k : k + nz] |= cells
-    return found
+        nodes[i : i + nx, j : j + ny, k : k + nz] |= cells
+    return nodes

@@ -34,17 +34,17 @@ class Stack:
 
     def without(self, empty: list[bool]) -> Stack:
         """Without the surfaces that do not exist here. Where the oldest is none, no block is on the base."""
-        kept = [k for k, is_empty in enumerate(empty) if not is_empty]
-        if len(kept) == len(empty):
+        existing = [k for k, is_empty in enumerate(empty) if not is_empty]
+        if len(existing) == len(empty):
             return self
-        blocks, base = [self.blocks[k] for k in kept], self.base_elevation
-        if kept and kept[0] > 0:
+        blocks, base = [self.blocks[k] for k in existing], self.base_elevation
+        if existing and existing[0] > 0:
             base, blocks[0] = None, NOTHING
-        sheets, rules = [self.sheets[k] for k in kept], [self.rules[k] for k in kept]
-        emptied = tuple(sorted({sum(k < at for k in kept) for at in self.emptied} - {0}))
-        if emptied and emptied[-1] == len(kept):
+        sheets, rules = [self.sheets[k] for k in existing], [self.rules[k] for k in existing]
+        emptied = tuple(sorted({sum(k < at for k in existing) for at in self.emptied} - {0}))
+        if emptied and emptied[-1] == len(existing):
             return _EMPTY
-        return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in kept], emptied)
+        return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in existing], emptied)
 
     def some(self, kept: Mapping[Sheet, np.ndarray]) -> Stack:
         """With some triangles (T,) bool of each sheet alone."""
@@ -130,7 +130,7 @@ def inside_body(
     first = stack.emptied[-1] if stack.emptied else 0  # of those before it stays what they protect alone
     # what is protected depends on all that was there, and so does what is below the oldest surface
     keeps = base is None or any(RULES[rule].protects for rule in stack.rules[:older])
-    kept = [k for k in range(first, older) if stack.surfaces[k] != FLOOR] if keeps else []
+    retained = [k for k in range(first, older) if stack.surfaces[k] != FLOOR] if keeps else []
     lowest = [] if base is None else [(level(plan, base), FLOOR) for plan in plans]
     # a body also lies where no older surface is: upon a level that raises nothing where one is
     deep = [(level(plan, ends[0]), DEEP) for plan in plans if base is None and DEEP not in stack.surfaces]
@@ -138,25 +138,25 @@ def inside_body(
         [
             *stack.sheets[:first],
             *(sheet for sheet, _ in lowest),
-            *(stack.sheets[k] for k in kept),
+            *(stack.sheets[k] for k in retained),
             *(sheet for sheet, _ in deep),
         ],
         [
             *stack.rules[:first],
             *[_DEPOSITS] * len(lowest),
-            *(stack.rules[k] for k in kept),
+            *(stack.rules[k] for k in retained),
             *[_DEPOSITS] * len(deep),
         ],
         None,
         [
             *[NOTHING] * (first + len(lowest)),
-            *(NOTHING if base is None and stack.blocks[k] == NOTHING else block for k in kept),
+            *(NOTHING if base is None and stack.blocks[k] == NOTHING else block for k in retained),
             *[NOTHING] * len(deep),
         ],
         [
             *stack.surfaces[:first],
             *(of for _, of in lowest),
-            *(stack.surfaces[k] for k in kept),
+            *(stack.surfaces[k] for k in retained),
             *(of for _, of in deep),
         ],
         stack.emptied,
@@ -192,31 +192,31 @@ def _emptied(stack: Stack, after: int, base: float | None, deep: float, covered:
     if older == len(stack.surfaces):
         return _EMPTY
     if base is None:
-        floors, kept = _below_bodies(stack, older, deep), older
+        floors, retained = _below_bodies(stack, older, deep), older
     else:
         # where no older surface was, none that comes later forms a block; bodies do not count
         floors = [(level(plan, base), FLOOR) for plan in covered]
         protects = any(RULES[rule].protects for rule in stack.rules[:older])
         # upon a base the first that comes finds nothing to cut
         may_cut = any(RULES[rule].cuts for rule in stack.rules[older + 1 :])
-        kept = older if protects and may_cut else 0
+        retained = older if protects and may_cut else 0
     return Stack(
-        [*stack.sheets[:kept], *(sheet for sheet, _ in floors), *stack.sheets[older:]],
-        [*stack.rules[:kept], *[_DEPOSITS] * len(floors), *stack.rules[older:]],
+        [*stack.sheets[:retained], *(sheet for sheet, _ in floors), *stack.sheets[older:]],
+        [*stack.rules[:retained], *[_DEPOSITS] * len(floors), *stack.rules[older:]],
         None,
-        [*[NOTHING] * (kept + len(floors)), *stack.blocks[older:]],
-        [*stack.surfaces[:kept], *(of for _, of in floors), *stack.surfaces[older:]],
-        (*stack.emptied, kept) if kept else (),
+        [*[NOTHING] * (retained + len(floors)), *stack.blocks[older:]],
+        [*stack.surfaces[:retained], *(of for _, of in floors), *stack.surfaces[older:]],
+        (*stack.emptied, retained) if retained else (),
     )
 
 
 def distinct_plans(sheets: Sequence[Sheet]) -> list[Sheet]:
     """One of each group of sheets that cover the same triangles in plan."""
-    found: list[Sheet] = []
+    plans: list[Sheet] = []
     for sheet in sheets:
-        if not any(sheet.has_plan_of(other) for other in found):
-            found.append(sheet)
-    return found
+        if not any(sheet.has_plan_of(other) for other in plans):
+            plans.append(sheet)
+    return plans
 
 
 def level(plan: Sheet, height: float) -> Sheet:

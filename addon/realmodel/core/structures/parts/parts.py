@@ -71,12 +71,12 @@ class Structures:
 
     @property
     def names(self) -> list[str]:
-        return [each.name for each in (*self.faults, *self.bodies)]
+        return [entry.name for entry in (*self.faults, *self.bodies)]
 
     @property
     def shapes(self) -> list[Sheet]:
         """The triangles of each."""
-        return [Sheet(*each.triangulation()) for each in (*self.faults, *self.bodies)]
+        return [Sheet(*entry.triangulation()) for entry in (*self.faults, *self.bodies)]
 
     @property
     def kinds(self) -> list[int]:
@@ -86,11 +86,11 @@ class Structures:
     def native(self) -> list[tuple]:
         """The arguments of the native module."""
         number = {fault.name: n for n, fault in enumerate(self.faults)}
-        given = [
+        arguments = [
             (*fault.triangulation(), False, [number[name] for name in fault.ends_at], fault.dies_out)
             for fault in self.faults
         ]
-        return given + [(*body.triangulation(), True, [], False) for body in self.bodies]
+        return arguments + [(*body.triangulation(), True, [], False) for body in self.bodies]
 
     def fault_shapes(self) -> list[FaultShape]:
         """The shape of each fault."""
@@ -103,8 +103,8 @@ class Structures:
         here = {self.faults[number].name: at for at, number in enumerate(numbers)}
         ends = []
         for number in numbers:
-            kept = self._kept_sides(number)
-            ends.append([(here[name], side) for name, side in kept.items() if name in here])
+            sides = self._kept_sides(number)
+            ends.append([(here[name], side) for name, side in sides.items() if name in here])
         faults, shapes = [self.faults[number] for number in numbers], self.fault_shapes()
         return RockFaults(
             [fault.name for fault in faults],
@@ -121,10 +121,10 @@ class Structures:
         names = list(self.faults[number].ends_at)
         all_names = self.names
         others = self.sides[:, [all_names.index(name) for name in names]]
-        for kept in itertools.product((-1, 1), repeat=len(names)):
-            is_beyond = (others == -np.array(kept, np.int8)).any(axis=1)
+        for sides in itertools.product((-1, 1), repeat=len(names)):
+            is_beyond = (others == -np.array(sides, np.int8)).any(axis=1)
             if np.array_equal(is_beyond, self.sides[:, number] == 0):
-                return dict(zip(names, kept, strict=True))
+                return dict(zip(names, sides, strict=True))
         raise AssertionError(f"the sides of {all_names[number]} and of the faults at which it ends disagree")
 
     def has_block(self, number: int) -> bool:
@@ -143,7 +143,10 @@ class Structures:
 
     def stage(self, m: int) -> Structures:
         """The structures at stage m: with the bodies that are there just after surface m."""
-        times = [{rock: after for rock, after in each.items() if after <= m} for each in self.times]
+        times = [
+            {rock: after for rock, after in times_of_body.items() if after <= m}
+            for times_of_body in self.times
+        ]
         return replace(self, times=times)
 
     def there(self) -> list[int]:
@@ -154,7 +157,7 @@ class Structures:
     def only(self, numbers: list[int]) -> tuple[Structures, np.ndarray]:
         """All faults and some bodies, by their numbers; and (P,) int32 a part of these structures for each
         part that those leave."""
-        kept = [number - len(self.faults) for number in numbers[len(self.faults) :]]
+        bodies = [number - len(self.faults) for number in numbers[len(self.faults) :]]
         sides, first, part = np.unique(self.sides[:, numbers], axis=0, return_index=True, return_inverse=True)
         low, high = np.full((len(sides), 3), np.inf), np.full((len(sides), 3), -np.inf)
         own_low, own_high = self.boxes()
@@ -162,8 +165,8 @@ class Structures:
         np.maximum.at(high, part.ravel(), own_high)
         few = replace(
             self,
-            bodies=[self.bodies[body] for body in kept],
-            times=[self.times[body] for body in kept],
+            bodies=[self.bodies[body] for body in bodies],
+            times=[self.times[body] for body in bodies],
             sides=np.ascontiguousarray(sides),
             low=low,
             high=high,
@@ -198,8 +201,8 @@ def box_around(inputs: list[RockInput], structures: Structures, has_sheets: bool
             has_made = has_sheets and entry.divided().is_made(number)  # not younger than the stage
             shapes = entry.divided().distinct(number) if has_made else [shape]
             is_known &= None not in shapes
-            for given in (data.points if shape is None else shape.vertices for shape in shapes):
-                places = np.asarray(given, np.float64).reshape(-1, 3)
+            for coordinates in (data.points if shape is None else shape.vertices for shape in shapes):
+                places = np.asarray(coordinates, np.float64).reshape(-1, 3)
                 z.append(places[:, 2])
                 if entry.region is None:
                     x.append(places[:, 0])
@@ -209,7 +212,7 @@ def box_around(inputs: list[RockInput], structures: Structures, has_sheets: bool
     if not any(map(len, z)):
         z = [fault.triangulation()[0][:, 2] for fault in structures.faults]
     low, high = (
-        np.array([corner([corner(each) for each in axis if len(each)]) for axis in (x, y, z)])
+        np.array([corner([corner(values) for values in axis if len(values)]) for axis in (x, y, z)])
         for corner in (np.min, np.max)
     )
     margin = np.array([0.0, 0.0, 0.0 if is_known else _BEYOND * (high[2] - low[2])])

@@ -40,7 +40,7 @@ def refused_structure(error: NativeError, faults: Sequence[Fault], bodies: Seque
     fault = faults[error.surface] if error.surface < len(faults) else None
     entry = fault or bodies[error.surface - len(faults)]
     file, line = entry.shape_source()
-    what, items = str(error), [int(item) for item in error.items]
+    what, items = str(error), [int(number) for number in error.items]
     if error.kind == "does_not_meet" and items:
         what = f"it ends at fault '{faults[items[0]].name}', but does not meet it"
     elif error.kind == "equal_halves" and items:

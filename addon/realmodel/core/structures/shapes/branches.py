@@ -17,9 +17,9 @@ _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault 
 def require_meeting(fault: Fault, ends: list[Fault]) -> None:
     """Refuses a fault that does not meet those at which it ends. All have arrays. Raises InputRefused."""
     for other in ends:
-        found = nearest_to_meet(fault, other)
-        if found is not None:
-            raise _does_not_meet(fault, other, *found)
+        nearest = nearest_to_meet(fault, other)
+        if nearest is not None:
+            raise _does_not_meet(fault, other, *nearest)
 
 
 def nearest_to_meet(branch: Fault, other: Fault) -> tuple[np.ndarray, float] | None:

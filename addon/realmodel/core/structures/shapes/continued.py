@@ -126,7 +126,7 @@ def _beyond(
             break
         for one, other in ends[folded].tolist():
             group[group == group[other]] = group[one]
-    rise = np.min([dot(beyond[group[own]] - places[own], away) for own in ends.T], axis=0)
+    rise = np.min([dot(beyond[group[corner]] - places[corner], away) for corner in ends.T], axis=0)
     if (rise <= _RISES * by).any():
         place = places[ends[int(rise.argmin()), 0]]
         raise InputRefused(
@@ -151,14 +151,14 @@ def _corners(
     # of the edges that arrive at a group and that leave it: their directions, and how far these go
     ways, lengths = np.zeros((2, count, 3)), np.zeros((2, count))
     is_between = group[ends[:, 0]] != group[ends[:, 1]]
-    for own, end in enumerate((1, 0)):
+    for number, end in enumerate((1, 0)):
         at = group[ends[is_between, end]]
-        ways[own, at] = away[is_between]
-        lengths[own, at] = by - dot(middle[at] - places[ends[is_between, end]], away[is_between])
+        ways[number, at] = away[is_between]
+        lengths[number, at] = by - dot(middle[at] - places[ends[is_between, end]], away[is_between])
     is_alone = (ways == 0).all(axis=2)
-    for own, across in ((0, 1), (1, 0)):
-        ways[own, is_alone[own]] = ways[across, is_alone[own]]
-        lengths[own, is_alone[own]] = lengths[across, is_alone[own]]
+    for number, across in ((0, 1), (1, 0)):
+        ways[number, is_alone[number]] = ways[across, is_alone[number]]
+        lengths[number, is_alone[number]] = lengths[across, is_alone[number]]
     (one, other), (to_one, to_other) = ways, lengths
     alike = dot(one, other)
     apart = np.abs(alike) < _PARALLEL

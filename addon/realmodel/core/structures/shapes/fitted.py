@@ -111,15 +111,15 @@ def _turn_parts(points: np.ndarray, order: list[int]) -> None:
 
 def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
     """All sticks from their upper end down; level ones in the direction of the previous stick."""
-    found, before = [], np.array([0.0, 0.0, -1.0])
+    aligned, before = [], np.array([0.0, 0.0, -1.0])
     for stick in sticks:
         direction = stick[-1] - stick[0]
         same = dot(direction, before)
         if same < 0 or (same == 0 and direction[2] > 0):
             stick, direction = stick[::-1], -direction
-        found.append(stick)
+        aligned.append(stick)
         before = _unit(direction)
-    return found
+    return aligned
 
 
 def _unit(direction: np.ndarray) -> np.ndarray:
@@ -131,12 +131,12 @@ def _longer(sticks: list[np.ndarray], by: float) -> list[np.ndarray]:
     """Extends each stick at both ends in the mean direction of its own end and its neighbors', so that sticks
     that are not quite parallel do not cross."""
     ends = np.array([[_unit(stick[0] - stick[1]), _unit(stick[-1] - stick[-2])] for stick in sticks])
-    found = []
+    longer = []
     for number, stick in enumerate(sticks):
         near = ends[max(0, number - _NEIGHBORS) : number + _NEIGHBORS + 1].mean(axis=0)
         begin, end = stick[0] + by * _unit(near[0]), stick[-1] + by * _unit(near[1])
-        found.append(np.concatenate([begin[None], stick, end[None]]))
-    return found
+        longer.append(np.concatenate([begin[None], stick, end[None]]))
+    return longer
 
 
 def _between(
@@ -183,8 +183,8 @@ def fit_points(work: Work, points: np.ndarray, extend: float = 0.0, extend_sidew
     nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
     options = checked_options(_METHOD, {})
     task = Task(work, np.ascontiguousarray(local), nodes, options, triangles)
-    found = heights(_METHOD, task)
-    vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + found.z[:, None] * normal
+    interpolation = heights(_METHOD, task)
+    vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + interpolation.z[:, None] * normal
     return Sheet(vertices, triangles)
 
 
@@ -212,9 +212,9 @@ def convex_hull(plan: np.ndarray) -> np.ndarray:
     """(N, 2) corners of the convex hull of points, counter-clockwise (Andrew's monotone chain)."""
     points = np.unique(plan, axis=0).tolist()
 
-    def half(given: Iterable[list[float]]) -> list[list[float]]:
+    def half(ordered: Iterable[list[float]]) -> list[list[float]]:
         chain: list[list[float]] = []
-        for x, y in given:
+        for x, y in ordered:
             while len(chain) > 1:
                 (ax, ay), (bx, by) = chain[-2:]
                 if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:

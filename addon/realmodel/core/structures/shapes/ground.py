@@ -23,26 +23,26 @@ _LIFTS = ("thickness", "minimum_thickness")  # by which a surface may lie above 
 
 def plan_of(tops: list[Top]) -> np.ndarray:
     """(2, 2) corners around rock masses in plan."""
-    found = []
+    coordinates = []
     for entry, _ in tops:
         if entry.rock.region is not None:
-            found += entry.rock.rings()
+            coordinates += entry.rock.rings()
         else:
-            found += [data[:, :2] for data in _every_data(entry)]
-    every = np.concatenate([np.empty((0, 2)), *found])
+            coordinates += [data[:, :2] for data in _every_data(entry)]
+    every = np.concatenate([np.empty((0, 2)), *coordinates])
     return np.array([every.min(axis=0), every.max(axis=0)])
 
 
 def levels_of(tops: list[Top], others: np.ndarray) -> tuple[float, float]:
     """The lowest and the highest elevation of the data of rock masses, and of `others` (NaN: none)."""
-    found, lift = [others[~np.isnan(others)]], 0.0
+    elevations, lift = [others[~np.isnan(others)]], 0.0
     for entry, _ in tops:
-        found += [data[:, 2] for data in _every_data(entry)]
-        found += [np.array([base]) for base in [entry.rock.base_elevation] if base is not None]
+        elevations += [data[:, 2] for data in _every_data(entry)]
+        elevations += [np.array([base]) for base in [entry.rock.base_elevation] if base is not None]
         for surface in entry.rock.surfaces:
-            found += [np.array([value]) for value in [_constant(surface)] if value is not None]
+            elevations += [np.array([value]) for value in [_constant(surface)] if value is not None]
             lift += sum(abs(value) for value in map(_number(surface), _LIFTS))
-    every = np.concatenate(found)
+    every = np.concatenate(elevations)
     low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 0.0)
     return low - lift, high + lift
 
@@ -50,30 +50,30 @@ def levels_of(tops: list[Top], others: np.ndarray) -> tuple[float, float]:
 def heights_on(work: Work, plan: np.ndarray, tops: list[Top]) -> np.ndarray:
     """(N,) elevations of surfaces at places (N, 2): on the triangles of ready meshes; else by natural
     neighbors between their points, and beyond these as at the nearest. Raises InputRefused."""
-    found, points = np.full(len(plan), np.nan), []
-    known = [(entry, number) for entry, number in tops if number is not None]
-    for entry, number in known:
+    z, points = np.full(len(plan), np.nan), []
+    surfaces = [(entry, number) for entry, number in tops if number is not None]
+    for entry, number in surfaces:
         shape = entry.surfaces[number]
         if shape is not None:
-            own = heights_at(work, shape, plan)
-            found = np.where(np.isnan(found), own, found)
+            mesh_heights = heights_at(work, shape, plan)
+            z = np.where(np.isnan(z), mesh_heights, z)
         value = _constant(entry.rock.surfaces[number])
         if value is not None and not len(_data(entry, number)):
-            found[np.isnan(found)] = value
+            z[np.isnan(z)] = value
         points.append(_data(entry, number))
-    rest = np.isnan(found)
+    rest = np.isnan(z)
     if not rest.any():
-        return found
+        return z
     data = np.concatenate(points)
     if not len(data):
-        entry, number = known[0]
+        entry, number = surfaces[0]
         named = surface_item(entry.rock, entry.rock.surfaces[number])
         what = f"the elevation of its trace is not known: {named} has no points or mesh"
         raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
     options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
     near = np.ascontiguousarray(np.unique(_near(data, plan[rest]), axis=0))
-    found[rest] = heights(CONTINUATION, Task(work, near, plan[rest], options)).z
-    return found
+    z[rest] = heights(CONTINUATION, Task(work, near, plan[rest], options)).z
+    return z
 
 
 def _near(points: np.ndarray, plan: np.ndarray) -> np.ndarray:

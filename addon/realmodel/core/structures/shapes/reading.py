@@ -125,19 +125,21 @@ def _fitted(work: Work, fault: Fault, points: np.ndarray | Sequence[np.ndarray])
     if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
         return fit_points(work, checked_points(points), fault.extend, sideways)
     sticks = [checked_points(stick, f"stick {number}") for number, stick in enumerate(points, 1)]
-    found = fit_sticks(sticks, fault.extend, sideways)
-    crossing = crossing_triangles(work, found)
+    sheet = fit_sticks(sticks, fault.extend, sideways)
+    crossing = crossing_triangles(work, sheet)
     if len(crossing):
-        corners = found.vertices[found.triangles[crossing]].reshape(-1, 3)
-        own = [f"{number}" for number, stick in enumerate(sticks, 1) if are_among(corners, stick).any()]
+        corners = sheet.vertices[sheet.triangles[crossing]].reshape(-1, 3)
+        crossing_sticks = [
+            f"{number}" for number, stick in enumerate(sticks, 1) if are_among(corners, stick).any()
+        ]
         place = corners[0]
         raise InputRefused(
             f"the surface through its sticks crosses itself at {place_text(place)}, between the sticks of "
-            f"number {number_list(own)}, from 1",
+            f"number {number_list(crossing_sticks)}, from 1",
             advice="check whether two of them cross, or one has points of another; leave one out",
             place=tuple(place.tolist()),
         )
-    return found
+    return sheet
 
 
 def crossing_triangles(work: Work, surface: Sheet) -> np.ndarray:
@@ -146,8 +148,8 @@ def crossing_triangles(work: Work, surface: Sheet) -> np.ndarray:
     beyond = vertices.max(axis=0) + np.ptp(vertices, axis=0).max() + np.eye(3)  # a triangle that meets none
     other = np.array([[0, 1, 2]], np.int32)
     divided = work.native(native_module().intersect, vertices, triangles, beyond, other)
-    own = divided.source_triangle[divided.source == 0]
-    return np.flatnonzero(np.bincount(own, minlength=len(triangles)) != 1)
+    sources = divided.source_triangle[divided.source == 0]
+    return np.flatnonzero(np.bincount(sources, minlength=len(triangles)) != 1)
 
 
 def _two_sided(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -184,11 +186,11 @@ def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning]) -> S
         vertices, texts = mesh.in_model(entry.mesh_file, units)
         warnings += [BuildWarning(text, "mesh_file") for text in texts]
         triangles = mesh.triangles
-    kept = without_flat(vertices, triangles)
-    if len(kept) < len(triangles):
-        left_out = len(triangles) - len(kept)
+    with_area = without_flat(vertices, triangles)
+    if len(with_area) < len(triangles):
+        left_out = len(triangles) - len(with_area)
         text = f"{entry.item}: {left_out} triangle{'s' if left_out > 1 else ''} without area left out"
         warnings.append(BuildWarning(text, "left_out"))
-    if not len(kept):
+    if not len(with_area):
         raise InputRefused("its triangles have no area")
-    return Sheet(vertices, kept)
+    return Sheet(vertices, with_area)

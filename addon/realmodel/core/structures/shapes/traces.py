@@ -34,10 +34,10 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     """The fault with its trace as one line (N, 3), z NaN where it has none, and with the dip of the file's
     attributes where it has none of its own; and warnings. Raises InputRefused."""
     text_or_file = fault.trace_file or (fault.trace if isinstance(fault.trace, str) else None)
-    found = (
+    fault_lines = (
         FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
     )
-    line, warnings = _joined([line[begins_run(line[:, :2])] for line in found.lines])
+    line, warnings = _joined([line[begins_run(line[:, :2])] for line in fault_lines.lines])
     if (line[0, :2] == line[-1, :2]).all():
         raise InputRefused(
             f"its trace returns to where it begins, {place_text(line[0, :2])}",
@@ -47,10 +47,10 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     if fault.elevation is None and (line[:, 2] == 0.0).all() and fault.trace_file is not None:
         text = "its line has elevation 0 everywhere; if that is no elevation, set elevation = ..."
         warnings.append(text)
-    dip = found.dip() if fault.dip is None else fault.dip
+    dip = fault_lines.dip() if fault.dip is None else fault.dip
     direction = checked_direction("dip_direction", fault.dip_direction)
     if direction is None and dip != VERTICAL:
-        direction = found.dip_direction()
+        direction = fault_lines.dip_direction()
     if dip is None:
         what = "it has no dip, and its file has no attribute 'dip'"
         raise InputRefused(what, advice="set dip = ... (90 where the fault is vertical)")
@@ -78,14 +78,14 @@ def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, lis
     extent = float(norm(plan[1] - plan[0]))
     margin = (high - low) + extent / 4
     low, high = low - margin, high + margin
-    line, given = _with_heights(work, fault, tops, extent)
+    line, is_given = _with_heights(work, fault, tops, extent)
     run, toward = _dip_of(fault, line)
     # where the surface cuts the level `high`: a line along its strike
     top = _at_level(line, high, run, toward)
-    kept, given = _once_each(top, given)
-    line, top = line[kept], top[kept]
-    kept = given | _bends(top, given, _STRAIGHT * extent)
-    line, top = line[kept], top[kept]
+    is_kept, is_given = _once_each(top, is_given)
+    line, top = line[is_kept], top[is_kept]
+    is_kept = is_given | _bends(top, is_given, _STRAIGHT * extent)
+    line, top = line[is_kept], top[is_kept]
     warnings = [] if fault.dip in (None, VERTICAL) else _compare(top, toward, fault.dip)
     down = run * (high - low) * toward
     ends = None
@@ -129,11 +129,11 @@ def _farthest(plan: np.ndarray, place: np.ndarray) -> float:
     return float(norm(np.abs(plan - place).max(axis=0)))
 
 
-def _lines_of(given: Any) -> list[np.ndarray]:
+def _lines_of(trace: Any) -> list[np.ndarray]:
     """The lines (N, 3) of arrays (N, 2) or (N, 3)."""
-    several = len(given) and np.ndim(given[0]) > 1
-    found = []
-    for number, points in enumerate(given if several else [given], 1):
+    several = len(trace) and np.ndim(trace[0]) > 1
+    lines = []
+    for number, points in enumerate(trace if several else [trace], 1):
         name = f"line {number} of the trace" if several else "the trace"
         try:
             line = np.array(points, np.float64)
@@ -146,8 +146,8 @@ def _lines_of(given: Any) -> list[np.ndarray]:
         bad = np.flatnonzero(~np.isfinite(line[:, :2]).all(axis=1) | np.isinf(line[:, 2]))
         if len(bad):
             raise InputRefused(f"point {bad[0]} of {name} is {place_text(line[bad[0]])}, not finite")
-        found.append(line)
-    return found
+        lines.append(line)
+    return lines
 
 
 def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
@@ -252,51 +252,51 @@ def _with_heights(
     """The trace with all its elevations, and (N,) bool: the points that were given. Between these it gets
     more where it is put on a surface."""
     line = fault.trace_line().copy()
-    given = np.ones(len(line), bool)
+    is_given = np.ones(len(line), bool)
     if isinstance(fault.elevation, float):
         line[:, 2] = fault.elevation
     elif fault.elevation is not None:
         line[:, 2] = np.nan
     unknown = np.isnan(line[:, 2])
     if fault.dip == VERTICAL or not unknown.any():
-        return line, given
+        return line, is_given
     if unknown.all():
-        line, given = _divided(line, extent / _PIECES)
+        line, is_given = _divided(line, extent / _PIECES)
         unknown = np.ones(len(line), bool)
     line[unknown, 2] = heights_on(work, np.ascontiguousarray(line[unknown, :2]), tops)
-    return line, given
+    return line, is_given
 
 
 def _divided(line: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
     """A line in pieces that are not longer, and (N,) bool: its own points."""
-    found, given = [], []
+    pieces, are_given = [], []
     for begin, end in itertools.pairwise(line):
         count = max(1, math.ceil(float(norm(end[:2] - begin[:2])) / longest))
         shares = np.arange(count)[:, None] / count
-        found.append(begin + shares * (end - begin))
-        given.append(np.arange(count) == 0)
-    return np.concatenate([*found, line[-1:]]), np.concatenate([*given, [True]])
+        pieces.append(begin + shares * (end - begin))
+        are_given.append(np.arange(count) == 0)
+    return np.concatenate([*pieces, line[-1:]]), np.concatenate([*are_given, [True]])
 
 
-def _once_each(top: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _once_each(top: np.ndarray, is_given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(N,) bool: the points that are not where the one before is; and which of them were given."""
     new = begins_run(top)
-    top, given = top[new], given[new]
+    top, is_given = top[new], is_given[new]
     if (top[0] == top[-1]).all():
         raise InputRefused(
             "its trace runs down its dip: it shows no surface",
             advice="correct the dip direction, or give a longer trace",
             place=tuple(top[0].tolist()),
         )
-    given[[0, -1]] = True
-    return new, given
+    is_given[[0, -1]] = True
+    return new, is_given
 
 
-def _bends(top: np.ndarray, given: np.ndarray, near: float) -> np.ndarray:
+def _bends(top: np.ndarray, is_given: np.ndarray, near: float) -> np.ndarray:
     """(N,) bool: of the points between given ones those that a line with a straight piece in their place
     would miss by more (Douglas and Peucker 1973)."""
-    kept = np.zeros(len(top), bool)
-    waiting = list(itertools.pairwise(np.flatnonzero(given).tolist()))
+    is_kept = np.zeros(len(top), bool)
+    waiting = list(itertools.pairwise(np.flatnonzero(is_given).tolist()))
     while waiting:
         begin, end = waiting.pop()
         if end - begin < 2:
@@ -308,9 +308,9 @@ def _bends(top: np.ndarray, given: np.ndarray, near: float) -> np.ndarray:
         worst = int(away.argmax())
         if away[worst] > near:
             middle = begin + 1 + worst
-            kept[middle] = True
+            is_kept[middle] = True
             waiting += [(begin, middle), (middle, end)]
-    return kept
+    return is_kept
 
 
 def _compare(top: np.ndarray, toward: np.ndarray, dip: float) -> list[str]:
@@ -334,13 +334,13 @@ def _compare(top: np.ndarray, toward: np.ndarray, dip: float) -> list[str]:
 def _continuation(line: np.ndarray, run: float, toward: np.ndarray, lengths: list[float]) -> np.ndarray:
     """(2, 2): how far a line, seen along the dip, goes on straight beyond its first and last point, in the
     mean direction of its last tenth there."""
-    found = []
-    for there, length in zip((line[::-1], line), lengths, strict=True):
-        seen = _at_level(there, float(there[-1, 2]), run, toward)
+    steps = []
+    for ordered, length in zip((line[::-1], line), lengths, strict=True):
+        seen = _at_level(ordered, float(ordered[-1, 2]), run, toward)
         way = norm(np.diff(seen, axis=0))[::-1].cumsum()  # from the end
         step = seen[-1] - seen[-2 - int(np.searchsorted(way, _END * way[-1]))]
-        found.append(length * step / norm(step))
-    return np.array(found)
+        steps.append(length * step / norm(step))
+    return np.array(steps)
 
 
 def _continued(row: np.ndarray, by: np.ndarray) -> np.ndarray:

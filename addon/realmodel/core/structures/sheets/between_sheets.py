@@ -24,15 +24,17 @@ def places_between(
     (T, 3, 3), in a compartment: the number (K,) of the pair of each place, and places (K, 3), some in each
     part."""
     low, high = one.copy(), one.copy()
-    low[:, :, 2], high[:, :, 2] = (each(one[:, :, 2], other[:, :, 2]) for each in (np.minimum, np.maximum))
+    low[:, :, 2], high[:, :, 2] = (
+        extreme(one[:, :, 2], other[:, :, 2]) for extreme in (np.minimum, np.maximum)
+    )
     boxes = np.stack([low.min(axis=1), high.max(axis=1), high.max(axis=1)], axis=1)
-    found = [(np.empty(0, np.int64), np.empty((0, 3)))]
+    parts = [(np.empty(0, np.int64), np.empty((0, 3)))]
     pairs = native_module().meeting_boxes(boxes, beyond)
     for start in range(0, len(pairs), _AT_ONCE):
         t, m = pairs[start : start + _AT_ONCE].T
         number, places = _places_in_parts(one[t], other[t], beyond[m], within)
-        found.append((t[number], places))
-    return np.concatenate([number for number, _ in found]), np.concatenate([places for _, places in found])
+        parts.append((t[number], places))
+    return np.concatenate([number for number, _ in parts]), np.concatenate([places for _, places in parts])
 
 
 def _places_in_parts(
@@ -40,16 +42,16 @@ def _places_in_parts(
 ) -> tuple[np.ndarray, np.ndarray]:
     """As places_between has them, of one triangle (3, 3) of `crossing` (P, 3, 3) for each pair."""
     origin = one[:, 0]
-    one, other, crossing = (each - origin[:, None] for each in (one, other, crossing))
+    one, other, crossing = (triangles - origin[:, None] for triangles in (one, other, crossing))
     corners = np.concatenate([one, other], axis=1)
     narrow = _WIDTH * np.ptp(corners, axis=1).max(axis=1)
-    found: list[tuple[np.ndarray, np.ndarray]] = []
+    parts: list[tuple[np.ndarray, np.ndarray]] = []
     for lower, upper in ((one, other), (other, one)):
         corners, owner = _part_between(crossing, lower, upper)
         is_wide = ~_are_narrow(corners, owner, narrow)[owner]
         # a number for each polygon, also of the two of one pair
-        found.append((corners[is_wide] + origin[owner[is_wide]], 2 * owner[is_wide] + len(found)))
-    corners, owner = (np.concatenate(each) for each in zip(*found, strict=True))
+        parts.append((corners[is_wide] + origin[owner[is_wide]], 2 * owner[is_wide] + len(parts)))
+    corners, owner = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
     if not len(corners):
         return np.empty(0, np.int64), corners
     middle = _means(corners, owner)[owner]
@@ -105,9 +107,9 @@ def _clipped(triangles: np.ndarray, planes: _Planes) -> tuple[np.ndarray, np.nda
         crosses = (off < 0) != (off[after] < 0)
         share = off / np.where(crosses, off - off[after], 1.0)
         crossing = corners + share[:, None] * (corners[after] - corners)
-        kept = np.column_stack([off >= 0, crosses]).ravel()
-        corners = np.stack([corners, crossing], axis=1).reshape(-1, 3)[kept]
-        owner = np.repeat(owner, 2)[kept]
+        is_kept = np.column_stack([off >= 0, crosses]).ravel()
+        corners = np.stack([corners, crossing], axis=1).reshape(-1, 3)[is_kept]
+        owner = np.repeat(owner, 2)[is_kept]
     return corners, owner
 
 

@@ -17,10 +17,10 @@ _BETTER = 2.0  # times nearer: a point alone at its place must fit other sides s
 def contradicting(points: np.ndarray, rows: np.ndarray, contacts: np.ndarray) -> np.ndarray:
     """(P,) bool: of points (P, 3) those that others at their place in plan contradict; none where these are
     all. Of a hole that passes a fault, contacts (C, 3) that follow from observations are on their sides."""
-    found = beyond_faults(points, rows) & ~are_among(points, contacts)
-    left = np.flatnonzero(~found)
-    found[left[contradictions(np.column_stack([points, rows])[left])]] = True
-    return found & ~found.all()
+    contradicted = beyond_faults(points, rows) & ~are_among(points, contacts)
+    left = np.flatnonzero(~contradicted)
+    contradicted[left[contradictions(np.column_stack([points, rows])[left])]] = True
+    return contradicted & ~contradicted.all()
 
 
 def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -30,31 +30,31 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
     rows: (P, F) their sides. A point is on the wrong side where its height is nearer to that of its neighbors
     on other sides than to that of those on its own. Neighbors are points that are alone at their place.
     """
-    found = np.zeros(len(points), bool)
+    is_beyond = np.zeros(len(points), bool)
     several = heights_apart(points) > 0
     if not several.any() or several.all():
-        return found
+        return is_beyond
     _, row = np.unique(rows, axis=0, return_inverse=True)
     row = row.ravel()
     tolerated = LARGEST_SHARE * np.ptp(points[:, 2])
     tried = np.flatnonzero(several).tolist()
     while tried:
-        known = np.flatnonzero(~several & ~found)
-        if not len(known):
+        references = np.flatnonzero(~several & ~is_beyond)
+        if not len(references):
             break
         nearest, run = native_module().nearest_points, on_threads(1)
-        found_near, _ = nearest(points[known, :2], points[tried, :2], _LOOKED_AT + 1, execution=run)
+        nearest_rows, _ = nearest(points[references, :2], points[tried, :2], _LOOKED_AT + 1, execution=run)
         wrong, beside = [], set()
-        for number, numbers in zip(tried, found_near, strict=True):
-            near = known[numbers[numbers >= 0]]
+        for number, numbers in zip(tried, nearest_rows, strict=True):
+            near = references[numbers[numbers >= 0]]
             near = np.append(near[near != number], near[near == number])[:_LOOKED_AT]  # itself comes last
-            own, other = _off(points, row, near, number)
-            if own > (other if several[number] else max(tolerated, _BETTER * other)):
+            own_off, other = _off(points, row, near, number)
+            if own_off > (other if several[number] else max(tolerated, _BETTER * other)):
                 wrong.append(number)
                 beside.update(near.tolist())
-        found[wrong] = True
-        tried = sorted(number for number in beside if not found[number])
-    return found
+        is_beyond[wrong] = True
+        tried = sorted(number for number in beside if not is_beyond[number])
+    return is_beyond
 
 
 def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> tuple[float, float]:
@@ -64,5 +64,5 @@ def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> 
         int(side): abs(float(points[near[row[near] == side][:_COUNTED], 2].mean() - points[number, 2]))
         for side in np.unique(row[near])
     }
-    own = off.pop(int(row[number]), 0.0)
-    return own, min(off.values(), default=np.inf)
+    own_off = off.pop(int(row[number]), 0.0)
+    return own_off, min(off.values(), default=np.inf)

@@ -45,7 +45,7 @@ def _nearest_heights(line: np.ndarray, plan: np.ndarray) -> np.ndarray:
     """(N,) the heights of a line (M, 3) at its places nearest to others (N, 2) in plan."""
     begin, step = line[:-1], np.diff(line, axis=0)
     size = dot(step[:, :2], step[:, :2])
-    found = np.empty(len(plan))
+    z = np.empty(len(plan))
     some = max(1, _AT_ONCE // len(begin))
     for start in range(0, len(plan), some):
         part = slice(start, start + some)
@@ -53,8 +53,8 @@ def _nearest_heights(line: np.ndarray, plan: np.ndarray) -> np.ndarray:
         share = np.clip(dot(away, step[:, :2]) / np.where(size > 0, size, 1.0), 0.0, 1.0)
         off = away - share[..., None] * step[:, :2]
         number = dot(off, off).argmin(axis=1)
-        found[part] = begin[number, 2] + share[np.arange(len(number)), number] * step[number, 2]
-    return found
+        z[part] = begin[number, 2] + share[np.arange(len(number)), number] * step[number, 2]
+    return z
 
 
 def sheet_runs_away(sheet: Sheet, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray]) -> bool:
@@ -80,7 +80,7 @@ def between_faults(
     comes: so the throw of each fault is that of its own sheet. heights: (V,) of each sheet, at the vertices
     of the first. faults: of each sheet, places (M, 2) along its fault in plan, the fault, and on which side
     of it the sheet comes from. There no sheet counts from elsewhere."""
-    plan, known = np.ascontiguousarray(first.vertices[:, :2]), np.isfinite(heights)
+    plan, is_known = np.ascontiguousarray(first.vertices[:, :2]), np.isfinite(heights)
     nearest = native_module().nearest_points
     away = np.array([work.native(nearest, places, plan)[1][:, 0] for places, _, _ in faults])
     from_there = np.array(
@@ -89,7 +89,7 @@ def between_faults(
             for z, (_, fault, side) in zip(heights, faults, strict=True)
         ]
     )
-    counts = known & (from_there | ~from_there.any(axis=0))
+    counts = is_known & (from_there | ~from_there.any(axis=0))
     counts[0] |= ~counts.any(axis=0)
     away = np.where(counts, away, np.inf)
     least = away.min(axis=0)

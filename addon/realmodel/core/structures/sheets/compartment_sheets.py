@@ -53,11 +53,11 @@ class CompartmentSheets:
     def make_own(self) -> bool:
         """Makes the sheets that its own data are enough for, once the surfaces that it needs are finished.
         Returns whether there were any."""
-        own = [family for family in self.own if family.key not in self.made]
-        if not own or not self._is_ready():
+        unmade = [family for family in self.own if family.key not in self.made]
+        if not unmade or not self._is_ready():
             return False
         with self.entry.named(self.number):
-            self.made |= {family.key: self.surface.sheets(family) for family in own}
+            self.made |= {family.key: self.surface.sheets(family) for family in unmade}
         return True
 
     def tell(self, throws: Throws) -> None:
@@ -80,13 +80,13 @@ class CompartmentSheets:
         the throw is known best; where it is not known the one with most data."""
         if family in self.own or not self._is_ready():
             return []
-        found = []
+        sources = []
         for source in sorted(self.every, key=self._amount, reverse=True):
             fault = throws.fault_between(source, family) if source.key in self.made else None
             if fault is not None:
-                found.append(SheetSource(source, fault, throws.shift(self.number, fault, source, family)))
-        best = min((source.rank for source in found), default=UNKNOWN)
-        return [source for source in found if source.rank == best][: 1 if best == UNKNOWN else None]
+                sources.append(SheetSource(source, fault, throws.shift(self.number, fault, source, family)))
+        best = min((source.rank for source in sources), default=UNKNOWN)
+        return [source for source in sources if source.rank == best][: 1 if best == UNKNOWN else None]
 
     def borrow(self, family: Family, sources: list[SheetSource], throws: Throws) -> None:
         """Makes the sheets of a family from those of others, the first of which has most data."""
@@ -102,7 +102,7 @@ class CompartmentSheets:
             trends = {}
             for sides, first in taken[0].items():
                 plan = np.ascontiguousarray(first.vertices[:, :2])
-                others = [each[sides] for each in taken[1:]]
+                others = [sheets[sides] for sheets in taken[1:]]
                 heights = [throws.heights_at(self.number, plan, self.number, sheet) for sheet in others]
                 heights.insert(0, first.vertices[:, 2])
                 trends[sides] = between_faults(throws.work, first, heights, faults)
@@ -118,13 +118,13 @@ class CompartmentSheets:
         first = next(iter(sheets.values()))
         taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
         if source.shift is not None and source.fault is not None:
-            found = throws.by_thickness(self.number, source.shift, source.fault, source.family, family, taken)
+            moved = throws.by_thickness(self.number, source.shift, source.fault, source.family, family, taken)
         elif source.fault is not None:
-            found = self.surface.continued(taken, family, source.family, source.fault)
+            moved = self.surface.continued(taken, family, source.family, source.fault)
         else:
             return taken
-        self.surface.adopt(found, taken)
-        return found
+        self.surface.adopt(moved, taken)
+        return moved
 
     def make_last(self, throws: Throws) -> None:
         """Makes the sheets of families that are across one fault from none with sheets: from the few points,
@@ -158,7 +158,9 @@ class CompartmentSheets:
         structure, number = self.entry.divided(), self.number
         has_changed = False
         for together in families:
-            sheets = {sides: structure.sheet(each, number) for each, sides in together.members.items()}
+            sheets = {
+                sides: structure.sheet(compartment, number) for compartment, sides in together.members.items()
+            }
             drawn = _drawn_together(self.surface, together, sheets)
             for compartment, sides in together.members.items():
                 before, after = structure.sheet(compartment, number), drawn[sides]
@@ -177,8 +179,8 @@ class CompartmentSheets:
         warnings: list[BuildWarning] = []
         for _ in range(_ROUNDS):
             before = structure.distinct(number)
-            found, warnings = surface.tied(before)
-            tied = dict(zip(before, found, strict=True))
+            new_sheets, warnings = surface.tied(before)
+            tied = dict(zip(before, new_sheets, strict=True))
             if all(after is sheet for sheet, after in tied.items()):
                 break
             for compartment, sheets in enumerate(structure.sheets):
@@ -207,21 +209,23 @@ class CompartmentSheets:
 
     def _warning(self, family: Family, sources: list[SheetSource]) -> BuildWarning:
         structure, rock = self.entry.divided(), self.entry.rock
-        names = [structure.names[next(iter(each.members))] for each in (family, *(s.family for s in sources))]
-        here, *there = (f"'{name}'" for name in names)
+        names = [
+            structure.names[next(iter(named.members))] for named in (family, *(s.family for s in sources))
+        ]
+        here, *elsewhere = (f"'{name}'" for name in names)
         if family.key in self.few:
             count = self.surface.count(family)
             text = (
                 f"its {count} point{'s' if count > 1 else ''} in compartment {here}, too few or on one line, "
             )
-            text += f"are interpolated on the sheet of compartment {' and '.join(there)}"
+            text += f"are interpolated on the sheet of compartment {' and '.join(elsewhere)}"
         else:
             text = f"it has no {self.surface.data} in compartment {here}: there it goes on as in compartment "
-            text += " and ".join(there)
+            text += " and ".join(elsewhere)
         for source in sources:
             fault = "" if source.fault is None else f"fault '{structure.faults.names[source.fault]}'"
             if source.shift is not None:
-                others = " and ".join(f"'{rock.surfaces[each].name}'" for each in source.shift.surfaces)
+                others = " and ".join(f"'{rock.surfaces[surface].name}'" for surface in source.shift.surfaces)
                 text += f", shifted {_moved(source.shift)}, the throw of {fault} in {others}"
             elif fault:
                 text += f", shifted by 0, as no other surface shows the throw of {fault} there"
@@ -250,28 +254,28 @@ def make_borrowed(
     """Makes the sheets of all families without enough data: first those of which the throw is known best. A
     family may be reached through others. finish: is called with each surface whose sheets are all made."""
     while unfinished:
-        own = [each for each in unfinished if each.make_own()]
-        for each in unfinished:
-            each.tell(throws)
-        if not own:
-            found = [
-                (each, family, each.neighbors(family, throws))
-                for each in unfinished
-                for family in each.waiting
+        made = [sheets for sheets in unfinished if sheets.make_own()]
+        for sheets in unfinished:
+            sheets.tell(throws)
+        if not made:
+            borrowable = [
+                (sheets, family, sheets.neighbors(family, throws))
+                for sheets in unfinished
+                for family in sheets.waiting
             ]
-            found = [(each, family, sources) for each, family, sources in found if sources]
-            best = min((sources[0].rank for _, _, sources in found), default=UNKNOWN)
-            for each, family, sources in found:
+            borrowable = [(sheets, family, sources) for sheets, family, sources in borrowable if sources]
+            best = min((sources[0].rank for _, _, sources in borrowable), default=UNKNOWN)
+            for sheets, family, sources in borrowable:
                 if sources[0].rank == best:
-                    each.borrow(family, sources, throws)
-            if not found:
-                for each in unfinished:
-                    each.make_last(throws)
-        for each in unfinished:
-            if not each.waiting:
-                each.tell(throws)
-                finish(each)
-        unfinished = [each for each in unfinished if each.waiting]
+                    sheets.borrow(family, sources, throws)
+            if not borrowable:
+                for sheets in unfinished:
+                    sheets.make_last(throws)
+        for sheets in unfinished:
+            if not sheets.waiting:
+                sheets.tell(throws)
+                finish(sheets)
+        unfinished = [sheets for sheets in unfinished if sheets.waiting]
 
 
 def _moved(shift: Shift) -> str:

@@ -39,23 +39,23 @@ def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int) -> Cutoff:
     vertices = sheet.vertices
     crossed = crossed_edges(work, sheet, fault)
     of_corners = crossed.side[crossed.triangles]
-    own = of_corners == side
-    some = np.flatnonzero(own.any(axis=1))
+    on_side = of_corners == side
+    some = np.flatnonzero(on_side.any(axis=1))
     corners, on = vertices[crossed.triangles[some]], of_corners[some] == 0
     edges = crossed.edges[crossed.of_triangle[some]]
     begin, end = (vertices[edges[:, :, k]] for k in range(2))
     hits = begin + crossed.share[crossed.of_triangle[some], None] * (end - begin)
     met = np.concatenate([np.where(on[:, :, None], corners, np.nan), hits], axis=1)
-    known = np.isfinite(met[:, :, 0])
-    two = known.sum(axis=1) == 2
-    ends = met[two][known[two]].reshape(-1, 2, 3)
+    is_met = np.isfinite(met[:, :, 0])
+    two = is_met.sum(axis=1) == 2
+    ends = met[two][is_met[two]].reshape(-1, 2, 3)
     along = ends[:, 1, :2] - ends[:, 0, :2]
-    weight = own[some][two]
+    weight = on_side[some][two]
     middle = (corners[two] * weight[:, :, None]).sum(axis=1) / weight.sum(axis=1)[:, None]
     inward = np.column_stack([-along[:, 1], along[:, 0]])
     facing = dot(inward, middle[:, :2] - ends[:, 0, :2])
-    kept = facing != 0
-    return Cutoff(ends[kept], (inward * np.sign(facing)[:, None])[kept])
+    is_kept = facing != 0
+    return Cutoff(ends[is_kept], (inward * np.sign(facing)[:, None])[is_kept])
 
 
 class _Places:
@@ -96,7 +96,7 @@ class Measured:
     def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """places (N, 3), throw, heave and length (N,)."""
         parts = [_NOTHING, *(self.between(*pair) for pair in self._pairs())]
-        places, throw, heave, length = (np.concatenate(each) for each in zip(*parts, strict=True))
+        places, throw, heave, length = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
         return places, throw, heave, length
 
     def _pairs(self) -> list[tuple[int, int]]:
@@ -170,13 +170,13 @@ def _across(places: _Places, some: np.ndarray, upper: Cutoff) -> tuple[np.ndarra
     """
     begin, end = upper.ends.transpose(1, 0, 2)
     numbers, points = [np.empty(0, np.int64)], [np.empty((0, 3))]
-    given, count = np.flatnonzero(some), max(1, _AT_ONCE // max(1, len(begin)))
-    for start in range(0, len(given), count):
-        part = given[start : start + count]
+    chosen, count = np.flatnonzero(some), max(1, _AT_ONCE // max(1, len(begin)))
+    for start in range(0, len(chosen), count):
+        part = chosen[start : start + count]
         across = places.across[part]
         along = np.column_stack([-across[:, 1], across[:, 0]])
-        own = dot(along, places.points[part, :2])[:, None]
-        first, last = (_products(along, each) - own for each in (begin, end))
+        offset = dot(along, places.points[part, :2])[:, None]
+        first, last = (_products(along, corners) - offset for corners in (begin, end))
         inward = dot(across, places.inward[part])[:, None] * _products(across, upper.inward)
         row, segment = np.nonzero((first * last <= 0) & (first != last) & (inward < 0))
         share = first[row, segment] / (first[row, segment] - last[row, segment])

@@ -34,14 +34,14 @@ class Family:
     def with_ends(self, some: list[int], faults: RockFaults) -> list[int]:
         """Some of the faults that die out here, as numbers among these, and those at which they end: where
         these are not themselves, sheets beside the others may still differ on their two sides."""
-        dying, found = self.dying, set(some)
+        dying, numbers = self.dying, set(some)
         waiting = list(some)
         while waiting:
             for other, _ in faults.ends[dying[waiting.pop()]]:
-                if other in dying and (number := dying.index(other)) not in found:
-                    found.add(number)
+                if other in dying and (number := dying.index(other)) not in numbers:
+                    numbers.add(number)
                     waiting.append(number)
-        return sorted(found)
+        return sorted(numbers)
 
 
 def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndarray:
@@ -61,8 +61,8 @@ def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndar
     for branch in np.flatnonzero(active & dies_out):
         ends = faults.ends[branch]
         if any(dies_out[other] for other, _ in ends):
-            there = [rows[:, other] != -kept for other, kept in ends if not dies_out[other]]
-            keys[np.all(there, axis=0) if there else slice(None), branch] = DIES_OUT
+            masks = [rows[:, other] != -side for other, side in ends if not dies_out[other]]
+            keys[np.all(masks, axis=0) if masks else slice(None), branch] = DIES_OUT
     return keys
 
 
@@ -71,22 +71,22 @@ def parting(faults: RockFaults, number: int) -> list[int]:
     neither ends at another nor has one end at it parts nothing."""
     active = np.flatnonzero(faults.active(number)).tolist()
     waiting = [n for n in active if faults.ends[n] or not faults.dies_out[n]]
-    found = set(waiting)
+    numbers = set(waiting)
     while waiting:
-        others = {other for other, _ in faults.ends[waiting.pop()]} - found
-        found |= others
+        others = {other for other, _ in faults.ends[waiting.pop()]} - numbers
+        numbers |= others
         waiting += others
-    return sorted(found)
+    return sorted(numbers)
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:
     """The families of all compartments of a rock mass, for surface `number`."""
-    found: dict[tuple[int, ...], Family] = {}
+    by_key: dict[tuple[int, ...], Family] = {}
     rows = structure.compartments
     for compartment, key in enumerate(map(tuple, keys_of(structure, number, rows).tolist())):
-        family = found.setdefault(key, Family(key, {}))
+        family = by_key.setdefault(key, Family(key, {}))
         family.members[compartment] = tuple(rows[compartment, family.dying].tolist())
-    return list(found.values())
+    return list(by_key.values())
 
 
 def around_tips(structure: RockStructure, number: int, every: list[Family]) -> list[Family]:
@@ -105,12 +105,12 @@ def around_tips(structure: RockStructure, number: int, every: list[Family]) -> l
     settled = tuple(
         fault for fault, dies_out in enumerate(faults.dies_out) if dies_out and fault not in ended_at
     )
-    found: dict[tuple[int, ...], Family] = {}
+    by_key: dict[tuple[int, ...], Family] = {}
     for family in every:
         key = tuple(DIES_OUT if fault in branches else side for fault, side in enumerate(family.key))
-        together = found.setdefault(key, Family(key, {}, branches, settled))
+        together = by_key.setdefault(key, Family(key, {}, branches, settled))
         for compartment in family.members:
             together.members[compartment] = tuple(
                 structure.compartments[compartment, together.dying].tolist()
             )
-    return list(found.values())
+    return list(by_key.values())

@@ -78,37 +78,39 @@ class _Data:
     def model(self, steps: Sequence[np.ndarray]) -> tuple[np.ndarray, list[int]]:
         """(P, Q) columns, as far as they are independent: a constant of each surface, steps, and a slope of
         each surface; and which of the steps are among them."""
-        own = [(self.surface == each).astype(np.float64) for each in np.unique(self.surface)]
+        constants = [(self.surface == surface).astype(np.float64) for surface in np.unique(self.surface)]
         slopes = [self.points[:, 0], self.points[:, 1]]
         columns: list[np.ndarray] = []
         units: list[np.ndarray] = []
-        kept = []
-        for number, column in enumerate([*own, *steps, *slopes]):
+        step_numbers = []
+        for number, column in enumerate([*constants, *steps, *slopes]):
             left = column
             for unit in units:
                 left = left - (left * unit).sum() * unit
             if norm(left) > _INDEPENDENT * norm(column):
                 columns.append(column)
                 units.append(left / norm(left))
-                if len(own) <= number < len(own) + len(steps):
-                    kept.append(number - len(own))
-        return np.column_stack(columns), kept
+                if len(constants) <= number < len(constants) + len(steps):
+                    step_numbers.append(number - len(constants))
+        return np.column_stack(columns), step_numbers
 
     def systems(self, columns: np.ndarray, fields: Sequence[_Field]) -> np.ndarray:
         """(K, P + Q + 1, P + Q + 1) covariances of the points in some fields, beside the columns and the
         heights."""
         away = norm(self.points[:, None, :2] - self.points[None, :, :2])
-        others = [(own[:, None] != own[None]).astype(np.float64) for own in (self.surface, self.block)]
-        size, known = len(self.points), np.column_stack([columns, self.points[:, 2]])
-        found = np.zeros((len(fields), size + known.shape[1], size + known.shape[1]))
-        for system, field in zip(found, fields, strict=True):
+        others = [
+            (numbers[:, None] != numbers[None]).astype(np.float64) for numbers in (self.surface, self.block)
+        ]
+        size, values = len(self.points), np.column_stack([columns, self.points[:, 2]])
+        systems = np.zeros((len(fields), size + values.shape[1], size + values.shape[1]))
+        for system, field in zip(systems, fields, strict=True):
             lag = np.sqrt(5.0) * away / field.range
             covariance = (1.0 + lag + lag * lag / 3.0) * exp(-lag)  # Matern, 5/2
             covariance *= 1.0 - field.of_surface * others[0]
             covariance *= 1.0 - field.of_block * others[1]
             system[:size, :size] = (1.0 - field.nugget) * covariance + field.nugget * np.eye(size)
-            system[:size, size:], system[size:, :size] = known, known.T
-        return found
+            system[:size, size:], system[size:, :size] = values, values.T
+        return systems
 
     @property
     def least(self) -> float:
@@ -123,11 +125,11 @@ class _Data:
     def _searched(self, columns: np.ndarray, of_block: Sequence[float]) -> _Field:
         """The shares that are likeliest with the likeliest range and nugget, and these again."""
         first = of_block[0]
-        best = self._first_of_likeliest(columns, [_Field(*each, 0.0, first) for each in _PLAIN])
+        best = self._first_of_likeliest(columns, [_Field(*plain, 0.0, first) for plain in _PLAIN])
         shares = product(of_block, _SHARES, _NUGGETS)
-        fields = [_Field(best.range, nugget, own, block) for block, own, nugget in shares]
+        fields = [_Field(best.range, nugget, surface, block) for block, surface, nugget in shares]
         best = self._first_of_likeliest(columns, fields)
-        return self._first_of_likeliest(columns, [_Field(*each, *best[2:]) for each in _PLAIN])
+        return self._first_of_likeliest(columns, [_Field(*plain, *best[2:]) for plain in _PLAIN])
 
     def _first_of_likeliest(
         self, columns: np.ndarray, fields: Sequence[_Field], better: float = _BETTER
@@ -181,21 +183,21 @@ def fit_throws(work: Work, entry: RockInput) -> dict[int, Steps]:
     these are; none where they differ otherwise."""
     structure = entry.divided()
     numbers = [number for number in range(len(entry.rock.surfaces)) if _takes_part(entry, number)]
-    found = {number: each for number in numbers if (each := _parted(work, entry, number)) is not None}
-    if not found:
+    parts = {number: columns for number in numbers if (columns := _parted(work, entry, number)) is not None}
+    if not parts:
         return {}
-    points, keys = (np.concatenate(each) for each in zip(*found.values(), strict=True))
-    surface = np.repeat(list(found), [len(each) for each, _ in found.values()])
+    points, keys = (np.concatenate(arrays) for arrays in zip(*parts.values(), strict=True))
+    surface = np.repeat(list(parts), [len(surface_points) for surface_points, _ in parts.values()])
     extent = float(np.ptp(points[:, :2], axis=0).max())
     origin = np.array([*points[:, :2].mean(axis=0), points[:, 2].mean()])
     points = (points - origin) / np.array([extent, extent, 1.0])
     _, block = np.unique(keys, axis=0, return_inverse=True)
     every = -(-len(points) // _MOST)
-    data = _Data(*(each[::every] for each in (points, surface, block.ravel(), keys / 2.0)))
-    steps, deviations = _fitted(data, list(found), len(structure.faults))
+    data = _Data(*(array[::every] for array in (points, surface, block.ravel(), keys / 2.0)))
+    steps, deviations = _fitted(data, list(parts), len(structure.faults))
     return {
         number: Steps(steps[row], deviations[row])
-        for row, number in enumerate(found)
+        for row, number in enumerate(parts)
         if np.isfinite(steps[row]).any()
     }
 
@@ -204,41 +206,41 @@ def _fitted(data: _Data, numbers: list[int], faults: int) -> tuple[np.ndarray, n
     """(S, F) the steps of some surfaces and their standard deviations: NaN where they are not shown; 0 where
     a step is smaller than its deviation."""
     steps, deviations = np.full((2, len(numbers), faults), np.nan)
-    own = np.array([data.surface == number for number in numbers])
+    in_surface = np.array([data.surface == number for number in numbers])
     parts = [[(row, fault)] for fault in range(faults) for row in range(len(numbers))]
     together = [[(row, fault) for row in range(len(numbers))] for fault in range(faults)]
 
     def model(unknown: list[list[tuple[int, int]]]) -> tuple[np.ndarray, list[int]]:
         """The columns of steps, each of a fault in some surfaces."""
         of = [
-            np.where(own[[row for row, _ in each]].any(axis=0), data.sides[:, each[0][1]], 0.0)
-            for each in unknown
+            np.where(in_surface[[row for row, _ in places]].any(axis=0), data.sides[:, places[0][1]], 0.0)
+            for places in unknown
         ]
         return data.model(of)
 
-    shared, kept = model(together)
-    unknown = [together[each] for each in kept]
+    shared, independent = model(together)
+    unknown = [together[number] for number in independent]
     if not unknown or len(shared) - shared.shape[1] < _FREE:
         return steps, deviations
     field = data.likeliest(shared)
     apart, of_parts = model(parts)
-    if len(of_parts) > len(kept) and len(apart) - apart.shape[1] >= _FREE:
+    if len(of_parts) > len(independent) and len(apart) - apart.shape[1] >= _FREE:
         common = field._replace(of_block=0.0)
         bound, free = data.fit(shared, common), data.fit(apart, common)
         expected = max(bound.square / bound.free, data.least) * (bound.free - free.free)
         if bound.square - free.square > _ALIKE * expected:
-            unknown, field = [parts[each] for each in of_parts], data.likeliest(apart)
+            unknown, field = [parts[number] for number in of_parts], data.likeliest(apart)
     if field.of_block > 0.0:
         return steps, deviations
     while unknown:
-        columns, kept = model(unknown)
-        unknown = [unknown[each] for each in kept]
+        columns, independent = model(unknown)
+        unknown = [unknown[number] for number in independent]
         first = len(np.unique(data.surface))
-        found = data.fit(columns, field)
-        values = found.coefficients[first : first + len(unknown)]
-        errors = np.sqrt(found.variances[first : first + len(unknown)])
-        for each, value, error in zip(unknown, values, errors, strict=True):
-            for place in each:
+        fitted = data.fit(columns, field)
+        values = fitted.coefficients[first : first + len(unknown)]
+        errors = np.sqrt(fitted.variances[first : first + len(unknown)])
+        for places, value, error in zip(unknown, values, errors, strict=True):
+            for place in places:
                 steps[place], deviations[place] = value, error
         least = int((np.abs(values) / errors).argmin())
         if not np.abs(values[least]) < errors[least]:
@@ -276,6 +278,6 @@ def _parted(work: Work, entry: RockInput, number: int) -> tuple[np.ndarray, np.n
     structure = entry.divided()
     sides, moved, _ = point_sides(work, points, entry, number)
     rows = np.where(structure.faults.active(number), sides, 0)
-    kept = ~(contradicting(points, rows, contacts) | moved.any(axis=1))
-    keys = keys_of(structure, number, sides[kept])
-    return (points[kept], keys) if len(np.unique(keys, axis=0)) > 1 else None
+    is_kept = ~(contradicting(points, rows, contacts) | moved.any(axis=1))
+    keys = keys_of(structure, number, sides[is_kept])
+    return (points[is_kept], keys) if len(np.unique(keys, axis=0)) > 1 else None

@@ -168,8 +168,8 @@ class InterpolatedSurface:
 
     def _beside_points(self, family: Family) -> list[np.ndarray]:
         """(P, 3) the points in its compartments of each of the sheets that it is interpolated with."""
-        others = [each for each in sheets_beside(self.entry.rock, self.number) if each != self.number]
-        return [self._with_own_points(family, each).points for each in others]
+        others = [other for other in sheets_beside(self.entry.rock, self.number) if other != self.number]
+        return [self._with_own_points(family, other).points for other in others]
 
     def _own_dips(self, family: Family) -> Dips | None:
         return None if self.dips is None else self.dips.some(self._within(family).has(self.dip_sides))
@@ -188,10 +188,10 @@ class InterpolatedSurface:
     def _that_constrain(
         self, family: Family, plan: np.ndarray, sides: np.ndarray, beside: Sequence[tuple]
     ) -> np.ndarray:
-        own = self._within(family).has(sides)
+        constrains = self._within(family).has(sides)
         for fault, side, trace in beside:
-            own &= (sides[:, fault] != -side) | ~trace.beside(plan)
-        return own
+            constrains &= (sides[:, fault] != -side) | ~trace.beside(plan)
+        return constrains
 
     def _certain(self, family: Family) -> np.ndarray:
         """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
@@ -213,22 +213,22 @@ class InterpolatedSurface:
         better with that."""
         shape, side = self.entry.divided().faults.shapes[fault], source.key[fault]
         within, points = self._within(family), self.points[self._certain(family)]
-        found: dict[Sheet, Sheet] = {}
+        chosen: dict[Sheet, Sheet] = {}
         for sheet in sheets.values():
-            if sheet in found:
+            if sheet in chosen:
                 continue
-            found[sheet] = sheet
+            chosen[sheet] = sheet
             level = as_at_fault(self.work, sheet, shape, side)
             if level is None:
                 continue
             if len(points):
                 is_level = self._spread(points, level) < self._spread(points, sheet)
             else:
-                known = fault_sides(self.work, sheet.vertices, shape) == side
-                is_level = sheet_runs_away(sheet, known, within)
+                is_known = fault_sides(self.work, sheet.vertices, shape) == side
+                is_level = sheet_runs_away(sheet, is_known, within)
             if is_level:
-                found[sheet] = level
-        return {sides: found[sheet] for sides, sheet in sheets.items()}
+                chosen[sheet] = level
+        return {sides: chosen[sheet] for sides, sheet in sheets.items()}
 
     def _spread(self, points: np.ndarray, sheet: Sheet) -> float:
         """How different the heights of points (P, 3) above a sheet are."""
@@ -244,32 +244,32 @@ class InterpolatedSurface:
     def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
         """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
         points are few or none."""
-        own = self.own(family) if trends is None else self._certain(family)
+        own_points = self.own(family) if trends is None else self._certain(family)
         if self.steps is not None and trends is None:
-            if not own.any():
+            if not own_points.any():
                 self._warn_of_no_points(family)
-            own = np.ones(len(own), bool)
-        if trends is not None and not own.any():
+            own_points = np.ones(len(own_points), bool)
+        if trends is not None and not own_points.any():
             return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
         trend = None if trends is None else trends[first]
         constrained = self._constrained(family)
-        common = self._interpolated(family, first, own, self.surface, constrained, trend)
-        if not own.any() and not needed_surfaces(self.entry.rock, self.number):
+        common = self._interpolated(family, first, own_points, self.surface, constrained, trend)
+        if not own_points.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.divided().faults.shapes[fault] for fault in family.dying]
         nodes, triangles = self.entry.planar_mesh()
         z = self._on_nodes(common)
-        known = np.isfinite(z)
-        meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        flat = Sheet(np.column_stack([nodes, np.where(known, z, 0.0)]), meshed)
+        is_known = np.isfinite(z)
+        meshed = np.ascontiguousarray(triangles[is_known[triangles].all(axis=1)])
+        flat = Sheet(np.column_stack([nodes, np.where(is_known, z, 0.0)]), meshed)
         traces = [trace_of(self.work, flat, fault, self._within(family)) for fault in faults]
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
         met = family.with_ends(met, self.entry.divided().faults)
         hidden = {
-            (number, side): own
+            (number, side): own_points
             & (self.placed.sides[:, family.dying[number]] == -side)
             & traces[number].beside(self.points[:, :2])
             for number in met
@@ -278,7 +278,7 @@ class InterpolatedSurface:
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
         settled = _settled(self.surface, self.made[common][0])
         shows_none = bool(lacks_deviation(self.made[common][0].warnings))
-        counts_by_node = trends is None and self._counts_by_node(settled, constrained) and known.all()
+        counts_by_node = trends is None and self._counts_by_node(settled, constrained) and is_known.all()
         whole_of: dict[tuple[int, ...], np.ndarray] = {}
 
         def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
@@ -288,12 +288,12 @@ class InterpolatedSurface:
             return values
 
         def heights_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
-            away = np.zeros(len(own), bool)
+            away = np.zeros(len(own_points), bool)
             for number, side in zip(met, sides, strict=True):
                 if side:
                     away |= hidden[number, side]
-            visible = own & ~away
-            visible = visible if (visible & self.counts).any() else own
+            visible = own_points & ~away
+            visible = visible if (visible & self.counts).any() else own_points
             beside = [
                 (family.dying[number], side, traces[number])
                 for number, side in zip(met, sides, strict=True)
@@ -325,8 +325,8 @@ class InterpolatedSurface:
             sorted(of_members),
             values_of,
         )
-        found = self._with_equal_ends(family, met, values, meshed, self.made[common][0])
-        return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
+        drawn = self._with_equal_ends(family, met, values, meshed, self.made[common][0])
+        return {sides: drawn[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
         """Sheets without points, within the bounds of the surface."""
@@ -346,8 +346,8 @@ class InterpolatedSurface:
             return sheets
         _, triangles = self.entry.planar_mesh()
         values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
-        known = np.logical_and.reduce([np.isfinite(of[:, 0]) for of in values.values()])
-        meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        is_known = np.logical_and.reduce([np.isfinite(of[:, 0]) for of in values.values()])
+        meshed = np.ascontiguousarray(triangles[is_known[triangles].all(axis=1)])
         result = self.made[next(iter(sheets.values()))][0]
         return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
 
@@ -368,18 +368,18 @@ class InterpolatedSurface:
             [(shapes[fault], 0.0 if fault in family.settled else ramp) for fault in faults],
             self._within(family),
         )
-        found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
-        for sides, sheet in found.items():
-            known = np.isfinite(equal[sides])[triangles].all(axis=1)
-            its = values[sides][used_vertices(nodes, triangles[known])]
+        drawn = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
+        for sides, sheet in drawn.items():
+            is_known = np.isfinite(equal[sides])[triangles].all(axis=1)
+            its = values[sides][used_vertices(nodes, triangles[is_known])]
             self.made[sheet] = result, {"variance": its[:, 1], "distance": its[:, 2]}
-        return found
+        return drawn
 
     def _interpolated(
         self,
         family: Family,
         sides: tuple[int, ...],
-        own: np.ndarray,
+        chosen: np.ndarray,
         surface: Surface,
         data: SurfaceData,
         trend: Sheet | None = None,
@@ -388,25 +388,25 @@ class InterpolatedSurface:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
         other options; data: in the compartments. trend: a sheet that was made here, on which the points are
         interpolated. lips: at faults that die out here, of these points."""
-        data = data.through(self._points(family, own, None if trend is not None else lips))
+        data = data.through(self._points(family, chosen, None if trend is not None else lips))
         one = self._from_points(family, sides, surface, data, self.entry.region, trend)
         sheet = one.surface(self.number)
         result = one.interpolation(self.number)
         self.made[sheet] = result, one.attributes[self.number]
-        if trend is None and own.sum() > self.most[0]:
-            self.most = (int(own.sum()), result)
+        if trend is None and chosen.sum() > self.most[0]:
+            self.most = (int(chosen.sum()), result)
         for warning in one.warnings:
             self.entry.divided().warn(list(family.members), warning)
         return sheet
 
-    def _points(self, family: Family, own: np.ndarray, lips: Sequence[Lip] | None) -> np.ndarray:
+    def _points(self, family: Family, chosen: np.ndarray, lips: Sequence[Lip] | None) -> np.ndarray:
         """(P, 3) some points as they count: the mean of heights on several sides of faults that die out, at
         one place; and others beyond the faults at which the sheet ends, for a method that needs them. lips:
         as of _interpolated; None: without those beyond."""
-        if self.steps is not None and own.all():
+        if self.steps is not None and chosen.all():
             return self._restored(family)
-        points = mean_heights(self.points[own]) if family.dying else self.points[own]
-        return points if lips is None else np.concatenate([points, self._beyond(family, own, lips)])
+        points = mean_heights(self.points[chosen]) if family.dying else self.points[chosen]
+        return points if lips is None else np.concatenate([points, self._beyond(family, chosen, lips)])
 
     def _restored(self, family: Family) -> np.ndarray:
         """(P, 3) the points of all families as high as they would lie in one, but none of others at the place
@@ -414,8 +414,8 @@ class InterpolatedSurface:
         assert self.steps is not None
         steps, points = np.nan_to_num(self.steps.heights), self.points.copy()
         points[:, 2] += dot(np.array(family.key) - self.keys, steps) / 2.0
-        own = self.own(family)
-        return points[own | ~are_among(points[:, :2], points[own, :2])]
+        own_points = self.own(family)
+        return points[own_points | ~are_among(points[:, :2], points[own_points, :2])]
 
     def _from_points(
         self,
@@ -479,20 +479,20 @@ class InterpolatedSurface:
         """(N, 3) height, variance and distance of a sheet at the nodes of the planar mesh, NaN where it has
         none."""
         z = self._on_nodes(sheet)
-        found = np.full((len(z), 3), np.nan)
-        found[:, 0] = z
+        values = np.full((len(z), 3), np.nan)
+        values[:, 0] = z
         attributes = self.made[sheet][1]
-        found[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
-        return found
+        values[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
+        return values
 
     def _trend(self, sheet: Sheet) -> Trend:
         interpolation, attributes = self.made[sheet]
         by = of_residuals(self.surface)
         return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
 
-    def _beyond(self, family: Family, own: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
+    def _beyond(self, family: Family, chosen: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
         """(K, 3) points beyond the faults at which the sheet ends, for a method that needs them."""
-        points, shapes = self.points[own], self.entry.divided().faults.shapes
+        points, shapes = self.points[chosen], self.entry.divided().faults.shapes
         whole = np.ones(len(points), bool)
         parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
         lips, options = [*parting, *lips], self.surface.method_options()
@@ -513,25 +513,27 @@ class InterpolatedSurface:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of
         the planar mesh gets the height of the compartment in which the other surface lies there."""
         structure = self.entry.divided()
-        members = [each for each, its in family.members.items() if its == sides] or list(family.members)
-        different = list(dict.fromkeys(structure.sheet(each, other) for each in members))
+        members = [compartment for compartment, its in family.members.items() if its == sides] or list(
+            family.members
+        )
+        different = list(dict.fromkeys(structure.sheet(compartment, other) for compartment in members))
         if len(different) == 1:
             return different[0]
         nodes, triangles = self.entry.planar_mesh()
         chosen = np.full(len(nodes), np.nan)
-        total, known = np.zeros(len(nodes)), np.zeros(len(nodes))
+        total, count = np.zeros(len(nodes)), np.zeros(len(nodes))
         for sheet in different:
             z = self._on_nodes(sheet)
-            there = np.isfinite(z)
-            total[there] += z[there]
-            known += there
-            at = np.column_stack([nodes, np.where(there, z, 0.0)])
+            has_height = np.isfinite(z)
+            total[has_height] += z[has_height]
+            count += has_height
+            at = np.column_stack([nodes, np.where(has_height, z, 0.0)])
             rows = sides_of(self.work, at, structure.faults)
-            its = [each for each in members if structure.sheets[each][other] is sheet]
+            its = [compartment for compartment in members if structure.sheets[compartment][other] is sheet]
             inside = (rows[:, None] == structure.compartments[its]).all(axis=2).any(axis=1)
-            chosen = np.where(there & inside & np.isnan(chosen), z, chosen)
+            chosen = np.where(has_height & inside & np.isnan(chosen), z, chosen)
         with np.errstate(invalid="ignore", divide="ignore"):
-            heights = np.where(np.isnan(chosen), total / known, chosen)
+            heights = np.where(np.isnan(chosen), total / count, chosen)
         return where_known(nodes, triangles, heights)
 
     def _on_nodes(self, sheet: Sheet) -> np.ndarray:
@@ -564,10 +566,10 @@ class InterpolatedSurface:
         numbers = [sheets.index(structure.sheet(n, self.number)) for n in range(len(structure.sheets))]
 
         def sheet_of(sides: np.ndarray) -> np.ndarray:
-            found = np.full(len(sides), -1)
+            sheet_numbers = np.full(len(sides), -1)
             for row, number in zip(structure.compartments, numbers, strict=True):
-                found[((sides == row) | ~active).all(axis=1)] = number
-            return found
+                sheet_numbers[((sides == row) | ~active).all(axis=1)] = number
+            return sheet_numbers
 
         z = np.array([self._on_nodes(sheet) for sheet in sheets])
         sides = sides_of_sheets(structure, self.number, sheets)
@@ -584,7 +586,7 @@ class InterpolatedSurface:
         sided = sides, weights_of_sheets(structure, mesh, z, sides)
         tied, texts = tied_sheets(self.work, mesh, z, sided, data)
         name, rock = self.surface.name, self.entry.rock.name
-        found = []
+        new_sheets = []
         for sheet, before, after in zip(sheets, z, tied, strict=True):
             new = (
                 sheet
@@ -594,24 +596,27 @@ class InterpolatedSurface:
             self.made[new] = self.made[sheet]
             if new is not sheet and self.entry.draws is None:
                 self.entry.untied[new] = self.entry.untied.get(sheet, sheet)
-            found.append(new)
-        return found, [BuildWarning(text, "points", rock, name) for text in texts]
+            new_sheets.append(new)
+        return new_sheets, [BuildWarning(text, "points", rock, name) for text in texts]
 
     def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex
         attributes, to those of all sheets."""
-        found = [self.made[sheet][1] for sheet in sheets]
+        attributes = [self.made[sheet][1] for sheet in sheets]
         self.entry.interpolations[self.number] = self.most[1]
         self.entry.attributes[self.number] = {
-            name: np.concatenate([each[name] for each in found]) for name in ("variance", "distance")
+            name: np.concatenate([of_sheet[name] for of_sheet in attributes])
+            for name in ("variance", "distance")
         }
 
 
-def _settled(surface: Surface, found: Interpolation) -> Surface:
+def _settled(surface: Surface, interpolation: Interpolation) -> Surface:
     """The surface with the variogram that was found once: so the two sides of a fault have the same."""
-    variogram = found.variogram
+    variogram = interpolation.variogram
     if variogram is None or not variogram.fitted:
         return surface
-    options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
-    options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
-    return replace(surface, method=surface.method and found.method, options=options)
+    options = {
+        key: value for key, value in surface.options.items() if key in METHODS[interpolation.method].options
+    }
+    options |= {"variogram": variogram.settings(), "neighbours": interpolation.neighbours}
+    return replace(surface, method=surface.method and interpolation.method, options=options)

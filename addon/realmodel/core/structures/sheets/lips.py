@@ -62,18 +62,18 @@ def beyond_lips(
     outward = -np.array([lip.side for lip in lips])[of_lip, None] * unit_normals(corners)
     level = norm(outward[:, :2])
     some = level > _STEEP
-    own, outward, level = points[row[some]], outward[some], level[some]
-    away = np.column_stack([outward[:, :2], np.zeros(len(own))]) * (_AWAY * reach / level**2)[:, None]
+    near_points, outward, level = points[row[some]], outward[some], level[some]
+    away = np.column_stack([outward[:, :2], np.zeros(len(near_points))]) * (_AWAY * reach / level**2)[:, None]
     ordinary = np.empty((0, 3))
     if settings["extrapolate"] == "method":
         ordinary = mean_heights(points[(near < 0).all(axis=0)])
     if len(ordinary):
-        plan = np.concatenate([own + away, own])[:, :2]
-        there, here = np.split(expected_heights(work, ordinary, plan), 2)
-        rise = there - here
+        plan = np.concatenate([near_points + away, near_points])[:, :2]
+        z_beyond, here = np.split(expected_heights(work, ordinary, plan), 2)
+        rise = z_beyond - here
         leaves = 2.0 * rise * outward[:, 2] > -_AWAY * reach
         away[leaves, 2] = rise[leaves]
-    beyond = own + away
+    beyond = near_points + away
     points = points[np.isin(points[:, 0], beyond[:, 0])]
     same = welded(np.concatenate([points, beyond])[:, :2])[len(points) :]
     return beyond[same == np.arange(len(points), len(points) + len(beyond))]  # none where another point is

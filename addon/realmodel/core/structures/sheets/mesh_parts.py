@@ -37,10 +37,10 @@ class PlanTiling:
         part = np.ascontiguousarray(self.triangles[own])
         if not self.is_mesh:
             return self.work.native(native_module().surface_heights, self.vertices, part, self.nodes)
-        known = np.full(len(self.nodes), np.nan)
+        z = np.full(len(self.nodes), np.nan)
         used = np.unique(part)
-        known[used] = self.vertices[used, 2]
-        return known
+        z[used] = self.vertices[used, 2]
+        return z
 
     def around(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Nodes (N, 2) and triangles (K, 3) int32 that cover all, among them the mesh's triangles `own` (T,)
@@ -53,13 +53,13 @@ class PlanTiling:
         middles = np.ascontiguousarray(self.nodes[self.tiles].mean(axis=1))
         over = self.work.native(native_module().surface_heights, corners, part, middles)
         nodes = np.concatenate([corners[:, :2], self.nodes])
-        known = np.concatenate([corners[:, 2], self.heights(own)])
+        z = np.concatenate([corners[:, 2], self.heights(own)])
         tiles = np.concatenate([part, self.tiles[np.isnan(over)] + len(corners)])
-        kept, tiles = np.unique(tiles, return_inverse=True)
+        used_nodes, tiles = np.unique(tiles, return_inverse=True)
         return (
-            np.ascontiguousarray(nodes[kept]),
+            np.ascontiguousarray(nodes[used_nodes]),
             np.ascontiguousarray(tiles.reshape(-1, 3), np.int32),
-            known[kept],
+            z[used_nodes],
         )
 
 
@@ -118,7 +118,7 @@ def _gaps(
     outer = np.where(vertex < len(plan), vertex, -1)[outer]
     outer = outer[(outer >= 0).all(axis=1)]
     touched = touched_masks(len(plan), triangles, masks)
-    outer_edges, edges = (edge_numbers(edges_of(each), len(plan)) for each in (outer, triangles))
+    outer_edges, edges = (edge_numbers(edges_of(faces), len(plan)) for faces in (outer, triangles))
     gaps = np.zeros(len(outer), bool)
     for fault in range(masks.shape[1]):
         corners = touched[outer, fault]
@@ -137,8 +137,8 @@ def touched_masks(count: int, triangles: np.ndarray, masks: np.ndarray) -> np.nd
     """(V, F) the sides of each fault on which the triangles at each vertex have a part."""
     touched = np.zeros((count, masks.shape[1]), np.uint8)
     for fault, side in itertools.product(range(masks.shape[1]), (LEFT, RIGHT)):
-        own = triangles[(masks[:, fault] & side) > 0]
-        touched[own.ravel(), fault] |= side
+        faces = triangles[(masks[:, fault] & side) > 0]
+        touched[faces.ravel(), fault] |= side
     return touched
 
 
@@ -165,13 +165,13 @@ def _overlay(
     length = median_edge(plan, triangles)
     rows, part = np.unique(masks, axis=0, return_inverse=True)
     parts = [np.ascontiguousarray(triangles[part.ravel() == number]) for number in range(len(rows))]
-    borders = [open_edges(vertices, each) for each in parts]
+    borders = [open_edges(vertices, faces) for faces in parts]
     lines = [plan[edge] for edge in np.unique(np.concatenate(borders), axis=0)]
     nodes, tiles = mesh_rings(work, [box], MeshOptions(length, constraints=lines))
     middles = np.ascontiguousarray(nodes[tiles].mean(axis=1))
     tile_masks = np.zeros((len(tiles), masks.shape[1]), np.uint8)
-    for row, each in zip(rows, parts, strict=True):
-        over = ~np.isnan(work.native(native_module().surface_heights, vertices, each, middles))
+    for row, faces in zip(rows, parts, strict=True):
+        over = ~np.isnan(work.native(native_module().surface_heights, vertices, faces, middles))
         tile_masks[over] |= row
     covered = tile_masks.any(axis=1)
     tiles, tile_masks = tiles[covered], tile_masks[covered]

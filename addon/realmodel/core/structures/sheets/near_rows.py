@@ -22,9 +22,9 @@ SideRow = tuple[int, ...]  # the side of each of some faults: -1, 1, or 0 where 
 
 def with_neighbors(triangles: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     """(N,) bool: some nodes, and those that share a triangle with one of them."""
-    found = nodes.copy()
-    found[triangles[nodes[triangles].any(axis=1)]] = True
-    return found
+    near = nodes.copy()
+    near[triangles[nodes[triangles].any(axis=1)]] = True
+    return near
 
 
 def triangles_met(
@@ -54,14 +54,14 @@ def near_rows(
     asked for no node twice.
     """
     plan, triangles = mesh
-    found = {sides: common.copy() for sides in rows}
+    values = {sides: common.copy() for sides in rows}
     asked = {sides: np.zeros(len(plan), bool) for sides in rows}
     on = {(number, side): np.zeros(len(plan), bool) for number in range(len(faults)) for side in (-1, 1)}
     low, high = common[:, 0].copy(), common[:, 0].copy()
     wider = np.isfinite(low)
     while wider.any():
         _add_sides(work, mesh, wider, (low, high), faults, on)
-        corner_on = {key: own[triangles].any(axis=1) for key, own in on.items()}
+        corner_on = {key: mask[triangles].any(axis=1) for key, mask in on.items()}
         wider = np.zeros(len(plan), bool)
         for sides in rows:
             is_there = np.ones(len(triangles), bool)
@@ -75,11 +75,11 @@ def near_rows(
             some = near & ~asked[sides]
             if some.any():
                 asked[sides] |= some
-                found[sides][some] = values_of(sides, some)
-                z = found[sides][:, 0]
+                values[sides][some] = values_of(sides, some)
+                z = values[sides][:, 0]
                 wider |= some & ((z < low) | (z > high))
                 low, high = np.fmin(low, z), np.fmax(high, z)
-    return found
+    return values
 
 
 def _add_sides(

@@ -143,30 +143,34 @@ class _Agreement:
         new = 0
         for choice in choices:
             off, tolerated = self._off(choice)
-            own = np.where(choice.own, off, np.inf).min(axis=1)
+            own_off = np.where(choice.own, off, np.inf).min(axis=1)
             other = np.where(choice.own, np.inf, off).min(axis=1)
-            agree = (own <= other) | np.isinf(own) if doubtful else _are_sure(off, tolerated) & (own < other)
+            agree = (
+                (own_off <= other) | np.isinf(own_off)
+                if doubtful
+                else _are_sure(off, tolerated) & (own_off < other)
+            )
             agree &= ~self.counts[choice.points]
             self.counts[choice.points[agree]] = True
             new += int(agree.sum())
         return new > _FEW * sum(len(choice.points) for choice in choices)
 
     def _give(self, choice: _Choice, some: np.ndarray, best: np.ndarray) -> None:
-        given = choice.points[some]
-        self.rows[given] = np.where(choice.matters, choice.rows[best[some]], self.rows[given])
+        points = choice.points[some]
+        self.rows[points] = np.where(choice.matters, choice.rows[best[some]], self.rows[points])
 
     def _choices(self, some: np.ndarray, unclear: np.ndarray, reach: float) -> list[_Choice]:
         """unclear: (P, F) bool, the faults whose sides are to be chosen."""
-        found = []
+        choices = []
         patterns, which = np.unique(self.matters[some], axis=0, return_inverse=True)
         for number, matters in enumerate(patterns):
             points = some[which.ravel() == number]
             rows = np.unique(np.where(matters, self.compartments, 0), axis=0)
-            own = np.where(matters, self.rows[points], 0)[:, None]
-            alike = (rows == own) | (rows == 0) | (own == 0) | unclear[points, None]
-            is_own = (rows == own).all(axis=2)
-            found.append(_Choice(points, matters, rows, alike.all(axis=2), is_own, reach))
-        return found
+            own_rows = np.where(matters, self.rows[points], 0)[:, None]
+            alike = (rows == own_rows) | (rows == 0) | (own_rows == 0) | unclear[points, None]
+            is_own = (rows == own_rows).all(axis=2)
+            choices.append(_Choice(points, matters, rows, alike.all(axis=2), is_own, reach))
+        return choices
 
     def _off(self, choice: _Choice) -> tuple[np.ndarray, np.ndarray]:
         """(N, C) how far the points are from what those that count let expect, infinite where these say
@@ -191,10 +195,10 @@ class _Agreement:
 
     def _that_count(self, choice: _Choice, number: int) -> np.ndarray:
         """(P,) bool: those that count, on these sides of the faults that matter."""
-        found = self.counts.copy()
+        counts = self.counts.copy()
         for fault in np.flatnonzero(choice.matters):
-            found &= self.rows[:, fault] == choice.rows[number, fault]
-        return found
+            counts &= self.rows[:, fault] == choice.rows[number, fault]
+        return counts
 
 
 def _are_sure(off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
@@ -203,8 +207,8 @@ def _are_sure(off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
     if off.shape[1] < 2:
         return np.zeros(len(off), bool)
     order = np.argsort(off, axis=1)[:, :2]
-    (best, second), known = (np.take_along_axis(each, order, axis=1).T for each in (off, tolerated))
-    return np.isfinite(second) & (best <= _SURE * second) & (second > known.sum(axis=0))
+    (best, second), tolerances = (np.take_along_axis(values, order, axis=1).T for values in (off, tolerated))
+    return np.isfinite(second) & (best <= _SURE * second) & (second > tolerances.sum(axis=0))
 
 
 def _best(choice: _Choice, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
@@ -294,6 +298,6 @@ def sided_dips(work: Work, data: SurfaceData, entry: RockInput) -> tuple[Dips | 
     if len(points):
         nearest = (1, 0, 0.0)
         positions = np.ascontiguousarray(dips.positions)
-        given = first_at_each_place(points)
-        height = work.native(native_module().idw, given, positions, neighborhood=nearest)
+        distinct = first_at_each_place(points)
+        height = work.native(native_module().idw, distinct, positions, neighborhood=nearest)
     return dips, sides_of(work, at_height(dips, height), faults)

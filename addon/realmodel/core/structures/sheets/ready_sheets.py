@@ -66,10 +66,10 @@ class ReadyMesh:
         length = median_edge(self.vertices[:, :2], self.triangles)
         some = [shapes[fault] for fault in np.flatnonzero(self.active)]
         away = np.zeros((len(self.vertices), len(shapes)))
-        reach, found, nearest = distances(self.vertices, length, some)
-        away[:, self.active] = np.minimum(found, length)
+        reach, distance, nearest = distances(self.vertices, length, some)
+        away[:, self.active] = np.minimum(distance, length)
         on_lips = np.full(away.shape, -1, np.int32)
-        on_lips[:, self.active] = np.where(found < reach, nearest, -1)
+        on_lips[:, self.active] = np.where(distance < reach, nearest, -1)
         width = _FARTHEST * edge_lengths(self.vertices, self.triangles).reshape(3, -1).max(axis=0)
         return reach, away, width, on_lips
 
@@ -77,11 +77,11 @@ class ReadyMesh:
         """(V, F) bool: of the vertices near faults, (V, F) bool, those on a border of the mesh."""
         around = self.triangles[np.logical_or.reduce(near, axis=1)[self.triangles].any(axis=1)]
         rows, around = np.unique(around, return_inverse=True)
-        vertices, found = self.vertices[rows], np.zeros_like(near)
+        vertices, on_lips = self.vertices[rows], np.zeros_like(near)
         is_border = np.zeros(len(rows), bool)
         is_border[open_edges(vertices, around.reshape(-1, 3))] = True
-        found[rows] = near[rows] & is_border[welded(vertices), None]
-        return found
+        on_lips[rows] = near[rows] & is_border[welded(vertices), None]
+        return on_lips
 
     def _divide(
         self, fault: int, shape: FaultShape, is_lip: np.ndarray, corners: np.ndarray, may_meet: np.ndarray
@@ -103,11 +103,11 @@ class ReadyMesh:
 
     def own(self, family: Family) -> np.ndarray:
         """(T,) bool: the triangles with a part in its compartments."""
-        found = np.ones(len(self.triangles), bool)
+        is_own = np.ones(len(self.triangles), bool)
         for fault, side in enumerate(family.key):
             if side in (-1, 1):
-                found &= (self.masks[:, fault] & (RIGHT if side > 0 else LEFT)) > 0
-        return found
+                is_own &= (self.masks[:, fault] & (RIGHT if side > 0 else LEFT)) > 0
+        return is_own
 
     def count(self, family: Family) -> int:
         if family.key not in self.counts:
@@ -133,19 +133,19 @@ class ReadyMesh:
         are no triangles."""
         if trends is not None:
             return trends
-        own = self.own(family)
+        own_triangles = self.own(family)
         if not self.active.any():
             return dict.fromkeys(family.members.values(), Sheet(self.vertices, self.triangles))
         if self.tiling is None:
             self.tiling = plan_tiling(
                 self.work, self.vertices, self.triangles, np.ascontiguousarray(self.masks[:, self.active])
             )
-        plan, triangles, known = self.tiling.around(own)
+        plan, triangles, z = self.tiling.around(own_triangles)
         shapes = self.entry.divided().faults.shapes
         cut: list[tuple[int, int, Trace | None]] = [
             (fault, side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
         ]
-        common = self._continued(plan, known, triangles, cut)
+        common = self._continued(plan, z, triangles, cut)
         faults = [shapes[fault] for fault in family.dying]
         within = self._within(family)
 
@@ -154,10 +154,10 @@ class ReadyMesh:
 
         sheet = Sheet(np.column_stack([plan, common]), triangles)
         traces = traces_on(sheet)
-        over = [np.zeros(len(own), bool) for _ in faults]
+        over = [np.zeros(len(own_triangles), bool) for _ in faults]
         for number, trace in enumerate(traces):
             if not len(trace.points) and not self.tiling.is_mesh:
-                over[number] = self._over_others(own, family.dying[number])
+                over[number] = self._over_others(own_triangles, family.dying[number])
         met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
         if not met and (self.tiling.is_mesh or not self._is_drawn_together()):
             return dict.fromkeys(family.members.values(), sheet)
@@ -165,38 +165,42 @@ class ReadyMesh:
         self._require_one_height_beyond(family, met, sheet)
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
-            common = self._continued(plan, self.tiling.heights(own), triangles, cut)
+            common = self._continued(plan, self.tiling.heights(own_triangles), triangles, cut)
             traces = traces_on(Sheet(np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
-        for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
+        for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             hidden = np.zeros(len(self.triangles), bool)
-            for number, side in zip(met, given, strict=True):
+            for number, side in zip(met, sides, strict=True):
                 if not side:
                     continue
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
-            left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
-            dying = [(family.dying[n], side, traces[n]) for n, side in zip(met, given, strict=True) if side]
-            seen[given] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
-        found = self._with_equal_ends(family, met, seen, plan, triangles)
-        return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+            left = (
+                own_triangles & ~hidden if (own_triangles & ~hidden).any() else own_triangles
+            )  # if all are hidden, none are
+            dying = [(family.dying[n], side, traces[n]) for n, side in zip(met, sides, strict=True) if side]
+            seen[sides] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
+        drawn = self._with_equal_ends(family, met, seen, plan, triangles)
+        return {sides: drawn[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def _is_drawn_together(self) -> bool:
         """Whether sheets of several families are, so that they need one plan."""
         structure = self.entry.divided()
         return bool(around_tips(structure, self.number, families(structure, self.number)))
 
-    def _over_others(self, own: np.ndarray, fault: int) -> np.ndarray:
+    def _over_others(self, own_triangles: np.ndarray, fault: int) -> np.ndarray:
         """(T,) bool: the own triangles on one side of a fault that lie over or under some on its other side,
         as at a fault that is nearly level; none where it does not pass between all of these. Such a place is
         noted: should the triangles meet in one sheet, this is why."""
-        found = np.zeros(len(self.triangles), bool)
-        left, right = (np.flatnonzero(own & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT))
+        is_over = np.zeros(len(self.triangles), bool)
+        left, right = (
+            np.flatnonzero(own_triangles & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT)
+        )
         corners = [self.vertices[self.triangles[some]] for some in (left, right)]
-        pairs = overlapping_pairs(*(each[:, :, :2] for each in corners))
+        pairs = overlapping_pairs(*(faces[:, :, :2] for faces in corners))
         if not len(pairs):
-            return found
+            return is_over
         begin, end = common_lines(corners[0][pairs[:, 0]], corners[1][pairs[:, 1]])
         faults = self.entry.divided().faults
         is_missed = np.isnan(hit_shares(begin, end, faults.shapes[fault]))
@@ -205,8 +209,8 @@ class ReadyMesh:
             place = (begin[first] + end[first]) / 2
             self.entry.overlapping[self.number] = _two_heights_beyond(faults.names[fault], place)
         else:
-            found[left[pairs[:, 0]]] = found[right[pairs[:, 1]]] = True
-        return found
+            is_over[left[pairs[:, 0]]] = is_over[right[pairs[:, 1]]] = True
+        return is_over
 
     def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Sheet) -> None:
         faults = self.entry.divided().faults
@@ -241,7 +245,7 @@ class ReadyMesh:
     def _continued(
         self,
         plan: np.ndarray,
-        known: np.ndarray,
+        known_heights: np.ndarray,
         triangles: np.ndarray,
         cut: list[tuple[int, int, Trace | None]],
     ) -> np.ndarray:
@@ -249,19 +253,19 @@ class ReadyMesh:
         the sheet off, its side, and where one dies out its trace."""
         tiling = self.tiling
         same = tiling.same if tiling is not None and tiling.nodes is plan else welded(plan)
-        order = np.flatnonzero(~np.isnan(known))[::-1]
+        order = np.flatnonzero(~np.isnan(known_heights))[::-1]
         of_place = np.full(len(plan), np.nan)
-        of_place[same[order]] = known[order]  # the first of several at one position
-        z = np.where(np.isnan(known), of_place[same], known)
+        of_place[same[order]] = known_heights[order]  # the first of several at one position
+        z = np.where(np.isnan(known_heights), of_place[same], known_heights)
         missing = np.flatnonzero(np.isnan(z) & (same == np.arange(len(plan))))
         if len(missing):
-            given = np.flatnonzero(~np.isnan(of_place))
-            points = np.column_stack([plan[given], of_place[given]])
+            rows = np.flatnonzero(~np.isnan(of_place))
+            points = np.column_stack([plan[rows], of_place[rows]])
             vertex = None  # of the mesh, that each point is
             if tiling is not None and tiling.is_mesh:
                 of_places = np.empty(len(plan), np.intp)
                 of_places[same[order]] = order
-                vertex = of_places[given]
+                vertex = of_places[rows]
             is_by_node = self.method == CONTINUATION  # it finds each node by itself
             nodes, tiles = (plan[missing], None) if is_by_node else (plan, triangles)
             nodes = np.ascontiguousarray(nodes)
@@ -269,8 +273,8 @@ class ReadyMesh:
             beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
             points = np.concatenate([points, beyond])
             task = Task(self.work, points, nodes, self.settings, tiles)
-            found = heights(self.method, task)
-            of_place[missing] = found.z if is_by_node else found.z[missing]
+            interpolation = heights(self.method, task)
+            of_place[missing] = interpolation.z if is_by_node else interpolation.z[missing]
             z = np.where(np.isnan(z), of_place[same], z)
         return z
 
@@ -294,15 +298,15 @@ def _as_beside(vertices: np.ndarray, triangles: np.ndarray, mask: np.ndarray) ->
     edges = edge_numbers(edges_of(welded(vertices)[triangles]), len(vertices)).reshape(3, -1).T
     while True:
         order = np.argsort(edges[mask > 0].ravel(), kind="stable")
-        known, of_edge = edges[mask > 0].ravel()[order], np.repeat(mask[mask > 0], 3)[order]
+        masked_edges, of_edge = edges[mask > 0].ravel()[order], np.repeat(mask[mask > 0], 3)[order]
         lacking = lacking[mask[lacking] == 0]
-        if not len(known) or not len(lacking):
+        if not len(masked_edges) or not len(lacking):
             return mask
-        at = np.minimum(np.searchsorted(known, edges[lacking]), len(known) - 1)
-        found = np.where(known[at] == edges[lacking], of_edge[at], 0).max(axis=1)
-        if not found.any():
+        at = np.minimum(np.searchsorted(masked_edges, edges[lacking]), len(masked_edges) - 1)
+        beside = np.where(masked_edges[at] == edges[lacking], of_edge[at], 0).max(axis=1)
+        if not beside.any():
             return mask
-        mask[lacking] = found
+        mask[lacking] = beside
 
 
 def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:

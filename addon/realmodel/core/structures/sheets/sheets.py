@@ -48,10 +48,10 @@ def make_sheets(
     interpolated, ready = (
         [
             number
-            for number in each
+            for number in group
             if (numbers is None or number in numbers) and not entry.divided().is_made(number)
         ]
-        for each in _by_kind(rock, stage)
+        for group in _by_kind(rock, stage)
     )
     steps = np.linspace(0.0, 1.0, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
@@ -81,8 +81,8 @@ def make_sheets(
     for number, (low, high) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(low, high, f"interpolating {rock.surfaces[number].name}"):
             started.append(begin(work, number))
-    few += [each.number for each in started if each.few and not each.waiting]
-    unfinished = [each for each in started if each.waiting]
+    few += [sheets.number for sheets in started if sheets.few and not sheets.waiting]
+    unfinished = [sheets for sheets in started if sheets.waiting]
     if unfinished:
         with work.phase(1.0, 1.0, "interpolating surfaces"):
             begun = {*ready, *interpolated}
@@ -94,7 +94,7 @@ def make_sheets(
             make_borrowed(unfinished, Throws(work, with_levels(work, entry), few), finish)
         younger = {surface.name for surface in rock.surfaces[_count(rock, stage) :]}
         warnings = entry.divided().warnings
-        entry.divided().warnings = [each for each in warnings if each[1].surface not in younger]
+        entry.divided().warnings = [row for row in warnings if row[1].surface not in younger]
 
 
 def _by_kind(rock: Rock, stage: int | None) -> tuple[list[int], list[int]]:
@@ -143,21 +143,21 @@ def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray)
     points = data.points
     sides = structure.points[number]
     for compartment, row in enumerate(structure.compartments):
-        own = (sides == row).all(axis=1)
+        inside = (sides == row).all(axis=1)
         one = replace(
             entry,
             surfaces=structure.sheets[compartment],
             warnings=[],
             structure=None,
-            data=[*entry.data[:number], data.some(own), *entry.data[number + 1 :]],
+            data=[*entry.data[:number], data.some(inside), *entry.data[number + 1 :]],
         )
 
         def holds(places: np.ndarray, row: np.ndarray = row) -> np.ndarray:
             return (sides_of(work, places, structure.faults) == row).all(axis=1)
 
-        found = points_too_low(work, one, [number])
+        warnings = points_too_low(work, one, [number])
         if keep is as_it_is:
             of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
-            found += doubtful_heights(work, one, [number], Compartment(of_sheet, holds))
-        for warning in found:
+            warnings += doubtful_heights(work, one, [number], Compartment(of_sheet, holds))
+        for warning in warnings:
             structure.warn([compartment], warning)

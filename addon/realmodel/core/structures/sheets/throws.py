@@ -90,8 +90,8 @@ class Throws:
     def __init__(self, work: Work, structure: RockStructure, few: list[int]):
         self.work = work
         self.structure = replace(structure, sheets=[list(sheets) for sheets in structure.sheets])
-        known = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
-        self.rank = np.where(known, OWN, UNKNOWN)
+        is_made = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
+        self.rank = np.where(is_made, OWN, UNKNOWN)
         self.rank[:, few] = FEW
         self._measures: dict[tuple[int, int], Measured] = {}  # by surface and fault
         self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
@@ -124,14 +124,14 @@ class Throws:
         else:
             return None
         down = float(source.key[fault])  # throw is how much lower the upper side lies
-        found = [each for each in (older, younger) if each is not None]
+        neighbors = [neighbor for neighbor in (older, younger) if neighbor is not None]
         shares = [1.0]
-        if len(found) == 2:
-            share = self._share(source, number, *found)
+        if len(neighbors) == 2:
+            share = self._share(source, number, *neighbors)
             shares = [1.0 - share, share]
-        profiles = [Profile(places[:, :2], throw) for _, places, throw in found]
-        terms = tuple((down * share, each) for share, each in zip(shares, profiles, strict=True))
-        return Shift(terms, tuple(each[0] for each in found), limit)
+        profiles = [Profile(places[:, :2], throw) for _, places, throw in neighbors]
+        terms = tuple((down * share, profile) for share, profile in zip(shares, profiles, strict=True))
+        return Shift(terms, tuple(neighbor[0] for neighbor in neighbors), limit)
 
     def by_thickness(
         self, number: int, shift: Shift, fault: int, source: Family, family: Family, sheets: Sheets
@@ -152,8 +152,8 @@ class Throws:
                 vertices, triangles = sheets[sides]
                 z = vertices[:, 2] + shift.at(vertices[:, :2])
                 if pairs:
-                    here, there = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
-                    laid_on = self._laid(number, vertices, within(vertices), shift.surfaces, here, there)
+                    here, across = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
+                    laid_on = self._laid(number, vertices, within(vertices), shift.surfaces, here, across)
                     z = np.where(np.isfinite(laid_on), laid_on, z)
                 laid[sides] = Sheet(np.column_stack([vertices[:, :2], z]), triangles)
         return shared(laid)
@@ -168,30 +168,30 @@ class Throws:
 
     def _has(self, pair: tuple[int, int], number: int) -> bool:
         """Whether a surface has sheets in two compartments."""
-        return all(self.structure.sheets[each][number] is not None for each in pair)
+        return all(self.structure.sheets[compartment][number] is not None for compartment in pair)
 
     def _laid(
         self,
         number: int,
         vertices: np.ndarray,
-        known: np.ndarray,
+        is_known: np.ndarray,
         surfaces: tuple[int, ...],
         here: int,
-        there: int,
+        across: int,
     ) -> np.ndarray:
-        """(V,) the heights of a sheet of a surface in compartment `there`, with vertices (V, 3) that are
+        """(V,) the heights of a sheet of a surface in compartment `across`, with vertices (V, 3) that are
         known, (V,) bool, in compartment `here`, where it lies likewise on or between others; NaN where these
         have none."""
         plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
-        from_there, own = (
-            [self.heights_at(number, plan, n, self.structure.sheet(each, n)) for n in surfaces]
-            for each in (there, here)
+        from_there, from_here = (
+            [self.heights_at(number, plan, n, self.structure.sheet(compartment, n)) for n in surfaces]
+            for compartment in (across, here)
         )
-        if len(own) == 1:
-            return own[0] + _tamed(z - from_there[0], known)
+        if len(from_here) == 1:
+            return from_here[0] + _tamed(z - from_there[0], is_known)
         thickness = from_there[1] - from_there[0]
         share = (z - from_there[0]) / np.where(thickness > 0, thickness, np.nan)
-        return own[0] + np.clip(_tamed(share, known), 0.0, 1.0) * (own[1] - own[0])
+        return from_here[0] + np.clip(_tamed(share, is_known), 0.0, 1.0) * (from_here[1] - from_here[0])
 
     def _pairs(self, fault: int, one: Family, other: Family) -> list[tuple[int, int]]:
         """Compartments of two families below and above a fault, and on one side of each other that is on both
@@ -219,9 +219,9 @@ class Throws:
             key = number, fault, tuple(usable)
             if key not in self._known:
                 self._known[key] = self._measured(number, fault, usable)
-            known = self._known[key]
-            if known is not None:
-                return number, *known
+            measured = self._known[key]
+            if measured is not None:
+                return number, *measured
         return None
 
     def _measured(
@@ -230,7 +230,9 @@ class Throws:
         """places (N, 3) and throw (N,) of a surface between compartments; None where there are none."""
         different: dict[tuple[Sheet | None, ...], tuple[int, int]] = {}
         for pair in pairs:
-            different.setdefault(tuple(self.structure.sheets[each][number] for each in pair), pair)
+            different.setdefault(
+                tuple(self.structure.sheets[compartment][number] for compartment in pair), pair
+            )
         if (number, fault) not in self._measures:
             self._measures[number, fault] = Measured(self.work, self.structure, fault, number)
         measure = self._measures[number, fault].between
@@ -238,7 +240,7 @@ class Throws:
         parts = [part for part in parts if len(part[0])]
         if not parts:
             return None
-        places, throw = (np.concatenate(each) for each in zip(*parts, strict=True))
+        places, throw = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
         return places, throw
 
     def _share(self, family: Family, number: int, older: Known, younger: Known) -> float:
@@ -246,21 +248,23 @@ class Throws:
         one, 1 at the younger one."""
         plan = np.concatenate([older[1], younger[1]])[:, :2]
         for compartment in family.members:
-            sheets = [self.structure.sheets[compartment][each] for each in (older[0], number, younger[0])]
+            sheets = [
+                self.structure.sheets[compartment][surface] for surface in (older[0], number, younger[0])
+            ]
             made = [sheet for sheet in sheets if sheet is not None]
             if len(made) == len(sheets):
-                low, own, high = (heights_at(self.work, sheet, plan) for sheet in made)
-                there = (high > low) & np.isfinite(own)  # not where one of them has no height
-                if there.any():
-                    share = (own[there] - low[there]) / (high[there] - low[there])
+                low, middle, high = (heights_at(self.work, sheet, plan) for sheet in made)
+                is_thick = (high > low) & np.isfinite(middle)  # not where one of them has no height
+                if is_thick.any():
+                    share = (middle[is_thick] - low[is_thick]) / (high[is_thick] - low[is_thick])
                     return float(np.clip(np.median(share), 0.0, 1.0))
         return 0.5
 
 
-def _tamed(values: np.ndarray, known: np.ndarray) -> np.ndarray:
+def _tamed(values: np.ndarray, is_known: np.ndarray) -> np.ndarray:
     """(V,) values, no farther beyond those that most have where they are known, (V,) bool, than these are
     apart: methods may run away beyond their points."""
-    order = np.sort(values[known & np.isfinite(values)])
+    order = np.sort(values[is_known & np.isfinite(values)])
     if not len(order):
         return values
     low, high = order[int(_OUTLIERS * len(order))], order[-1 - int(_OUTLIERS * len(order))]

@@ -21,12 +21,12 @@ def sides_of_sheets(structure: RockStructure, number: int, sheets: Sequence[Shee
     """(S, F) float64 the sides of faults on which sheets of a surface lie; 0 where a sheet lies on both, or
     the fault is not there."""
     active = structure.faults.active(number)
-    found = np.zeros((len(sheets), structure.compartments.shape[1]))
+    sheet_sides = np.zeros((len(sheets), structure.compartments.shape[1]))
     for row, sheet in enumerate(sheets):
-        own = [n for n, each in enumerate(structure.sheets) if each[number] is sheet]
-        sides = structure.compartments[own]
-        found[row] = np.where(active & (sides == sides[0]).all(axis=0), sides[0], 0)
-    return found
+        compartments = [n for n, made in enumerate(structure.sheets) if made[number] is sheet]
+        sides = structure.compartments[compartments]
+        sheet_sides[row] = np.where(active & (sides == sides[0]).all(axis=0), sides[0], 0)
+    return sheet_sides
 
 
 def weights_of_sheets(structure: RockStructure, mesh: Sheet, z: np.ndarray, sides: np.ndarray) -> np.ndarray:
@@ -42,7 +42,7 @@ def weights_of_sheets(structure: RockStructure, mesh: Sheet, z: np.ndarray, side
             between = sides[one] != sides[other]
             if (dies_out | (sides[one] * sides[other] == 0))[between].all():
                 equal[between] |= z[one] == z[other]
-    return np.array([share_of_sides(nodes, each, ramp) for each in equal]).reshape(equal.shape)
+    return np.array([share_of_sides(nodes, is_equal, ramp) for is_equal in equal]).reshape(equal.shape)
 
 
 def data_of_sheets(
@@ -50,18 +50,18 @@ def data_of_sheets(
 ) -> tuple[TieData, np.ndarray]:
     """What points (P, 3) and bounds ask of so many sheets together, and (C,) int32, of which. of_points,
     of_bounds: to which each counts; -1: none."""
-    each = [tie_data(points[of_points == sheet], bounds.some(of_bounds == sheet)) for sheet in range(count)]
-    first = [np.arange(len(own.places)) < own.contacts for own in each]
+    parts = [tie_data(points[of_points == sheet], bounds.some(of_bounds == sheet)) for sheet in range(count)]
+    first = [np.arange(len(part.places)) < part.contacts for part in parts]
     order = np.argsort(~np.concatenate(first), kind="stable")
-    sheets = np.repeat(np.arange(count, dtype=np.int32), [len(own.places) for own in each])
+    sheets = np.repeat(np.arange(count, dtype=np.int32), [len(part.places) for part in parts])
     data = TieData(
-        np.concatenate([own.places for own in each])[order],
-        np.concatenate([own.lower for own in each])[order],
-        np.concatenate([own.upper for own in each])[order],
-        np.concatenate([own.margins for own in each])[order],
-        sum(own.contacts for own in each),
-        sum(own.left_out for own in each),
-        max((own.tolerance for own in each), default=0.0),
+        np.concatenate([part.places for part in parts])[order],
+        np.concatenate([part.lower for part in parts])[order],
+        np.concatenate([part.upper for part in parts])[order],
+        np.concatenate([part.margins for part in parts])[order],
+        sum(part.contacts for part in parts),
+        sum(part.left_out for part in parts),
+        max((part.tolerance for part in parts), default=0.0),
     )
     return data, sheets[order]
 
@@ -81,8 +81,8 @@ def tied_sheets(
     if len(terms.radii):
         rows = [
             tied_heights(
-                work, np.ascontiguousarray(own), nodes, terms, np.ascontiguousarray(side * weights.T)
+                work, np.ascontiguousarray(sheet_z), nodes, terms, np.ascontiguousarray(side * weights.T)
             )
-            for own, side in zip(z, sides, strict=True)
+            for sheet_z, side in zip(z, sides, strict=True)
         ]
     return rows, missed_warnings(asked, after)

@@ -139,13 +139,13 @@ def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndar
     """(K,) where each segment meets the fault, from 0 to 1 of its length; NaN where it does not."""
     vertices, triangles = fault.vertices, fault.triangles
     corners = vertices[triangles]
-    found = np.full(len(begin), np.nan)
+    shares = np.full(len(begin), np.nan)
     pairs = native_module().meeting_boxes(np.stack([begin, end, end], axis=1), corners)
     for start in range(0, len(pairs), 1 << 16):
         segment, triangle = pairs[start : start + (1 << 16)].T
         hit = segments_hit(begin[segment], end[segment], corners[triangle])
-        found[segment[hit]] = shares_hit(begin[segment[hit]], end[segment[hit]], corners[triangle[hit]])
-    return found
+        shares[segment[hit]] = shares_hit(begin[segment[hit]], end[segment[hit]], corners[triangle[hit]])
+    return shares
 
 
 def blended(
@@ -160,20 +160,20 @@ def blended(
     compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
     weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
     """
-    result = {sides: own.copy() for sides, own in heights.items()}
+    result = {sides: z.copy() for sides, z in heights.items()}
     ramped = np.array([weight < 1.0 for weight in weights])
     patterns, of_node = np.unique(ramped, axis=1, return_inverse=True)
     for pattern, some in zip(patterns.T, _groups(of_node.ravel()), strict=True):
         # where all of a fault's weights are 1, what is on its other side has no share
         distinct = [fault for fault, is_ramped in enumerate(pattern) if not is_ramped]
-        there = {sides: near[sides][some] for sides in heights}
-        there = {sides: own for sides, own in there.items() if own.any()}
-        for sides, own in there.items():
+        present = {sides: near[sides][some] for sides in heights}
+        present = {sides: mask for sides, mask in present.items() if mask.any()}
+        for sides, mask in present.items():
             total, whole = np.zeros(len(some)), np.zeros(len(some))
-            for other in there:
+            for other in present:
                 if any(sides[fault] * other[fault] < 0 for fault in distinct):
                     continue
-                share = there[other].astype(float)
+                share = present[other].astype(float)
                 for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
                     alike = side == its  # where one has no such fault: on the side that the other is on
                     if not alike and 0 in (side, its):
@@ -184,7 +184,7 @@ def blended(
                     share = share * np.where(alike, 0.5 + half, 0.5 - half)
                 z = heights[other][some]
                 total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
-            result[sides][some[own]] = total[own] / np.where(whole > 0, whole, 1.0)[own]
+            result[sides][some[mask]] = total[mask] / np.where(whole > 0, whole, 1.0)[mask]
     return result
 
 
@@ -219,7 +219,7 @@ def with_equal_ends(
         for sides in heights
     }
     of_branches = {
-        sides: {branch: of[branch].copy() for branch, own in enumerate(ends) if own}
+        sides: {branch: of[branch].copy() for branch, ended_at in enumerate(ends) if ended_at}
         for sides, of in side_of.items()
     }
     del side_of
@@ -229,29 +229,29 @@ def with_equal_ends(
             sides: np.isfinite(z) & _near(triangles, on_side[sides], passed) for sides, z in heights.items()
         }
         low, high = _range(plan, heights, near)
-        known = np.isfinite(low[:, 2])
-        low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
-        inside = known & within(low) & within(high)
-        whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        is_known = np.isfinite(low[:, 2])
+        low[:, 2], high[:, 2] = (np.where(is_known, points[:, 2], 0.0) for points in (low, high))
+        inside = is_known & within(low) & within(high)
+        whole = np.ascontiguousarray(triangles[is_known[triangles].all(axis=1)])
         doubtful = [
             whole[triangles_met(work, fault, low, high, whole) > 0] if fault.dies_out else whole[:0]
             for fault in faults
         ]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
-    lowest, highest = (each.reduce(list(heights.values()), axis=0) for each in (np.fmin, np.fmax))
+    lowest, highest = (extreme.reduce(list(heights.values()), axis=0) for extreme in (np.fmin, np.fmax))
     some = np.isfinite(lowest)
     box = box_of(*(np.column_stack([plan, z])[some] for z in (lowest, highest)))
     met = _Meeting(work, plan, triangles, faults, [_continued(fault, box) for fault in faults], within)
     drawn = _Drawn(plan, [ramp for _, ramp in ramps], ends, near, of_branches)
     looked_at: dict[int, np.ndarray] = {}
     while True:
-        found = blended(heights, near, on_side, drawn.weights)
-        places = _places_of(plan, [np.where(known, z, 0.0) for z in found.values()])
+        blends = blended(heights, near, on_side, drawn.weights)
+        places = _places_of(plan, [np.where(is_known, z, 0.0) for z in blends.values()])
         for number in range(len(faults)):
             rows = [
                 places.number[row][doubtful[number][near[sides][doubtful[number]].any(axis=1)]]
-                for row, sides in enumerate(found)
+                for row, sides in enumerate(blends)
             ]
             some = np.unique(np.concatenate(rows), axis=0)
             corners = places.points[some]
@@ -259,8 +259,8 @@ def with_equal_ends(
             if before is None or not np.array_equal(before, corners):
                 looked_at[number] = corners
                 _draw_where_passed(met, places, some, number, inside, drawn)
-        if drawn.is_settled() and not _draw_between(met, found, near, drawn):
-            return found
+        if drawn.is_settled() and not _draw_between(met, blends, near, drawn):
+            return blends
 
 
 class _Meeting(NamedTuple):
@@ -316,7 +316,7 @@ def _places_of(plan: np.ndarray, heights: list[np.ndarray]) -> _Places:
     points, nodes, total = [], [], 0
     for start in range(0, len(plan), some := max(1, _AT_ONCE // len(heights))):
         part = slice(start, start + some)
-        z = np.array([each[part] for each in heights])
+        z = np.array([sheet_z[part] for sheet_z in heights])
         order = np.argsort(z, axis=0, kind="stable")
         ascending = np.take_along_axis(z, order, axis=0)
         is_new = np.ones(z.shape, bool)
@@ -353,15 +353,15 @@ class _Drawn:
         """For the sides of one fault, at the nodes (K, 1 to 3) of triangles or edges. A branch of it that
         passes a sheet there, or between two of them, ends in nothing: its sides are equal, too."""
         self.equal[number][nodes] = True
-        for branch, own in enumerate(self.ends):
-            if number not in own:
+        for branch, ended_at in enumerate(self.ends):
+            if number not in ended_at:
                 continue
             above, below = np.zeros(len(nodes), bool), np.zeros(len(nodes), bool)
             for sides, near in self.near.items():
-                there = near[nodes].any(axis=1)
+                is_near = near[nodes].any(axis=1)
                 side = self.sides[sides][branch][nodes]
-                above |= there & (side > 0).any(axis=1)
-                below |= there & (side < 0).any(axis=1)
+                above |= is_near & (side > 0).any(axis=1)
+                below |= is_near & (side < 0).any(axis=1)
             self.equal[branch][nodes[above & below]] = True
 
     def is_settled(self) -> bool:
@@ -374,13 +374,13 @@ class _Drawn:
         return settled
 
 
-def _draw_between(met_by: _Meeting, found: dict, near: dict[SideRow, np.ndarray], drawn: _Drawn) -> bool:
+def _draw_between(met_by: _Meeting, by_sides: dict, near: dict[SideRow, np.ndarray], drawn: _Drawn) -> bool:
     """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
     neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
     with_equal_ends has them, changed."""
     work, plan, triangles, faults, *_ = met_by
-    every = np.array(list(found.values()))
-    low, high = (np.column_stack([plan, each.reduce(every, axis=0)]) for each in (np.fmin, np.fmax))
+    every = np.array(list(by_sides.values()))
+    low, high = (np.column_stack([plan, extreme.reduce(every, axis=0)]) for extreme in (np.fmin, np.fmax))
     differ = triangles[(low[:, 2] < high[:, 2])[triangles].any(axis=1)]
     low, high = np.nan_to_num(low), np.nan_to_num(high)
     between = {}
@@ -389,19 +389,19 @@ def _draw_between(met_by: _Meeting, found: dict, near: dict[SideRow, np.ndarray]
             continue
         some = differ[triangles_met(work, fault, low, high, differ) == _PASSES]
         if len(some):
-            between[number] = _between(met_by._replace(triangles=some), found, number)
-    places = np.concatenate([np.empty((0, 3)), *(each.places for each in between.values())])
+            between[number] = _between(met_by._replace(triangles=some), by_sides, number)
+    places = np.concatenate([np.empty((0, 3)), *(candidates.places for candidates in between.values())])
     sides = [fault_sides(work, places, fault) for fault in faults]
     is_wider, first = False, 0
-    for number, own in between.items():
-        part = slice(first, first + len(own.places))
+    for number, candidates in between.items():
+        part = slice(first, first + len(candidates.places))
         first = part.stop
-        for (one, other), given, rows in own.pairs:
-            is_there = np.ones(len(own.places), bool)
+        for (one, other), faces, rows in candidates.pairs:
+            is_there = np.ones(len(candidates.places), bool)
             for n, side in enumerate(sides):
                 if n != number and (its := one[n] or other[n]):
                     is_there &= side[part] == its
-            passed = given[np.isin(rows, own.owner[is_there])]
+            passed = faces[np.isin(rows, candidates.owner[is_there])]
             for its in (one, other) if len(passed) else ():
                 is_wider = is_wider or not near[its][passed].all()
                 near[its][passed] = True
@@ -419,21 +419,21 @@ class _Between(NamedTuple):
     owner: np.ndarray
 
 
-def _between(met_by: _Meeting, found: dict, number: int) -> _Between:
+def _between(met_by: _Meeting, by_sides: dict, number: int) -> _Between:
     """Those of one fault. Of all pairs of sheets many have the same two triangles there,
     and what lies between these is the same."""
     work, plan, triangles, faults, beyond, within = met_by
-    side, heights = _corners_with_sides(work, plan, triangles, found, faults[number])
-    over, given_rows = [], [np.empty((0, 7))]
-    for one, other in _pairs(found, number):
+    side, heights = _corners_with_sides(work, plan, triangles, by_sides, faults[number])
+    over, chosen_rows = [], [np.empty((0, 7))]
+    for one, other in _pairs(by_sides, number):
         both = np.column_stack([side[one], side[other]])
         z = np.column_stack([heights[one], heights[other]])
         apart = (both != both[:, :1]).any(axis=1) & np.isfinite(z).all(axis=1)
-        given = np.flatnonzero(apart & (z[:, :3] != z[:, 3:]).any(axis=1))
-        over.append(((one, other), triangles[given]))
-        given_rows.append(np.column_stack([given, z[given]]))
-    rows, numbers = np.unique(np.concatenate(given_rows), axis=0, return_inverse=True)
-    ends = np.cumsum([0, *(len(given) for _, given in over)]).tolist()
+        chosen = np.flatnonzero(apart & (z[:, :3] != z[:, 3:]).any(axis=1))
+        over.append(((one, other), triangles[chosen]))
+        chosen_rows.append(np.column_stack([chosen, z[chosen]]))
+    rows, numbers = np.unique(np.concatenate(chosen_rows), axis=0, return_inverse=True)
+    ends = np.cumsum([0, *(len(faces) for _, faces in over)]).tolist()
     corners = plan[triangles[rows[:, 0].astype(np.int64)]]
     lower, upper = (np.dstack([corners, z]) for z in (rows[:, 1:4], rows[:, 4:]))
     owner, places = places_between(lower, upper, beyond[number], within)
@@ -465,11 +465,11 @@ def _pairs(sheets: dict, number: int) -> Iterator[tuple[SideRow, SideRow]]:
 def _near(triangles: np.ndarray, on_side: list[np.ndarray], passed: list[np.ndarray]) -> np.ndarray:
     """(N,) bool: the nodes of triangles with corners on given sides of all faults, and those beside them."""
     count = len(on_side)
-    of_node = np.packbits([own | also for own, also in zip(on_side, passed, strict=True)], axis=0)
+    of_node = np.packbits([is_on | also for is_on, also in zip(on_side, passed, strict=True)], axis=0)
     a, b, c = (of_node[:, corner] for corner in triangles.T)
-    found = np.zeros(of_node.shape[1], bool)
-    found[triangles[((a | b | c) == np.packbits(np.ones((count, 1), bool), axis=0)).all(axis=0)]] = True
-    return with_neighbors(triangles, found)
+    near = np.zeros(of_node.shape[1], bool)
+    near[triangles[((a | b | c) == np.packbits(np.ones((count, 1), bool), axis=0)).all(axis=0)]] = True
+    return with_neighbors(triangles, near)
 
 
 def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.ndarray]:
@@ -483,8 +483,8 @@ def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.
 
 def shared(sheets: dict[SideRow, Sheet]) -> dict[SideRow, Sheet]:
     """The same, with one object for all sheets that are bitwise equal."""
-    known: dict[bytes, Sheet] = {}
-    return {sides: known.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
+    by_bytes: dict[bytes, Sheet] = {}
+    return {sides: by_bytes.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
 def split_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) -> np.ndarray | None:
@@ -509,7 +509,7 @@ def split_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) ->
     walls = np.concatenate([within.walls(box), _continued(fault, box)])
     line, shares = parts_of_lines(begin, end, walls, np.tile(np.arange(len(low)), 2))
     share = shares.mean(axis=1)
-    low, high = (each[line, 0] + share[:, None] * (each[:, 1] - each[:, 0])[line] for each in (low, high))
+    low, high = (edges[line, 0] + share[:, None] * (edges[:, 1] - edges[:, 0])[line] for edges in (low, high))
     on = np.all([_met_points(work, fault, places) for places in (low, high)], axis=0)
     middles = (low + high)[on] / 2
     middles = middles[within(middles)]
@@ -532,14 +532,14 @@ def _lie_in(
 ) -> np.ndarray:
     """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
     beyond its ends, in the triangles `beyond`."""
-    found = np.zeros(len(lines), bool)
+    is_inside = np.zeros(len(lines), bool)
     if len(lines):
         walls = np.concatenate([within.walls(box_of(lines)), beyond])
         line, places = middles_of_parts(lines[:, 0], lines[:, 1], walls)
         on = _met_points(work, fault, places)
         on[on] = within(places[on])
-        found[line[on]] = True
-    return found
+        is_inside[line[on]] = True
+    return is_inside
 
 
 def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
@@ -555,16 +555,16 @@ def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.
             share = shares_hit(begin[hit], end[hit], triangle[hit])
             ends[hit, 3 * turn + corner] = begin[hit] + share[:, None] * (end - begin)[hit]
     rows = np.flatnonzero(np.isfinite(ends[:, :, 0]).sum(axis=1) > 1)
-    found = np.zeros(len(corners), bool)
+    meets = np.zeros(len(corners), bool)
     if not len(rows):
-        return found
+        return meets
     some = ends[rows]
     at = np.arange(len(rows))
     first = some[at, np.isfinite(some[:, :, 0]).argmax(axis=1)]
     last = some[at, np.nan_to_num(np.linalg.norm(some - first[:, None], axis=2), nan=-1.0).argmax(axis=1)]
     line, places = middles_of_parts(first, last, within.walls(box_of(first, last)))
-    found[pairs[rows[line[within(places)]], 0]] = True
-    return found
+    meets[pairs[rows[line[within(places)]], 0]] = True
+    return meets
 
 
 def share_of_sides(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:

@@ -43,9 +43,9 @@ class Within:
         sides[:, plain] = np.array(key, np.int8)[plain]
         for fault in [n for n in asked if n not in plain]:
             sides[:, fault] = fault_sides(self.work, points[left], faults.shapes[fault])
-        found = np.zeros(len(points), bool)
-        found[left] = self.has(faults.without_dropped(sides))
-        return found
+        is_inside = np.zeros(len(points), bool)
+        is_inside[left] = self.has(faults.without_dropped(sides))
+        return is_inside
 
     def has(self, sides: np.ndarray) -> np.ndarray:
         """(N,) bool of points with these sides (N, F) of the faults."""
@@ -67,13 +67,13 @@ class Within:
 
 def walls_of(shapes: list[FaultShape], box: np.ndarray) -> np.ndarray:
     """(M, 3, 3) triangles of faults and of what continues them in a box (2, 3)."""
-    found = [np.empty((0, 3, 3))]
+    walls = [np.empty((0, 3, 3))]
     for shape in shapes:
         beyond = native_module().structure_continuation(shape.native(), np.ascontiguousarray(box))
         corners = np.concatenate([shape.vertices[shape.triangles], beyond.reshape(-1, 3, 3)])
         low, high = extents(corners)
-        found.append(corners[((low <= box[1]) & (high >= box[0])).all(axis=1)])
-    return np.concatenate(found)
+        walls.append(corners[((low <= box[1]) & (high >= box[0])).all(axis=1)])
+    return np.concatenate(walls)
 
 
 def parts_of_lines(
@@ -108,8 +108,8 @@ def parts_of_lines(
     owner, share = number[np.concatenate(owners)], np.concatenate(shares)
     order = np.lexsort((share, owner))
     owner, share = owner[order], share[order]
-    kept = (owner[1:] == owner[:-1]) & (share[1:] - share[:-1] > _LEAST)
-    return owner[1:][kept], np.stack([share[:-1], share[1:]], axis=1)[kept]
+    is_part = (owner[1:] == owner[:-1]) & (share[1:] - share[:-1] > _LEAST)
+    return owner[1:][is_part], np.stack([share[:-1], share[1:]], axis=1)[is_part]
 
 
 def middles_of_parts(begin: np.ndarray, end: np.ndarray, walls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -120,5 +120,5 @@ def middles_of_parts(begin: np.ndarray, end: np.ndarray, walls: np.ndarray) -> t
 
 def box_of(*places: np.ndarray) -> np.ndarray:
     """(2, 3) corners around points (..., 3)."""
-    every = np.concatenate([each.reshape(-1, 3) for each in places])
+    every = np.concatenate([points.reshape(-1, 3) for points in places])
     return np.array([every.min(axis=0), every.max(axis=0)])
