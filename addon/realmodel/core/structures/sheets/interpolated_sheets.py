@@ -513,9 +513,7 @@ class InterpolatedSurface:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of
         the planar mesh gets the height of the compartment in which the other surface lies there."""
         structure = self.entry.divided()
-        members = [compartment for compartment, its in family.members.items() if its == sides] or list(
-            family.members
-        )
+        members = [n for n, its in family.members.items() if its == sides] or list(family.members)
         different = list(dict.fromkeys(structure.sheet(compartment, other) for compartment in members))
         if len(different) == 1:
             return different[0]

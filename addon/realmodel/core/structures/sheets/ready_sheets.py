@@ -133,14 +133,14 @@ class ReadyMesh:
         are no triangles."""
         if trends is not None:
             return trends
-        own_triangles = self.own(family)
+        is_own = self.own(family)
         if not self.active.any():
             return dict.fromkeys(family.members.values(), Sheet(self.vertices, self.triangles))
         if self.tiling is None:
             self.tiling = plan_tiling(
                 self.work, self.vertices, self.triangles, np.ascontiguousarray(self.masks[:, self.active])
             )
-        plan, triangles, z = self.tiling.around(own_triangles)
+        plan, triangles, z = self.tiling.around(is_own)
         shapes = self.entry.divided().faults.shapes
         cut: list[tuple[int, int, Trace | None]] = [
             (fault, side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
@@ -154,10 +154,10 @@ class ReadyMesh:
 
         sheet = Sheet(np.column_stack([plan, common]), triangles)
         traces = traces_on(sheet)
-        over = [np.zeros(len(own_triangles), bool) for _ in faults]
+        over = [np.zeros(len(is_own), bool) for _ in faults]
         for number, trace in enumerate(traces):
             if not len(trace.points) and not self.tiling.is_mesh:
-                over[number] = self._over_others(own_triangles, family.dying[number])
+                over[number] = self._over_others(is_own, family.dying[number])
         met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
         if not met and (self.tiling.is_mesh or not self._is_drawn_together()):
             return dict.fromkeys(family.members.values(), sheet)
@@ -165,7 +165,7 @@ class ReadyMesh:
         self._require_one_height_beyond(family, met, sheet)
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
-            common = self._continued(plan, self.tiling.heights(own_triangles), triangles, cut)
+            common = self._continued(plan, self.tiling.heights(is_own), triangles, cut)
             traces = traces_on(Sheet(np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
@@ -176,9 +176,7 @@ class ReadyMesh:
                     continue
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
-            left = (
-                own_triangles & ~hidden if (own_triangles & ~hidden).any() else own_triangles
-            )  # if all are hidden, none are
+            left = is_own & ~hidden if (is_own & ~hidden).any() else is_own  # if all are hidden, none are
             dying = [(family.dying[n], side, traces[n]) for n, side in zip(met, sides, strict=True) if side]
             seen[sides] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
         drawn = self._with_equal_ends(family, met, seen, plan, triangles)
@@ -189,14 +187,12 @@ class ReadyMesh:
         structure = self.entry.divided()
         return bool(around_tips(structure, self.number, families(structure, self.number)))
 
-    def _over_others(self, own_triangles: np.ndarray, fault: int) -> np.ndarray:
+    def _over_others(self, is_own: np.ndarray, fault: int) -> np.ndarray:
         """(T,) bool: the own triangles on one side of a fault that lie over or under some on its other side,
         as at a fault that is nearly level; none where it does not pass between all of these. Such a place is
         noted: should the triangles meet in one sheet, this is why."""
         is_over = np.zeros(len(self.triangles), bool)
-        left, right = (
-            np.flatnonzero(own_triangles & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT)
-        )
+        left, right = (np.flatnonzero(is_own & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT))
         corners = [self.vertices[self.triangles[some]] for some in (left, right)]
         pairs = overlapping_pairs(*(faces[:, :, :2] for faces in corners))
         if not len(pairs):
