@@ -117,13 +117,11 @@ def _unresolved(work: Work, entry: RockInput, shape: Sheet, points: np.ndarray) 
     plan = np.ascontiguousarray(points[:, :2])
     # edges of equilateral triangles as large as the mean one
     edge = np.sqrt(float(np.prod(np.ptp(nodes, axis=0))) / len(triangles) * 4.0 / np.sqrt(3.0))
-    middle, unresolved = heights_at(work, shape, plan), np.zeros(len(plan))
+    middle, bend = heights_at(work, shape, plan), np.zeros(len(plan))
     for offset in ((edge, 0.0), (0.0, edge)):
         before, after = (heights_at(work, shape, plan + np.array(offset) * sign) for sign in (-1, 1))
-        unresolved = np.fmax(
-            unresolved, 0.5 * np.abs(before + after - 2.0 * middle)
-        )  # without those at the border
-    return unresolved
+        bend = np.fmax(bend, 0.5 * np.abs(before + after - 2.0 * middle))  # without those at the border
+    return bend
 
 
 def _is_outlier(sizes: np.ndarray, largest: float) -> bool:
@@ -225,11 +223,9 @@ class _Reach:
 
     def _heights(self, number: int) -> np.ndarray:
         vertices, _ = shape = self.entry.surface(number)
-        nodes = vertices[:: self.step]
-        if len(vertices) == len(self.entry.planar_mesh().vertices) and np.array_equal(
-            nodes[:, :2], self.plan
-        ):
-            return np.array(nodes[:, 2])
+        xyz = vertices[:: self.step]
+        if len(vertices) == len(self.entry.planar_mesh().vertices) and np.array_equal(xyz[:, :2], self.plan):
+            return np.array(xyz[:, 2])
         return heights_at(self.work, shape, self.plan)
 
     def _outside(self, points: np.ndarray) -> np.ndarray:

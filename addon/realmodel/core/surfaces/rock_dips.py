@@ -49,9 +49,8 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
     for number, data in enumerate(entry.data):
         joined = Dips.joined([dips.some(counts[:, number]) for dips, counts in parts])
         if len(joined):
-            of_rock = Dips(
-                joined.positions, joined.gradients, joined.heights
-            )  # without names, and all in use
+            # without names, and all in use
+            of_rock = Dips(joined.positions, joined.gradients, joined.heights)
             dips = of_rock if data.dips is None else Dips.joined([data.dips, of_rock])
             entry.data[number] = replace(data, dips=dips)
 

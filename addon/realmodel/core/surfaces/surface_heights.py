@@ -173,13 +173,9 @@ def _on_trend(
     work: Work, entry: RockInput, number: int, trend: Trend, others: dict
 ) -> tuple[Interpolation, np.ndarray]:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method, as of _tied."""
-    surface, surface_data, (nodes, triangles) = (
-        entry.rock.surfaces[number],
-        entry.data[number],
-        entry.planar_mesh(),
-    )
-    dips = surface_data.dips
-    points, mis_ties = without_mis_ties(surface_data.points)
+    surface, data, (nodes, triangles) = entry.rock.surfaces[number], entry.data[number], entry.planar_mesh()
+    dips = data.dips
+    points, mis_ties = without_mis_ties(data.points)
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2])
     away = away[np.isfinite(away[:, 2])]
@@ -202,7 +198,7 @@ def _on_trend(
             "beyond a fault"
         )
     result = replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
-    return _tied(replace(task, bounds=surface_data.bounds), result, surface, surface_data)
+    return _tied(replace(task, bounds=data.bounds), result, surface, data)
 
 
 def _older_points_above(work: Work, entry: RockInput, number: int, shape: Sheet) -> list[BuildWarning]:

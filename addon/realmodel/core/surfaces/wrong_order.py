@@ -41,15 +41,15 @@ def points_above_younger(entry: RockInput, numbers: Collection[int]) -> list[Bui
             continue  # the points of the younger one are looked at instead: wrong_sides
         if younger == older + 1 and surfaces[younger].minimum_thickness is not None:
             continue  # found where this is imposed
-        rows, other, names = _in_one_hole(data[older], data[younger])
-        if not len(rows):
-            rows, other = places[older].shared_with(places[younger])
-        above = points[older][rows]
-        beyond = above[:, 2] - points[younger][other, 2]
+        older_rows, younger_rows, names = _in_one_hole(data[older], data[younger])
+        if not len(older_rows):
+            older_rows, younger_rows = places[older].shared_with(places[younger])
+        above = points[older][older_rows]
+        beyond = above[:, 2] - points[younger][younger_rows, 2]
         if not names and 2 * (beyond > 0).sum() <= (beyond != 0).sum():
             continue
-        by_number = np.argsort(rows)
-        wrong = WrongPoints.of(above[by_number], beyond[by_number], younger, rows[by_number])
+        by_number = np.argsort(older_rows)
+        wrong = WrongPoints.of(above[by_number], beyond[by_number], younger, older_rows[by_number])
         if wrong is not None:
             wrong_points[older] = wrong_points[older].joined(wrong) if older in wrong_points else wrong
             holes.setdefault(older, []).extend(
@@ -78,10 +78,10 @@ def _warning(entry: RockInput, older: int, wrong: WrongPoints, holes: list[str])
 
 def _in_one_hole(first: SurfaceData, second: SurfaceData) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """The numbers of the points of two surfaces in the holes that meet both, (N,) each, and the holes."""
-    first_rows, other = (
+    first_rows, second_rows = (
         {source.hole: row for row, sources in data.sources.items() for source in sources}
         for data in (first, second)
     )
-    holes = sorted(first_rows.keys() & other.keys())
-    rows = np.array([(first_rows[hole], other[hole]) for hole in holes], int).reshape(-1, 2)
+    holes = sorted(first_rows.keys() & second_rows.keys())
+    rows = np.array([(first_rows[hole], second_rows[hole]) for hole in holes], int).reshape(-1, 2)
     return rows[:, 0], rows[:, 1], holes
