@@ -41,8 +41,8 @@ def _coarsened(rock: Rock, cells: float) -> Rock:
     if not any(fine):
         return rock
     series = [
-        replace(each, resolution=step) if of_field else each
-        for of_field, each in zip(fine, rock.series, strict=True)
+        replace(rock_series, resolution=step) if of_field else rock_series
+        for of_field, rock_series in zip(fine, rock.series, strict=True)
     ]
     length, triangles = rock.edge_length, rock.triangles
     if triangles is not None:
@@ -61,7 +61,7 @@ def _extent(rock: Rock) -> np.ndarray | None:
     points = [surface.points for surface in rock.surfaces if isinstance(surface.points, np.ndarray)]
     points += [series.dips.positions for series in rock.series if isinstance(series.dips, SpaceDips)]
     points += [rock.observations.places] if isinstance(rock.observations, Observations) else []
-    heights = np.concatenate([np.empty(0), *(each[:, -1] for each in points if each.shape[1] == 3)])
+    heights = np.concatenate([np.empty(0), *(places[:, -1] for places in points if places.shape[1] == 3)])
     if not len(heights):
         return None
     plan = np.concatenate(rock.rings())

@@ -31,8 +31,8 @@ def same(one: Any, other: Any) -> bool:
     if isinstance(one, dict) and isinstance(other, dict):
         return one.keys() == other.keys() and all(same(value, other[key]) for key, value in one.items())
     if is_dataclass(one) and type(one) is type(other):
-        known = [each.name for each in fields(one) if each.compare]
-        return all(same(getattr(one, name), getattr(other, name)) for name in known)
+        names = [field.name for field in fields(one) if field.compare]
+        return all(same(getattr(one, name), getattr(other, name)) for name in names)
     return bool(one == other)
 
 
@@ -154,5 +154,5 @@ def shapes_given(entry: Any, keys: Sequence[str], refuse: Refuse) -> list[str]:
 
 def check_property(library: Library | None, number: int, refuse: Refuse) -> None:
     if number and library is not None and number not in library:
-        known = ", ".join(str(entry.id) for entry in library.properties)
-        raise refuse(f"the library has no property {number}", "property", f"it has {known}")
+        ids = ", ".join(str(entry.id) for entry in library.properties)
+        raise refuse(f"the library has no property {number}", "property", f"it has {ids}")

@@ -23,18 +23,20 @@ def check_field_data(project: Project, rock: Rock) -> None:
     if rock.map is not None:
         _check_map(rock, rock.map)
     for key in ("boreholes", "observations", "map", "dips"):
-        has_effect = rock.interpolates or (key != "dips" and any(each.has_points for each in rock.surfaces))
+        has_effect = rock.interpolates or (
+            key != "dips" and any(surface.has_points for surface in rock.surfaces)
+        )
         if getattr(rock, key) is not None and not has_effect:
             raise refuse(f"'{key}' has no effect, as no surface is interpolated", key)
     _check_names(project, rock)
 
 
-def _check_map(rock: Rock, given: MapFile) -> None:
+def _check_map(rock: Rock, map_file: MapFile) -> None:
     refuse = rock.refused
     with refused_by(refuse, "map", "map: "):
-        given.check()
-    check_layer(given.polygons, "map", refuse)
-    check_layer(given.faults, "map", refuse)
+        map_file.check()
+    check_layer(map_file.polygons, "map", refuse)
+    check_layer(map_file.faults, "map", refuse)
     number = rock.ground_number
     if rock.ground_file is None and number is not None and rock.is_level_set(rock.surfaces[number]):
         what = f"the ground of the map cannot be '{rock.surfaces[number].name}': it is a level set"
@@ -47,13 +49,13 @@ def _check_names(project: Project, rock: Rock) -> None:
     advice = 'write names = { SST = "Sandstone" }'
     if not isinstance(rock.names, Mapping):
         raise rock.refused(f"'names' must be a table of names, not {rock.names!r}", "names", advice)
-    known = project.names_of_units(rock)
+    unit_names = project.names_of_units(rock)
     for code, name in rock.names.items():
         if not is_name(code) or not isinstance(name, str):
             raise rock.refused(f"'names' must give a name for each name, not {name!r}", "names", advice)
-        if name and name not in known:
-            near = difflib.get_close_matches(name, known, n=1)
+        if name and name not in unit_names:
+            near = difflib.get_close_matches(name, unit_names, n=1)
             what = f"'names' gives {code!r} the name '{name}', which is no block, surface or body"
             raise rock.refused(
-                what, "names", f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"
+                what, "names", f"did you mean '{near[0]}'?" if near else f"there are {', '.join(unit_names)}"
             )

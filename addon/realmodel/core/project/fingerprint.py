@@ -22,9 +22,9 @@ def fingerprint(project: Project, files: Mapping[int, tuple[object, str]]) -> st
     as its settings name the file, and the stamp of the file. They count in place of the entry, so that it is
     the same whether the file is still to be read or its arrays are stored already.
     """
-    found = hashlib.blake2b(digest_size=16)
-    _add(found.update, project, files)
-    return found.hexdigest()
+    digest = hashlib.blake2b(digest_size=16)
+    _add(digest.update, project, files)
+    return digest.hexdigest()
 
 
 def _add(update: Callable[[bytes], None], value: Any, files: Mapping[int, tuple[object, str]]) -> None:
@@ -44,7 +44,7 @@ def _add(update: Callable[[bytes], None], value: Any, files: Mapping[int, tuple[
     elif isinstance(value, (Mapping, list, tuple)):
         items = list(value.items()) if isinstance(value, Mapping) else value
         update(f"list {len(items)} ".encode())
-        for item in items:
-            _add(update, item, files)
+        for element in items:
+            _add(update, element, files)
     else:
         update(f"{value!r} ".encode())

@@ -130,8 +130,8 @@ class Library:
             try:
                 check_property(entry, seen)
             except OptionRefused as error:
-                item = f"property {entry.id!r}"
-                raise InputRefused(error.what, item=item, advice=error.advice) from error
+                property_name = f"property {entry.id!r}"
+                raise InputRefused(error.what, item=property_name, advice=error.advice) from error
             seen.add(entry.id)
 
     def __contains__(self, key: int | str) -> bool:
@@ -146,8 +146,8 @@ class Library:
         for entry in self.properties:
             if key in (entry.id, entry.name):
                 return entry
-        known = ", ".join(f"{entry.id} '{entry.name}'" for entry in self.properties)
-        raise UsageError(f"the library has no property {key!r}; it has {known}")
+        names = ", ".join(f"{entry.id} '{entry.name}'" for entry in self.properties)
+        raise UsageError(f"the library has no property {key!r}; it has {names}")
 
     def __iter__(self) -> Iterator[Property]:
         return iter(self.properties)

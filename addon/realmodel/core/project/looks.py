@@ -257,12 +257,12 @@ def look_of(*names: str) -> str:
     of its property - in which a word of a look begins: of words the longest, then the last, which the others
     say more of. "SANDSTONE" where there is none."""
     for name in names:
-        found = [
+        matches = [
             (len(word), match.start(), key)
             for key, look in LOOKS.items()
             for word in look.words
             for match in re.finditer(rf"\b{re.escape(word)}", name.casefold())
         ]
-        if found:
-            return max(found)[2]
+        if matches:
+            return max(matches)[2]
     return DEFAULT

@@ -92,14 +92,14 @@ def read_constraints(given: Sequence, units: str = MODEL_UNIT) -> list[np.ndarra
 
     Outlines of polygons in files are lines that return to where they began. Raises InputRefused.
     """
-    found: list[np.ndarray] = []
+    lines: list[np.ndarray] = []
     for number, entry in enumerate(given, 1):
         try:
             shapes = shapes_of(entry, units)
-            found += [places_of_constraint(entry)] if shapes is None else _lines_of(shapes, map_layer(entry))
+            lines += [places_of_constraint(entry)] if shapes is None else _lines_of(shapes, map_layer(entry))
         except InputRefused as error:
             raise error.within(f"constraint {number}") from error
-    return found
+    return lines
 
 
 def is_place_elsewhere(at: object) -> bool:
@@ -109,25 +109,25 @@ def is_place_elsewhere(at: object) -> bool:
 
 def files_of_sizes(sizes: Sequence[Mapping]) -> list[Path]:
     """The files that the places of local edge lengths are read from."""
-    found = [entry.get("at") for entry in sizes if isinstance(entry, Mapping)]
-    return [file for at in found if is_place_elsewhere(at) for file in layer_files(at)]
+    places = [entry.get("at") for entry in sizes if isinstance(entry, Mapping)]
+    return [file for at in places if is_place_elsewhere(at) for file in layer_files(at)]
 
 
 def read_sizes(sizes: Sequence[Mapping], units: str = MODEL_UNIT) -> list[Mapping]:
     """Entries of local edge lengths without files or text: one for each line, outline and point in them.
     Raises InputRefused."""
-    found: list[Mapping] = []
+    entries: list[Mapping] = []
     for number, entry in enumerate(sizes):
         try:
             shapes = shapes_of(entry["at"], units) if is_place_elsewhere(entry["at"]) else None
             if shapes is None:
-                found.append(entry)
+                entries.append(entry)
                 continue
             lines = _lines_of(shapes, map_layer(entry["at"]))
         except InputRefused as error:
             raise error.within(f"size {number}") from error
-        found += [{**entry, "at": line.tolist() if len(line) > 1 else line[0].tolist()} for line in lines]
-    return found
+        entries += [{**entry, "at": line.tolist() if len(line) > 1 else line[0].tolist()} for line in lines]
+    return entries
 
 
 def places_of_constraint(given: ArrayLike) -> np.ndarray:
@@ -146,12 +146,12 @@ def places_of_constraint(given: ArrayLike) -> np.ndarray:
 
 
 def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
-    found = [line for _, line in shapes.lines]
-    found += [np.concatenate([ring, ring[:1]]) for polygon in shapes.polygons for ring in polygon.rings]
-    found += [point.reshape(1, 2) for _, point in shapes.points]
-    if not found:
+    lines = [line for _, line in shapes.lines]
+    lines += [np.concatenate([ring, ring[:1]]) for polygon in shapes.polygons for ring in polygon.rings]
+    lines += [point.reshape(1, 2) for _, point in shapes.points]
+    if not lines:
         raise InputRefused("there are no lines or points in it", file=None if layer is None else layer.file)
-    return [line[begins_run(line)] for line in found]
+    return [line[begins_run(line)] for line in lines]
 
 
 def ring_path(region: Any, items: Sequence[int]) -> tuple:

@@ -324,10 +324,10 @@ class Rock(Entry):
     @property
     def observation_file(self) -> ObservationFile | None:
         """The table of its observations; None where they are arrays, or there are none."""
-        given = self.observations
-        if isinstance(given, (str, Path)):
-            return ObservationFile(given)
-        return given if isinstance(given, ObservationFile) else None
+        table = self.observations
+        if isinstance(table, (str, Path)):
+            return ObservationFile(table)
+        return table if isinstance(table, ObservationFile) else None
 
     @property
     def dip_file(self) -> DipFile | None:
@@ -337,14 +337,14 @@ class Rock(Entry):
     @property
     def dip_files(self) -> list[DipFile]:
         """The files of its dips, and of those of its series and its surfaces."""
-        given = [self.dip_file, *(each.dip_file for each in self.series)]
-        given += [each.dip_file for each in self.surfaces]
-        return [each for each in given if each is not None]
+        files = [self.dip_file, *(series.dip_file for series in self.series)]
+        files += [surface.dip_file for surface in self.surfaces]
+        return [file for file in files if file is not None]
 
     @property
     def has_field_data(self) -> bool:
         """Whether it has boreholes, observations or a map, which may give its surfaces contacts."""
-        return any(given is not None for given in (self.boreholes, self.observations, self.map))
+        return any(source is not None for source in (self.boreholes, self.observations, self.map))
 
     @property
     def observed(self) -> Observations | None:
@@ -370,8 +370,8 @@ class Rock(Entry):
         if ground is None:
             return names.index(self.map.ground) if self.map.ground in names else youngest
         file = Path(ground.file if isinstance(ground, (PointFile, MeshFile)) else ground)
-        own = self.surfaces[-1].input_file
-        return youngest if own is None or Path(own) == file else None
+        surface_file = self.surfaces[-1].input_file
+        return youngest if surface_file is None or Path(surface_file) == file else None
 
     @property
     def map_files(self) -> list[Path]:
@@ -404,9 +404,11 @@ class Rock(Entry):
 
     def stage(self, m: int) -> Rock:
         """The rock mass with the surfaces up to m, and the series that these belong to."""
-        kept = self.surfaces[: m + 1]
-        names = {surface.series for surface in kept}
-        return replace(self, surfaces=kept, series=[each for each in self.series if each.name in names])
+        surfaces = self.surfaces[: m + 1]
+        names = {surface.series for surface in surfaces}
+        return replace(
+            self, surfaces=surfaces, series=[series for series in self.series if series.name in names]
+        )
 
     @property
     def interpolates(self) -> bool:
@@ -445,14 +447,14 @@ class Project(Compared):
         files = [self.path, self.library.path if self.library else None]
         for rock in self.rocks:
             files += [*layer_files(rock.region), *(surface.input_file for surface in rock.surfaces)]
-            files += [file for given in rock.constraints for file in layer_files(given)]
+            files += [file for constraint in rock.constraints for file in layer_files(constraint)]
             files += files_of_sizes(rock.size)
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             files += rock.map_files
-            files += [Path(each.file) for each in rock.dip_files]
-            for given in (surface.point_file for surface in rock.surfaces):
-                files += [] if given is None else companions(Path(given.file))
+            files += [Path(dip_file.file) for dip_file in rock.dip_files]
+            for point_file in (surface.point_file for surface in rock.surfaces):
+                files += [] if point_file is None else companions(Path(point_file.file))
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
@@ -467,8 +469,8 @@ class Project(Compared):
         """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
         rocks = [rock.stage(m) for rock in self.rocks]
         for rock in rocks:
-            known = self.names_of_units(rock)
-            rock.names = {code: name if name in known else "" for code, name in rock.names.items()}
+            unit_names = self.names_of_units(rock)
+            rock.names = {code: name if name in unit_names else "" for code, name in rock.names.items()}
         return replace(self, rocks=rocks)
 
 

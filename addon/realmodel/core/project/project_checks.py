@@ -67,8 +67,8 @@ def _check_rock(project: Project, rock: Rock) -> None:
             "holes need a region given by coordinates", "holes", "put the holes into the region's file"
         )
     check_layer(rock.region, "region", refuse)
-    for given in rock.constraints:
-        check_layer(given, "constraints", refuse)
+    for constraint in rock.constraints:
+        check_layer(constraint, "constraints", refuse)
     if len(rock.constraints) and not rock.interpolates:
         what = "constraints have no effect, as no surface is interpolated"
         raise refuse(what, "constraints")
@@ -79,8 +79,8 @@ def _check_rock(project: Project, rock: Rock) -> None:
         _check_surface(project, rock, surface)
         if surface.name in names:
             advice = "give each surface of a rock mass a unique name"
-            item = surface_item(rock, surface)
-            raise surface.refused("another surface has this name", "name", advice, item)
+            item_name = surface_item(rock, surface)
+            raise surface.refused("another surface has this name", "name", advice, item_name)
         names.add(surface.name)
     _check_references(rock)
 
@@ -190,19 +190,19 @@ def _check_references(rock: Rock) -> None:
     numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
     needs: list[list[tuple[str, int]]] = []
     for number, surface in enumerate(rock.surfaces):
-        item, needed = surface_item(rock, surface), []
+        item_name, needed = surface_item(rock, surface), []
         for option in SURFACE_OPTIONS:
             name = surface.options.get(option)
             if not isinstance(name, str):
                 continue
             if name not in numbers:
                 what = f"'{option}' names surface '{name}', which {rock.item} does not have"
-                raise surface.refused(what, option, f"it has {', '.join(numbers)}", item)
+                raise surface.refused(what, option, f"it has {', '.join(numbers)}", item_name)
             needed.append((option, numbers[name]))
         for key in ("minimum_thickness", "correlation"):
             if number == 0 and getattr(surface, key) is not None:
                 what = f"the oldest surface cannot have a {key}, as there is no surface beneath it"
-                raise surface.refused(what, key, item=item)
+                raise surface.refused(what, key, item=item_name)
         if surface.minimum_thickness is not None:
             needed.append(("minimum_thickness", number - 1))
         needs.append(needed)

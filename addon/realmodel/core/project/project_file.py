@@ -131,8 +131,8 @@ def _entries(key: _Key) -> list:
 
 
 def _entry(key: _Key, table: Table) -> Any:
-    item = f"{key.name} '{table.text('name', required=True)}'"
-    table.item = f"{key.table.item}, {item}" if key.table.item else item
+    entry_name = f"{key.name} '{table.text('name', required=True)}'"
+    table.item = f"{key.table.item}, {entry_name}" if key.table.item else entry_name
     table.allow_only(settings_of(key.setting.of))
     values = _with_reading(table, _values(table, key.setting.of, key.folder, _checked))
     return key.setting.of(**values, source=Source(table.document, table.path))

@@ -116,23 +116,23 @@ def _entry_lines(
     """The lines of a project, rock mass, surface, series, fault or body."""
     lines: list[str] = []
     for part, value in changed_values(entry):
-        item = _Value(value, part.key, names, rock, tables, files)
+        field = _Value(value, part.key, names, rock, tables, files)
         if part.setting.kind == "tables":
-            lines += _tables(item)
+            lines += _tables(field)
         elif part.setting.kind == "options":
             lines += _lines(value)
-        elif (text := WRITE.get(part.setting.kind, _Value.text)(item)) is not None:
+        elif (text := WRITE.get(part.setting.kind, _Value.text)(field)) is not None:
             lines.append(f"{part.key} = {text}")
     return lines
 
 
-def _tables(item: _Value) -> list[str]:
-    lines, tables = [], f"{item.tables}.{item.key}".strip(".")
-    for entry in item.value:
-        rock = entry if isinstance(entry, Rock) else item.rock
-        names = (*item.names, entry.name) if rock else (item.key, entry.name)
+def _tables(field: _Value) -> list[str]:
+    lines, tables = [], f"{field.tables}.{field.key}".strip(".")
+    for entry in field.value:
+        rock = entry if isinstance(entry, Rock) else field.rock
+        names = (*field.names, entry.name) if rock else (field.key, entry.name)
         _require_read(entry)
-        lines += ["", f"[[{tables}]]", *_entry_lines(_as_written(entry), item.files, names, tables, rock)]
+        lines += ["", f"[[{tables}]]", *_entry_lines(_as_written(entry), field.files, names, tables, rock)]
     return lines
 
 
@@ -177,23 +177,23 @@ def _as_written(entry: Any) -> Any:
     return entry
 
 
-def _library(item: _Value) -> str:
-    return toml_value(item.files.write(("library",), ".toml", library_text(item.value).encode()))
+def _library(field: _Value) -> str:
+    return toml_value(field.files.write(("library",), ".toml", library_text(field.value).encode()))
 
 
-def _points(item: _Value) -> str | None:
-    if not len(item.value):
+def _points(field: _Value) -> str | None:
+    if not len(field.value):
         return None
-    return toml_value(item.files.write(item.names, ".csv", points_text(item.value)))
+    return toml_value(field.files.write(field.names, ".csv", points_text(field.value)))
 
 
-def _mesh(item: _Value) -> str:
-    return toml_value(item.files.write(item.names, ".off", off_text(*item.value)))
+def _mesh(field: _Value) -> str:
+    return toml_value(field.files.write(field.names, ".off", off_text(*field.value)))
 
 
-def _table_file(item: _Value) -> str | None:
+def _table_file(field: _Value) -> str | None:
     """Dips, or observations."""
-    table, rock = item.value, item.rock
+    table, rock = field.value, field.rock
     if not len(table):
         return None
     assert rock is not None
@@ -201,19 +201,19 @@ def _table_file(item: _Value) -> str | None:
         text = space_dips_text(table)
     else:
         text = _named_dips_text(rock, table) if isinstance(table, Dips) else observations_text(rock)
-    return toml_value(item.files.write((*item.names, item.key), ".csv", text))
+    return toml_value(field.files.write((*field.names, field.key), ".csv", text))
 
 
-def _places(item: _Value) -> str | None:
-    return toml_value(np.asarray(item.value, np.float64).tolist()) if len(item.value) else None
+def _places(field: _Value) -> str | None:
+    return toml_value(np.asarray(field.value, np.float64).tolist()) if len(field.value) else None
 
 
-def _region(item: _Value) -> str:
-    return _rings_text(item.value) if is_several(item.value) else _ring_text(item.value)
+def _region(field: _Value) -> str:
+    return _rings_text(field.value) if is_several(field.value) else _ring_text(field.value)
 
 
-def _trace(item: _Value) -> str:
-    line = item.value
+def _trace(field: _Value) -> str:
+    line = field.value
     return _rings_text(line) if len(line) and np.ndim(line[0]) > 1 else _ring_text(line)
 
 
@@ -244,8 +244,8 @@ WRITE: Mapping[str, Callable[[_Value], str | None]] = {
     "table_file": _table_file,
     "places": _places,
     "region": _region,
-    "rings": lambda item: _rings_text(item.value) if len(item.value) else None,
-    "constraints": lambda item: _rings_text(item.value) if len(item.value) else None,
+    "rings": lambda field: _rings_text(field.value) if len(field.value) else None,
+    "constraints": lambda field: _rings_text(field.value) if len(field.value) else None,
     "trace": _trace,
 }
 
@@ -313,7 +313,7 @@ def _block_codes(rock: Rock) -> dict[str, str]:
     surfaces = [surface.name for surface in rock.surfaces]
     units = UnitNames(surfaces, rock.block_names())
     return {
-        name: next((each for each in (name, block) if units.block(each) == name), name)
+        name: next((code for code in (name, block) if units.block(code) == name), name)
         for name, block in zip(surfaces, rock.block_names(), strict=True)
     }
 
@@ -330,24 +330,24 @@ def space_dips_text(dips: SpaceDips) -> bytes:
 
 def observations_text(rock: Rock) -> bytes:
     """The observations of a rock mass as CSV, each block by a name that means it when the table is read."""
-    given = rock.observed
-    assert given is not None
+    observations = rock.observed
+    assert observations is not None
     written = _block_codes(rock)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     more = {}
-    if not given.in_use.all():
-        more["use"] = given.in_use.astype(int).tolist()
-    if (given.seen_on != "").any():
-        more["seen_on"] = given.on.tolist()
-    if given.errors.any():
-        more["height_error"] = given.errors.tolist()
+    if not observations.in_use.all():
+        more["use"] = observations.in_use.astype(int).tolist()
+    if (observations.seen_on != "").any():
+        more["seen_on"] = observations.on.tolist()
+    if observations.errors.any():
+        more["height_error"] = observations.errors.tolist()
     table.writerow(("x", "y", "z", "block", "hole", "depth", *more))
     for place, block, hole, depth, *others in zip(
-        given.places.tolist(),
-        given.blocks.tolist(),
-        given.holes.tolist(),
-        given.depths.tolist(),
+        observations.places.tolist(),
+        observations.blocks.tolist(),
+        observations.holes.tolist(),
+        observations.depths.tolist(),
         *more.values(),
         strict=True,
     ):

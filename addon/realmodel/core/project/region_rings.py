@@ -34,26 +34,28 @@ def numbered_ring(ring: ArrayLike, item: str) -> np.ndarray:
     return corners
 
 
-def _corners(ring: ArrayLike, item: str) -> np.ndarray:
+def _corners(ring: ArrayLike, ring_name: str) -> np.ndarray:
     try:
         corners = np.array(ring, np.float64)
     except (TypeError, ValueError) as error:
-        raise InputRefused("an outline must be corners [x, y]", item=item) from error
+        raise InputRefused("an outline must be corners [x, y]", item=ring_name) from error
     if corners.ndim != 2 or corners.shape[1] != 2:
-        raise InputRefused(f"an outline must be an array (N, 2), not {corners.shape}", item=item)
+        raise InputRefused(f"an outline must be an array (N, 2), not {corners.shape}", item=ring_name)
     return corners
 
 
-def _require_corners(corners: np.ndarray, item: str) -> None:
+def _require_corners(corners: np.ndarray, ring_name: str) -> None:
     finite = np.isfinite(corners)
     if not finite.all():
         bad = np.flatnonzero(~finite.all(axis=1))
         what = f"corner {bad[0]} is {place_text(corners[bad[0]])}, not finite"
-        raise InputRefused(what, item=item)
+        raise InputRefused(what, item=ring_name)
     if not _three_differ(corners):
         near = f", near {place_text(corners[0])}" if len(corners) else ""
         place = tuple(corners[0]) if len(corners) else None
-        raise InputRefused(f"an outline needs at least three different corners{near}", item=item, place=place)
+        raise InputRefused(
+            f"an outline needs at least three different corners{near}", item=ring_name, place=place
+        )
 
 
 def _three_differ(corners: np.ndarray) -> bool:
@@ -96,18 +98,18 @@ def rings_of_shapes(shapes: Shapes) -> list[NamedRing]:
     parts = Counter(shape.item for shape in shapes.polygons)
     part: Counter[str | None] = Counter()
     for polygon, shape in enumerate(shapes.polygons):
-        item = shape.item or ("outline" if len(shapes.polygons) == 1 else f"polygon {polygon + 1}")
+        polygon_name = shape.item or ("outline" if len(shapes.polygons) == 1 else f"polygon {polygon + 1}")
         part[shape.item] += 1
         if shape.item and parts[shape.item] > 1:
-            item = f"{item}, polygon {part[shape.item]}"
+            polygon_name = f"{polygon_name}, polygon {part[shape.item]}"
         for number, corners in enumerate(shape.rings):
             hole = shape.has_roles and number > 0
             if hole:
-                name = f"{item}, hole {number}"
+                name = f"{polygon_name}, hole {number}"
             elif len(shape.rings) > 1 and not shape.has_roles:
-                name = f"{item}, ring {number + 1}"
+                name = f"{polygon_name}, ring {number + 1}"
             else:
-                name = item
+                name = polygon_name
             rings.append(NamedRing(name, corners, polygon, hole))
     return rings
 
@@ -126,9 +128,9 @@ def checked_region(
         _require_corners(ring.corners, ring.name)
     names, sizes = [ring.name for ring in rings], [len(ring.corners) for ring in rings]
     with refused_as(lambda error: refused_rings(error, names, sizes)) as native:
-        given = [ring.corners for ring in rings]
+        corners = [ring.corners for ring in rings]
         roles = [ring.polygon for ring in rings], [ring.hole for ring in rings]
-        checked = (call or _at_once)(native.check_region, given, *roles)
+        checked = (call or _at_once)(native.check_region, corners, *roles)
     return [_without_repetition(ring) for ring in checked]
 
 

@@ -27,11 +27,11 @@ def check_series(rock: Rock) -> None:
         refuse = partial(series.refused, item=f"{rock.item}, {series.item}")
         check_values(series, refuse)
         _check_dips(series, refuse)
-        own = rock.members(series)
-        if not own:
+        members = rock.members(series)
+        if not members:
             advice = f'write series = "{series.name}" in its surfaces'
             raise refuse("no surface belongs to it", "name", advice)
-        for one, other in pairwise(own):
+        for one, other in pairwise(members):
             if other > one + 1:
                 between = rock.surfaces[one + 1]
                 what = f"its surfaces are not consecutive: '{between.name}' is between them"
@@ -39,16 +39,16 @@ def check_series(rock: Rock) -> None:
         if series.kind == FIELD:
             _check_field(rock, refuse)
         else:
-            _check_sheets(rock, series, own, refuse)
+            _check_sheets(rock, series, members, refuse)
 
 
-def _check_sheets(rock: Rock, series: Series, own: list[int], refuse: Refuse) -> None:
+def _check_sheets(rock: Rock, series: Series, members: list[int], refuse: Refuse) -> None:
     if series.resolution != AUTO:
         raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
     if series.thickness != AUTO:
         what = "'thickness' has no effect, as sheets always share how their thickness varies"
         raise refuse(what, "thickness", "leave it out")
-    for number in own:
+    for number in members:
         surface = rock.surfaces[number]
         if not surface.has_points or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:
             how = f"has method '{surface.method}'" if surface.has_points else "is a mesh"
@@ -56,7 +56,7 @@ def _check_sheets(rock: Rock, series: Series, own: list[int], refuse: Refuse) ->
             raise refuse(
                 what, "name", f"methods of sheets are {', '.join(SHEET_METHODS[:-1])} and {SHEET_METHODS[-1]}"
             )
-        if number > own[0] and surface.correlation is not None:
+        if number > members[0] and surface.correlation is not None:
             what = f"'{surface.name}' has a correlation, but sheets are drawn together in ensembles"
             raise refuse(what, "name", "leave correlation out; the oldest sheet may have one")
 

@@ -81,18 +81,22 @@ def _check_shape(entry: Fault | Body, refuse: Refuse, files: tuple[str, ...]) ->
 
 def _check_names(project: Project, refuse: Refuse, key: str, rocks: Any, time_key: str, surface: Any) -> None:
     """Refuses unknown rock masses and surfaces."""
-    known = {rock.name: [each.name for each in rock.surfaces] for rock in project.rocks}
+    names_of_rocks = {
+        rock.name: [rock_surface.name for rock_surface in rock.surfaces] for rock in project.rocks
+    }
     for name in rocks:
-        if name not in known:
-            raise refuse(f"'{key}' names rock mass '{name}', which does not exist", key, _there(known))
+        if name not in names_of_rocks:
+            raise refuse(
+                f"'{key}' names rock mass '{name}', which does not exist", key, _there(names_of_rocks)
+            )
     if surface is None:
         return
     for name in rocks:
-        if surface not in known[name]:
+        if surface not in names_of_rocks[name]:
             what = f"'{time_key}' names surface '{surface}', which rock '{name}' does not have"
-            raise refuse(what, time_key, f"it has {', '.join(known[name])}")
-    if not any(surface in names for names in known.values()):
-        every = dict.fromkeys(name for names in known.values() for name in names)
+            raise refuse(what, time_key, f"it has {', '.join(names_of_rocks[name])}")
+    if not any(surface in names for names in names_of_rocks.values()):
+        every = dict.fromkeys(name for names in names_of_rocks.values() for name in names)
         raise refuse(f"'{time_key}' names surface '{surface}', which does not exist", time_key, _there(every))
 
 
@@ -104,7 +108,7 @@ def _check_ends(project: Project) -> None:
     """Refuses faults that end at unknown faults, at each other, or at faults that displace less."""
     faults = {fault.name: fault for fault in project.faults}
     for fault in project.faults:
-        own = displaced_surfaces(project, fault)
+        displaced = displaced_surfaces(project, fault)
         for name in fault.ends_at:
             if name not in faults:
                 what = f"'ends_at' names fault '{name}', which does not exist"
@@ -112,9 +116,9 @@ def _check_ends(project: Project) -> None:
             if name == fault.name:
                 raise fault.refused("it cannot end at itself", "ends_at")
             other = displaced_surfaces(project, faults[name])
-            for rock in own.keys() & other.keys():
-                if own[rock] > other[rock]:
-                    surface = project.rocks[rock].surfaces[own[rock]].name
+            for rock in displaced.keys() & other.keys():
+                if displaced[rock] > other[rock]:
+                    surface = project.rocks[rock].surfaces[displaced[rock]].name
                     what = f"it displaces '{surface}', but fault '{name}', at which it ends, does not"
                     advice = f"give '{name}' a younger 'youngest', or this fault an older one"
                     raise fault.refused(what, "ends_at", advice)

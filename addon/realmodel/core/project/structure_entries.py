@@ -84,8 +84,8 @@ class Shaped(Entry):
     @property
     def input_file(self) -> Path | None:
         """The file that gives its shape; None where arrays do."""
-        given = self.mesh_file or self.point_file or getattr(self, "trace_file", None)
-        return None if given is None else Path(given.file)
+        file = self.mesh_file or self.point_file or getattr(self, "trace_file", None)
+        return None if file is None else Path(file.file)
 
 
 @dataclass(eq=False)

@@ -20,13 +20,13 @@ def body_times(project: Project, body: Body) -> dict[int, int]:
 
 
 def _numbers(project: Project, names: Sequence[str], surface: str | None) -> dict[int, int]:
-    found = {}
+    numbers = {}
     for number, rock in enumerate(project.rocks):
         if names and rock.name not in names:
             continue
-        surfaces = [each.name for each in rock.surfaces]
+        surfaces = [rock_surface.name for rock_surface in rock.surfaces]
         if surface is None:
-            found[number] = len(surfaces) - 1
+            numbers[number] = len(surfaces) - 1
         elif surface in surfaces:
-            found[number] = surfaces.index(surface)
-    return found
+            numbers[number] = surfaces.index(surface)
+    return numbers

@@ -36,7 +36,7 @@ class AgeOrder:
         """A sentence about the places that contradict the order; None where none does."""
         if not self.against:
             return None
-        worst = sorted(self.against.items(), key=lambda each: -each[1])
+        worst = sorted(self.against.items(), key=lambda entry: -entry[1])
         pairs = [f"'{names[older]}' above '{names[younger]}' at {count}" for (older, younger), count in worst]
         return (
             f"at {sum(self.against.values())} of {self.places} places where two surfaces have points, the "
@@ -58,19 +58,19 @@ def age_order(
     nearest points, without the dip that all have in common; this counts less than any shared place. What
     remains open follows the names, numbers in them by value, in the direction that fits the points better.
     """
-    known = [n for n, own in enumerate(points) if own is not None and len(own)]
-    given = [np.asarray(points[n], np.float64)[:, :3] for n in known]
-    below, shared = _compared([names[n] for n in known], given, holes or {})
-    order = _fewest_against(below, sorted(range(len(known)), key=lambda k: _natural(names[known[k]])))
-    found = list(range(len(names)))
-    for slot, k in zip(known, order, strict=True):
-        found[slot] = known[k]
+    numbers = [n for n, xyz in enumerate(points) if xyz is not None and len(xyz)]
+    point_sets = [np.asarray(points[n], np.float64)[:, :3] for n in numbers]
+    below, shared = _compared([names[n] for n in numbers], point_sets, holes or {})
+    order = _fewest_against(below, sorted(range(len(numbers)), key=lambda k: _natural(names[numbers[k]])))
+    surface_order = list(range(len(names)))
+    for slot, k in zip(numbers, order, strict=True):
+        surface_order[slot] = numbers[k]
     against = {
-        (known[older], known[younger]): int(shared[younger, older])
+        (numbers[older], numbers[younger]): int(shared[younger, older])
         for older, younger in combinations(order, 2)
         if shared[younger, older]
     }
-    return AgeOrder(tuple(found), int(shared.sum()), against)
+    return AgeOrder(tuple(surface_order), int(shared.sum()), against)
 
 
 def _natural(name: str) -> tuple:
@@ -90,7 +90,7 @@ def _compared(names: Sequence[str], points: list[np.ndarray], holes: Any) -> tup
     below = np.zeros((count, count), np.int64)
     if count > 1:
         places = places_of(points)
-        level = _without_common_slope([own[:: -(-len(own) // _NEAR)] for own in points])
+        level = _without_common_slope([xyz[:: -(-len(xyz) // _NEAR)] for xyz in points])
     for i, j in combinations(range(count), 2):
         if not (shared[i, j] or shared[j, i]):
             first, second = places[i].shared_with(places[j], _MOST_SHARED)
@@ -105,33 +105,33 @@ def _compared(names: Sequence[str], points: list[np.ndarray], holes: Any) -> tup
 def _in_holes(names: Sequence[str], holes: Any) -> np.ndarray:
     """(n, n) int64: in how many holes surface i is met below surface j."""
     number = {name: k for k, name in enumerate(names)}
-    found = np.zeros((len(names), len(names)), np.int64)
+    counts = np.zeros((len(names), len(names)), np.int64)
     for _, picks in holes.values():
         met = [(number[name], place[2]) for name, place in picks if name in number]
         for (i, z), (j, other) in combinations(met, 2):
             if z != other and i != j:
-                found[(i, j) if z < other else (j, i)] += 1
-    return found
+                counts[(i, j) if z < other else (j, i)] += 1
+    return counts
 
 
 def _without_common_slope(points: list[np.ndarray]) -> list[np.ndarray]:
     """The points less the slope in x and y that fits all surfaces best, each at a height of its own."""
-    x, y, z = np.concatenate([own - own.mean(axis=0) for own in points]).T
+    x, y, z = np.concatenate([xyz - xyz.mean(axis=0) for xyz in points]).T
     extra = _LEAST_SPREAD * (dot(x, x) + dot(y, y))
     xx, yy, xy = dot(x, x) + extra, dot(y, y) + extra, dot(x, y)
     determinant = xx * yy - xy * xy
     if not determinant > 0:  # all at one place
         return points
     slope = np.array([yy * dot(x, z) - xy * dot(y, z), xx * dot(y, z) - xy * dot(x, z)]) / determinant
-    return [np.column_stack([own[:, :2], own[:, 2] - dot(own[:, :2], slope)]) for own in points]
+    return [np.column_stack([xyz[:, :2], xyz[:, 2] - dot(xyz[:, :2], slope)]) for xyz in points]
 
 
 def _at_nearest(first: np.ndarray, second: np.ndarray) -> tuple[int, int]:
     """Weights, together _WHOLE at most, of points that lie below and above the nearest one of the other
     surface."""
     lower = higher = total = 0
-    for own, other, sign in ((first, second, 1), (second, first, -1)):
-        asked = own[:: -(-len(own) // _ASKED)]
+    for points, other, sign in ((first, second, 1), (second, first, -1)):
+        asked = points[:: -(-len(points) // _ASKED)]
         nearest = native_module().nearest_points(other[:, :2], asked[:, :2], execution=on_threads(1))[0][:, 0]
         difference = sign * (asked[:, 2] - other[nearest, 2])
         lower += int((difference < 0).sum())
@@ -159,10 +159,10 @@ def _improved(below: np.ndarray, order: list[int]) -> list[int]:
     order = list(order)
     while True:
         gain, move = 0, (0, 0)
-        for begin, own in enumerate(order):
+        for begin, moved in enumerate(order):
             others = order[:begin] + order[begin + 1 :]
             # Each step up passes one surface: what spoke for the one below is against it then.
-            steps = [int(below[other, own] - below[own, other]) for other in others]
+            steps = [int(below[other, moved] - below[moved, other]) for other in others]
             height = np.concatenate([[0], np.cumsum(steps)])
             best = int(height.argmax())
             if height[best] - height[begin] > gain:

@@ -46,14 +46,14 @@ def doubtful_heights(
     it. None of a realization: what it draws is no estimate."""
     if entry.draws is not None:
         return []
-    reach, found = _Reach(work, entry), []
+    reach, warnings = _Reach(work, entry), []
     for number in numbers:
         points = np.ascontiguousarray(entry.data[number].points, np.float64)
         if len(points) and not entry.data[number].is_along_bounds:
-            found.append(_missed(work, entry, number, points, compartment is None))
+            warnings.append(_missed(work, entry, number, points, compartment is None))
         if len(points := points if compartment is None else compartment.points):
-            found.append(reach.beyond(number, points, compartment))
-    return [warning for warning in found if warning is not None]
+            warnings.append(reach.beyond(number, points, compartment))
+    return [warning for warning in warnings if warning is not None]
 
 
 def _missed(
@@ -74,8 +74,8 @@ def _missed(
     if is_tied:
         shape = entry.untied[shape]
     z = heights_at(work, shape, points[:, :2])
-    known = np.isfinite(z)
-    sizes = np.where(known, np.abs(points[:, 2] - z), 0.0)
+    is_known = np.isfinite(z)
+    sizes = np.where(is_known, np.abs(points[:, 2] - z), 0.0)
     apart = _distance_to_neighbors(work, entry, number, points, z)
     if apart is None:
         return None
@@ -86,7 +86,7 @@ def _missed(
     beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates]) - expected
     worst = int(candidates[beyond_mesh.argmax()])
     largest = float(beyond_mesh.max())
-    if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
+    if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[is_known], sizes[worst])):
         return None
     place, hole = place_text(points[worst].tolist()), _hole(data.source(worst))
     row = data.row(worst)
@@ -117,11 +117,11 @@ def _unresolved(work: Work, entry: RockInput, shape: Sheet, points: np.ndarray) 
     plan = np.ascontiguousarray(points[:, :2])
     # edges of equilateral triangles as large as the mean one
     edge = np.sqrt(float(np.prod(np.ptp(nodes, axis=0))) / len(triangles) * 4.0 / np.sqrt(3.0))
-    middle, found = heights_at(work, shape, plan), np.zeros(len(plan))
+    middle, bend = heights_at(work, shape, plan), np.zeros(len(plan))
     for offset in ((edge, 0.0), (0.0, edge)):
         before, after = (heights_at(work, shape, plan + np.array(offset) * sign) for sign in (-1, 1))
-        found = np.fmax(found, 0.5 * np.abs(before + after - 2.0 * middle))  # without those at the border
-    return found
+        bend = np.fmax(bend, 0.5 * np.abs(before + after - 2.0 * middle))  # without those at the border
+    return bend
 
 
 def _is_outlier(sizes: np.ndarray, largest: float) -> bool:
@@ -139,15 +139,15 @@ def _distance_to_neighbors(
     base; None where there is none."""
     step = -(-len(points) // _MOST)
     plan, z = np.ascontiguousarray(points[::step, :2]), z[::step]
-    found = [
+    neighbors = [
         heights_at(work, shape, plan)
         for other in (number - 1, number + 1)
         for shape in entry.surfaces[max(0, other) : other + 1]
         if shape is not None
     ]
     if number == 0 and entry.rock.base_elevation is not None:
-        found.append(np.full(len(plan), entry.rock.base_elevation))
-    apart = np.abs(np.concatenate(found) - np.tile(z, len(found))) if found else np.empty(0)
+        neighbors.append(np.full(len(plan), entry.rock.base_elevation))
+    apart = np.abs(np.concatenate(neighbors) - np.tile(z, len(neighbors))) if neighbors else np.empty(0)
     apart = apart[apart > 0]  # not where one of them ends, or they are one
     return float(np.median(apart)) if len(apart) else None
 
@@ -209,12 +209,12 @@ class _Reach:
         is_new = (dot(cut, beyond) > _LEAST_SHARE * whole) & (dot(cut, beside) <= _LEAST_SHARE * beside.sum())
         if not is_new.any():
             return None
-        there = cut[is_new].any(axis=0) & (beyond > 0)
-        depth = np.where(there, self.blocks.top - z, -np.inf)
+        newly_cut = cut[is_new].any(axis=0) & (beyond > 0)
+        depth = np.where(newly_cut, self.blocks.top - z, -np.inf)
         place = place_text(self.plan[depth.argmax()].tolist())
         names = [self._name(block) for block in np.flatnonzero(is_new).tolist()]
         text = (
-            f"beyond its points, on {100 * beyond[there].sum() / whole:.2g} % of its area, it cuts "
+            f"beyond its points, on {100 * beyond[newly_cut].sum() / whole:.2g} % of its area, it cuts "
             f"{number_list(names)}, which it does not cut near them; deepest by "
             f"{number_text(float(depth.max()))} at {place}: "
             'add a point there, or set extrapolate = "nearest"'
@@ -223,9 +223,9 @@ class _Reach:
 
     def _heights(self, number: int) -> np.ndarray:
         vertices, _ = shape = self.entry.surface(number)
-        own = vertices[:: self.step]
-        if len(vertices) == len(self.entry.planar_mesh().vertices) and np.array_equal(own[:, :2], self.plan):
-            return np.array(own[:, 2])
+        xyz = vertices[:: self.step]
+        if len(vertices) == len(self.entry.planar_mesh().vertices) and np.array_equal(xyz[:, :2], self.plan):
+            return np.array(xyz[:, 2])
         return heights_at(self.work, shape, self.plan)
 
     def _outside(self, points: np.ndarray) -> np.ndarray:
@@ -269,10 +269,10 @@ class _Blocks:
     def cut_by(self, z: np.ndarray) -> np.ndarray:
         """(B, N) bool: where a surface that cuts takes more of a block than a tenth of its mean thickness."""
         z = np.maximum(z, self.firm)
-        found = []
+        is_cut = []
         for bottom, top in zip(self.bottoms, self.tops, strict=True):
             thickness = top - bottom
             is_there = thickness > 0  # never where NaN
             least = 0.1 * thickness[is_there].mean() if is_there.any() else np.inf
-            found.append(is_there & (top - np.maximum(z, bottom) > least))
-        return np.array(found)
+            is_cut.append(is_there & (top - np.maximum(z, bottom) > least))
+        return np.array(is_cut)

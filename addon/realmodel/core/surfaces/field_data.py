@@ -51,33 +51,35 @@ class FieldData:
 
 def read_field_data(project: Project, rock: Rock) -> FieldData:
     """Reads the boreholes, observations, map and dips of a rock mass. Raises InputRefused."""
-    given = rock
+    project_rock = rock
     rock, map_warnings = with_ground(rock), list[str]()
     bodies = [body.name for body in project.bodies]
     names = [surface.name for surface in rock.surfaces]
     units = UnitNames(names, rock.block_names(), bodies, rock.names)
-    picks, found = Picks(), [rock.observations] if isinstance(rock.observations, Observations) else []
+    picks, parts = Picks(), [rock.observations] if isinstance(rock.observations, Observations) else []
     with naming(rock.item):
         if rock.boreholes is not None:
             step = rock.edge_length if isinstance(rock.edge_length, (int, float)) else None
             picks = read_boreholes(rock.boreholes, project.units, units=units, plan_step=step)
-            found += picks.observations
+            parts += picks.observations
         left_out = list(picks.left_out)
         if rock.observation_file is not None:
             observed, not_used = read_observed_places(rock.observation_file, units, project.units)
-            found.append(observed)
+            parts.append(observed)
             left_out += not_used
         dips, not_used = _dips(project, rock, units)
         left_out += not_used
-        series = [_with_sheet_dips(project, rock, each, units, left_out) for each in rock.series]
+        series = [
+            _with_sheet_dips(project, rock, rock_series, units, left_out) for rock_series in rock.series
+        ]
     mapped = _mapped(project, rock, units, dips)
     if rock.map is not None:
         observed, not_used, map_warnings = read_map(project, rock, units)
-        if (ground := given.ground_number) is not None:
+        if (ground := project_rock.ground_number) is not None:
             observed = replace(observed, on=np.full(len(observed), rock.surfaces[ground].name))
-        found.append(observed)
+        parts.append(observed)
         left_out += not_used
-    observations = Observations.joined(found).along_holes() if found else None
+    observations = Observations.joined(parts).along_holes() if parts else None
     if observations is not None and not (picks.holes or rock.hole_picks):
         map_warnings += _on_the_ground_alone(rock, observations, dips, series)
     surfaces = [
@@ -105,7 +107,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         [name for name in picks.of_surfaces if name in unnamed],
         left_out,
         map_warnings,
-        given.ground_number,
+        project_rock.ground_number,
         mapped,
     )
 
@@ -114,7 +116,11 @@ def _on_the_ground_alone(
     rock: Rock, observations: Observations, dips: Dips | None, series: Sequence[Series]
 ) -> list[str]:
     """A warning where outcrops or a map alone say where surfaces are: nothing shows them below the ground."""
-    slopes = [dips, *(each.dips for each in series), *(surface.dips for surface in rock.surfaces)]
+    slopes = [
+        dips,
+        *(rock_series.dips for rock_series in series),
+        *(surface.dips for surface in rock.surfaces),
+    ]
     if (observations.holes != "").any() or any(map(_are_some, slopes)):
         return []
     shown = [
@@ -173,13 +179,13 @@ def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -
 
 def bodies_of(project: Project, rock: Rock) -> Situation:
     """The bodies that there may be in a rock mass, before their shapes are known."""
-    number = [each.name for each in project.rocks].index(rock.name)
-    there = [(body, body_times(project, body)) for body in project.bodies]
-    own = [(body, times[number]) for body, times in there if number in times]
+    number = [project_rock.name for project_rock in project.rocks].index(rock.name)
+    bodies_and_times = [(body, body_times(project, body)) for body in project.bodies]
+    in_rock = [(body, times[number]) for body, times in bodies_and_times if number in times]
     return Situation(
-        after=[after for _, after in own],
-        bodies=[body.name for body, _ in own],
-        voids=[body.void for body, _ in own],
+        after=[after for _, after in in_rock],
+        bodies=[body.name for body, _ in in_rock],
+        voids=[body.void for body, _ in in_rock],
     )
 
 
@@ -188,8 +194,8 @@ def _without_picks(surface: Surface, picks: Picks) -> Surface:
     off = picks.switched_off.get(surface.name)
     if off is None or not surface.has_points:
         return surface
-    known = [] if surface.left_out is None else [np.asarray(surface.left_out, np.float64).reshape(-1, 3)]
-    return replace(surface, left_out=np.concatenate([*known, off]))
+    left_out = [] if surface.left_out is None else [np.asarray(surface.left_out, np.float64).reshape(-1, 3)]
+    return replace(surface, left_out=np.concatenate([*left_out, off]))
 
 
 def observed_on_mesh(entry: RockInput, observations: Observations) -> tuple[Observations, np.ndarray]:
@@ -211,7 +217,7 @@ def apply_observations(
     derived = derive(entry.rock, observations, situation)
     entry.data = with_contacts(entry.rock, entry.data, derived)
     entry.used = derived.used[is_own]
-    of_tables = [each for each in entry.left_out if each.kind in IN_TABLES]
+    of_tables = [observation for observation in entry.left_out if observation.kind in IN_TABLES]
     entry.left_out = [*of_tables, *derived.left_out]
     if situation.sides is None or not situation.sides.shape[1]:  # a bound counts on its side of a fault
         entry.data, contradictions = without_contradictions(entry.rock, entry.data)
@@ -235,22 +241,22 @@ def _covered(work: Work, entry: RockInput, places: np.ndarray) -> np.ndarray | N
 def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
     """A warning for each reason why observations of a RockInput are left out, and for each surface that none
     of them is on."""
-    found = []
+    warnings = []
     for surface, data in zip(entry.rock.surfaces, entry.data, strict=True):
         if data.is_along_bounds:
             text = (
                 "it has no points, and no observation is on it: it goes through the "
                 f"{len(data.points)} places nearest to which observations allow it"
             )
-            found.append(BuildWarning(text, "no_contact", entry.rock.name, surface.name))
+            warnings.append(BuildWarning(text, "no_contact", entry.rock.name, surface.name))
     texts = left_out_texts(entry.left_out)
-    return [*found, *(BuildWarning(text, kind, entry.rock.name) for kind, text in texts.items())]
+    return [*warnings, *(BuildWarning(text, kind, entry.rock.name) for kind, text in texts.items())]
 
 
 def left_out_texts(left_out: Sequence[LeftOut]) -> dict[str, str]:
     """A sentence for each kind of observations that are left out."""
-    found = {}
+    texts = {}
     for kind, says in KINDS.items():
-        if listed := [each.text for each in left_out if each.kind == kind]:
-            found[kind] = f"{says} ({len(listed)}): {number_list(listed, _LISTED)}"
-    return found
+        if listed := [observation.text for observation in left_out if observation.kind == kind]:
+            texts[kind] = f"{says} ({len(listed)}): {number_list(listed, _LISTED)}"
+    return texts

@@ -69,12 +69,12 @@ class MapOnGround:
 
 def map_on_ground(project: Project, rock: Rock) -> MapOnGround:
     """The polygons of the map of a rock mass that has a region, and its ground. Raises InputRefused."""
-    given = rock.map
-    assert given is not None
-    surface = _ground(rock, given)
+    map_file = rock.map
+    assert map_file is not None
+    surface = _ground(rock, map_file)
     with naming(rock.item):
-        polygons, lines, warnings = read_unit_polygons(given, project.units)
-        faults = [*lines, *_fault_lines(project, given)]
+        polygons, lines, warnings = read_unit_polygons(map_file, project.units)
+        faults = [*lines, *_fault_lines(project, map_file)]
         region, holes, _ = read_rings(rock.region, rock.holes, project.units)
     rings = region if isinstance(region, list) else [region, *holes]
     corners = np.concatenate(rings)
@@ -83,7 +83,7 @@ def map_on_ground(project: Project, rock: Rock) -> MapOnGround:
     def heights(plan: np.ndarray) -> np.ndarray:
         return _heights(rock, surface, plan, project.units)
 
-    frame = MapFrame(box, _spacing(rock, rings, box), faults, heights, given.accuracy)
+    frame = MapFrame(box, _spacing(rock, rings, box), faults, heights, map_file.accuracy)
     return MapOnGround(polygons, frame, warnings)
 
 
@@ -107,21 +107,21 @@ def blocks_on_map(project: Project, rock: Rock, units: UnitNames, plan: np.ndarr
     assert rock.map is not None
     with naming(rock.item):
         polygons, _, _ = read_unit_polygons(rock.map, project.units)
-    found = np.full(len(plan), "", object)
-    for each in polygons:
-        block = "" if units.says_nothing(each.unit) else units.block(each.unit)
+    blocks = np.full(len(plan), "", object)
+    for polygon in polygons:
+        block = "" if units.says_nothing(polygon.unit) else units.block(polygon.unit)
         if block in units.surfaces:
-            found[inside(each.rings, plan)] = block
-    return found
+            blocks[inside(polygon.rings, plan)] = block
+    return blocks
 
 
-def _ground(rock: Rock, given: MapFile) -> Surface:
+def _ground(rock: Rock, map_file: MapFile) -> Surface:
     """The surface that the map is on."""
     shape = _ground_shape(rock)
     if shape is not None:
         return Surface("ground of the map", **shape)
-    names = [each.name for each in rock.surfaces]
-    return rock.surfaces[names.index(given.ground) if given.ground in names else -1]
+    names = [surface.name for surface in rock.surfaces]
+    return rock.surfaces[names.index(map_file.ground) if map_file.ground in names else -1]
 
 
 def _spacing(rock: Rock, rings: list[np.ndarray], box: np.ndarray) -> float:
@@ -134,15 +134,15 @@ def _spacing(rock: Rock, rings: list[np.ndarray], box: np.ndarray) -> float:
     return float(norm(box[1] - box[0])) / _PARTS
 
 
-def _fault_lines(project: Project, given: MapFile) -> list[np.ndarray]:
+def _fault_lines(project: Project, map_file: MapFile) -> list[np.ndarray]:
     """(N, 2) the lines of faults in plan: those of the map, and the traces of the project."""
-    found = []
-    if given.faults is not None:
-        shapes = shapes_of(given.faults, project.units)
+    lines = []
+    if map_file.faults is not None:
+        shapes = shapes_of(map_file.faults, project.units)
         if shapes is None or not shapes.lines:
-            file = given.faults.file if isinstance(given.faults, MapLayer) else None
+            file = map_file.faults.file if isinstance(map_file.faults, MapLayer) else None
             raise InputRefused("there are no lines of faults in it", file=file)
-        found += [line for _, line in shapes.lines]
+        lines += [line for _, line in shapes.lines]
     for fault in project.faults:
         trace = fault.trace
         if trace is None:
@@ -153,8 +153,8 @@ def _fault_lines(project: Project, given: MapFile) -> list[np.ndarray]:
             trace = read_fault_trace(trace).lines
         assert not isinstance(trace, (Path, PointFile))
         several = len(trace) and np.ndim(trace[0]) > 1
-        found += [np.asarray(line, np.float64)[:, :2] for line in (trace if several else [trace])]
-    return found
+        lines += [np.asarray(line, np.float64)[:, :2] for line in (trace if several else [trace])]
+    return lines
 
 
 def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_UNIT) -> np.ndarray:
@@ -210,7 +210,7 @@ def draped_map(given: MapOnGround, units: UnitNames) -> DrapedMap:
     plan = np.concatenate(vertices)
     z = given.frame.heights(plan) if len(plan) else np.empty(0)
     faces, unit = np.concatenate(triangles), np.concatenate(numbers)
-    known = np.isfinite(z[faces]).all(axis=1)
-    used, corners = np.unique(faces[known], return_inverse=True)
+    is_known = np.isfinite(z[faces]).all(axis=1)
+    used, corners = np.unique(faces[is_known], return_inverse=True)
     places = np.column_stack([plan, z])[used]
-    return DrapedMap(places, corners.reshape(-1, 3).astype(np.int32), unit[known], list(names), warnings)
+    return DrapedMap(places, corners.reshape(-1, 3).astype(np.int32), unit[is_known], list(names), warnings)

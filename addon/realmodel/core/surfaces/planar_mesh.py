@@ -55,16 +55,16 @@ class MeshOptions:
     def request(self) -> dict:
         """What the native mesher is asked for. Raises InputRefused and UsageError."""
         lines = [places_of(line, f"constraint {number}") for number, line in enumerate(self.constraints)]
-        given = self.constraint_points
-        given = None if given is None else places_of(given, "constraint_points")
+        fixed_points = self.constraint_points
+        fixed_points = None if fixed_points is None else places_of(fixed_points, "constraint_points")
         length, wanted, density = size_of_edges(self.edge_length, self.triangles, self.points)
         return {
             "edge_length": length,
             "mesher": self.mesher,
             "triangles": wanted,
-            "sizes": local_lengths(self.size, lines, given),
+            "sizes": local_lengths(self.size, lines, fixed_points),
             "constraints": lines,
-            "constraint_points": given,
+            "constraint_points": fixed_points,
             "density": density,
         }
 
@@ -202,9 +202,9 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
     if not len(places):
         return places
     same = _SAME * float(np.ptp(mesh.vertices, axis=0).max())
-    found = _apart(places, room, known, same, _BESIDE)
-    if len(found):
-        return found
+    chosen = _apart(places, room, known, same, _BESIDE)
+    if len(chosen):
+        return chosen
     if least != _HARDLY_MET:
         places, room = _crowded(work, entry, mesh, _HARDLY_MET)
     return _apart(places, room, known, same, 0.0)
@@ -230,29 +230,29 @@ def _crowded(work: Work, entry: RockInput, mesh: Sheet, least: float) -> tuple[n
 def _lifts(data: TieData) -> np.ndarray:
     """(C,) bool: the bounds from below as high as one of the nearest contacts, such as outcrops beside those
     of a ground: the surface may lie on them."""
-    found = np.zeros(len(data.places), bool)
+    lifts = np.zeros(len(data.places), bool)
     contacts, places = np.split(data.places, [data.contacts])
     if len(contacts) and len(places):
         near, _ = native_module().nearest_points(contacts, places, _BESIDE_BOUND)
         low = np.where(near < 0, np.inf, data.lower[near]).min(axis=1)
-        found[data.contacts :] = data.lower[data.contacts :] >= low
-    return found
+        lifts[data.contacts :] = data.lower[data.contacts :] >= low
+    return lifts
 
 
 def _apart(
-    places: np.ndarray, room: np.ndarray, known: np.ndarray, same: float, beside_known: float
+    places: np.ndarray, room: np.ndarray, known_places: np.ndarray, same: float, beside_known: float
 ) -> np.ndarray:
     """(K, 2) those of places (N, 2) that are neither beside a known one nor beside one that is taken before,
     which those with the least room are. beside_known: in shares of their room."""
-    every = np.concatenate([known, places])
-    own = np.concatenate([np.zeros(len(known)), room])[:, None]
+    every = np.concatenate([known_places, places])
+    rooms = np.concatenate([np.zeros(len(known_places)), room])[:, None]
     near, away = native_module().nearest_points(every, every, _LOOKED_AT)
-    share = np.where(near < len(known), beside_known, _BESIDE)
-    is_near = (near >= 0) & (away <= np.maximum(same, share * own))
-    taken = np.arange(len(every)) < len(known)
-    for number in np.argsort(room, kind="stable") + len(known):
+    share = np.where(near < len(known_places), beside_known, _BESIDE)
+    is_near = (near >= 0) & (away <= np.maximum(same, share * rooms))
+    taken = np.arange(len(every)) < len(known_places)
+    for number in np.argsort(room, kind="stable") + len(known_places):
         taken[number] = not taken[near[number][is_near[number]]].any()
-    return places[taken[len(known) :]]
+    return places[taken[len(known_places) :]]
 
 
 def _data_of_sheets(work: Work, entry: RockInput, number: int) -> Iterator[TieData]:
@@ -267,6 +267,6 @@ def _data_of_sheets(work: Work, entry: RockInput, number: int) -> Iterator[TieDa
         :, structure.faults.active(number)
     ]
     rows, sheet = np.unique(sides, axis=0, return_inverse=True)
-    for each in range(len(rows)):
-        own = sheet.ravel() == each
-        yield tie_data(points[own[: len(points)]], bounds.some(own[len(points) :]))
+    for sheet_number in range(len(rows)):
+        on_sheet = sheet.ravel() == sheet_number
+        yield tie_data(points[on_sheet[: len(points)]], bounds.some(on_sheet[len(points) :]))

@@ -61,43 +61,50 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
     for rock in project.rocks:
         rock, warnings = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
-        rock = replace(rock, series=[_read_series(rock, each, project.units) for each in rock.series])
+        rock = replace(
+            rock, series=[_read_series(rock, rock_series, project.units) for rock_series in rock.series]
+        )
         field = read_field_data(project, rock)
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
         warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
-        asked += [SurfaceInput.of(rock, each, project.units, met) for each, met in field.surfaces]
+        asked += [SurfaceInput.of(rock, surface, project.units, met) for surface, met in field.surfaces]
         fields.append(field)
         all_warnings.append((warnings, _unnamed(rock, field)))
-    found = dict(reader(work, asked))
+    surfaces_by_number = dict(reader(work, asked))
     inputs, first = [], 0
-    for given, field, (warnings, of_picks) in zip(project.rocks, fields, all_warnings, strict=True):
-        warnings += _other_units(given, project.units)
-        warnings += _other_systems(given, project.crs)
+    for project_rock, field, (warnings, of_picks) in zip(project.rocks, fields, all_warnings, strict=True):
+        warnings += _other_units(project_rock, project.units)
+        warnings += _other_systems(project_rock, project.crs)
         rock = field.rock
-        own = [found[number] for number in range(first, first + len(rock.surfaces))]
-        first += len(own)
+        surfaces = [surfaces_by_number[number] for number in range(first, first + len(rock.surfaces))]
+        first += len(surfaces)
         warnings += [
-            BuildWarning(text, "points", rock.name, each.surface.name)
-            for each in own
-            for text in each.warnings
+            BuildWarning(text, "points", rock.name, read.surface.name)
+            for read in surfaces
+            for text in read.warnings
         ]
         warnings += of_picks
-        rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
+        rock = with_least_thickness(replace(rock, surfaces=[read.surface for read in surfaces]))
         entry = RockInput(
             rock,
-            [each.shape for each in own],
-            interpolations=[None] * len(own),
-            file_faces=[each.faces for each in own],
+            [read.shape for read in surfaces],
+            interpolations=[None] * len(surfaces),
+            file_faces=[read.faces for read in surfaces],
             warnings=warnings,
             left_out=field.left_out,
             has_faults=bool(project.faults),
-            data=[each.data for each in own],
+            data=[read.data for read in surfaces],
         )
         if (seen := rock.observed) is not None:
-            apply_observations(work, entry, bodies_of(project, given), (seen, np.ones(len(seen), bool)))
+            apply_observations(
+                work, entry, bodies_of(project, project_rock), (seen, np.ones(len(seen), bool))
+            )
         else:
-            kept = kept_bounds(rock, entry.data)
-            entry.data = [replace(data, bounds=own) for data, own in zip(entry.data, kept, strict=True)]
+            bounds = kept_bounds(rock, entry.data)
+            entry.data = [
+                replace(data, bounds=surface_bounds)
+                for data, surface_bounds in zip(entry.data, bounds, strict=True)
+            ]
         _require_points(entry)
         apply_dips(work, entry, field.ground, field.mapped)
         if not (project.faults or project.bodies):  # else once it is known where these are
@@ -117,25 +124,28 @@ def _require_points(entry: RockInput) -> None:
 
 def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
     """The warnings about units in the headers of the tables of dips and observations of a rock mass."""
-    found: list[BuildWarning] = []
-    for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in rock.dip_files)):
-        if given is not None:
+    warnings: list[BuildWarning] = []
+    for table, columns in (
+        (rock.observation_file, OBSERVED),
+        *((dip_file, DIPS) for dip_file in rock.dip_files),
+    ):
+        if table is not None:
             with naming(rock.item):
-                texts = other_units_in(given, Path(given.file), columns, units)
-            found += [BuildWarning(text, "points", rock.name) for text in texts]
-    return found
+                texts = other_units_in(table, Path(table.file), columns, units)
+            warnings += [BuildWarning(text, "points", rock.name) for text in texts]
+    return warnings
 
 
 def _other_systems(rock: Rock, crs: str | None) -> list[BuildWarning]:
     """Warnings about rasters in another coordinate system than the project's."""
-    number, found = epsg_code(crs), []
+    number, warnings = epsg_code(crs), []
     for surface in rock.surfaces:
-        given = None if surface.point_file is None else Path(surface.point_file.file)
-        system = None if number is None or given is None else geotiff_system(given)
+        path = None if surface.point_file is None else Path(surface.point_file.file)
+        system = None if number is None or path is None else geotiff_system(path)
         if system not in (None, number):
-            what = f"{given}: it is in EPSG:{system}, the project in {crs}, and nothing is converted"
-            found.append(BuildWarning(f"{what}: reproject it in a GIS", "crs", rock.name, surface.name))
-    return found
+            what = f"{path}: it is in EPSG:{system}, the project in {crs}, and nothing is converted"
+            warnings.append(BuildWarning(f"{what}: reproject it in a GIS", "crs", rock.name, surface.name))
+    return warnings
 
 
 def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
@@ -150,8 +160,8 @@ def with_arrays(project: Project) -> Project:
     """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
     or of text, boreholes, observations, maps and dips, which are read into arrays. Raises InputRefused."""
 
-    def is_plain(given: Any) -> bool:
-        return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
+    def is_plain(region: Any) -> bool:
+        return region is None or (isinstance(region, (str, Path)) and map_layer(region) is not None)
 
     def task(work: Work) -> list[Rock]:
         rocks = []
@@ -159,7 +169,9 @@ def with_arrays(project: Project) -> Project:
             if not is_plain(rock.region):
                 rock, _ = _read_region(work, rock, project.units)
             rock = _read_constraints(rock, project.units)
-            rock = replace(rock, series=[_read_series(rock, each, project.units) for each in rock.series])
+            rock = replace(
+                rock, series=[_read_series(rock, rock_series, project.units) for rock_series in rock.series]
+            )
             field = read_field_data(project, rock)
             surfaces = []
             for surface, met in field.surfaces:
@@ -170,8 +182,10 @@ def with_arrays(project: Project) -> Project:
                     surface = SurfaceInput.of(rock, surface, project.units, met).read(no_step).surface
                 surfaces.append(surface)
             series = [
-                replace(each, dips=as_given(each.dips)) if isinstance(each.dips, (Dips, SpaceDips)) else each
-                for each in field.rock.series
+                replace(rock_series, dips=as_given(rock_series.dips))
+                if isinstance(rock_series.dips, (Dips, SpaceDips))
+                else rock_series
+                for rock_series in field.rock.series
             ]
             dips = field.rock.dips
             dips = as_given(dips) if isinstance(dips, Dips) else dips
@@ -214,8 +228,8 @@ def _read_series(rock: Rock, series: Series, units: str) -> Series:
     if series.kind == SHEETS:  # theirs may name surfaces and blocks: read_field_data reads them
         return series
     with naming(f"{rock.item}, {series.item}"):
-        given = series.dip_file
-        dips = series.space_dips() if given is None else read_space_dips(given, units)
+        file = series.dip_file
+        dips = series.space_dips() if file is None else read_space_dips(file, units)
         return series if dips is None else replace(series, dips=dips.checked())
 
 
@@ -265,32 +279,32 @@ def _planar_mesh(work: Work, entry: RockInput) -> Sheet:
         _density_points(entry) if rock.edge_length == AUTO else None,
     )
     mesh = Sheet(*mesh_rings(work, rock.rings(), options))
-    known = np.empty((0, 2)) if points is None else points
-    given, outside, entry.edge = len(known), np.empty((0, 2)), None
+    fixed = np.empty((0, 2)) if points is None else points
+    given_count, outside, entry.edge = len(fixed), np.empty((0, 2)), None
     for _ in range(_REFINEMENTS):
-        crowded = crowded_places(work, entry, mesh, np.concatenate([known, outside]))
+        crowded = crowded_places(work, entry, mesh, np.concatenate([fixed, outside]))
         if not len(crowded):
             break
         entry.edge = entry.edge or median_edge(*mesh)
-        known = np.concatenate([known, crowded])
-        while len(known) > given:
+        fixed = np.concatenate([fixed, crowded])
+        while len(fixed) > given_count:
             try:
-                mesh = Sheet(*mesh_rings(work, rock.rings(), replace(options, constraint_points=known)))
+                mesh = Sheet(*mesh_rings(work, rock.rings(), replace(options, constraint_points=fixed)))
                 break
             except InputRefused as error:
                 at = getattr(error.__cause__, "items", [-1])[0]
-                if getattr(error.__cause__, "kind", "") != "constraint_outside" or at < given:
+                if getattr(error.__cause__, "kind", "") != "constraint_outside" or at < given_count:
                     raise
-                outside = np.vstack([outside, known[at]])  # on the outline, but for rounding
-                known = np.delete(known, at, axis=0)
+                outside = np.vstack([outside, fixed[at]])  # on the outline, but for rounding
+                fixed = np.delete(fixed, at, axis=0)
     return mesh
 
 
 def _density_points(entry: RockInput) -> np.ndarray:
     """(P, 2) the points of all surfaces of a rock mass, which decide an automatic edge length."""
     pairs = zip(entry.rock.surfaces, entry.data, strict=True)
-    given = [data.points[:, :2] for surface, data in pairs if entry.rock.is_interpolated(surface)]
-    return np.concatenate(given) if given else np.empty((0, 2))
+    places = [data.points[:, :2] for surface, data in pairs if entry.rock.is_interpolated(surface)]
+    return np.concatenate(places) if places else np.empty((0, 2))
 
 
 def propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> None:
@@ -301,7 +315,7 @@ def propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> No
     sides = None
     if (structure := entry.structure) is not None:
         faults = structure.faults
-        sides = {each: np.where(faults.active(each), structure.points[each], 0) for each in chosen}
+        sides = {number: np.where(faults.active(number), structure.points[number], 0) for number in chosen}
     with work.part(0.0, 0.0), work.phase(0.0, 1.0, "comparing surfaces"):
         entry.warnings += proposals(work, entry.rock, entry.data, chosen, sides)
 

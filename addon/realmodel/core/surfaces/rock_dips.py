@@ -47,9 +47,10 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
         if isinstance(series.dips, Dips):
             parts.append((series.dips, _of_sheets(entry, series, series.dips)))
     for number, data in enumerate(entry.data):
-        found = Dips.joined([dips.some(counts[:, number]) for dips, counts in parts])
-        if len(found):
-            of_rock = Dips(found.positions, found.gradients, found.heights)  # without names, and all in use
+        joined = Dips.joined([dips.some(counts[:, number]) for dips, counts in parts])
+        if len(joined):
+            # without names, and all in use
+            of_rock = Dips(joined.positions, joined.gradients, joined.heights)
             dips = of_rock if data.dips is None else Dips.joined([data.dips, of_rock])
             entry.data[number] = replace(data, dips=dips)
 
@@ -57,12 +58,12 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
 def _of_sheets(entry: RockInput, series: Series, dips: Dips) -> np.ndarray:
     """(D, S) bool: the surfaces that each dip of a series of sheets counts for: that which it names, or those
     of the series under and over its block; without a name all of them, as they are conformable."""
-    rock, own = entry.rock, entry.rock.members(series)
+    rock, members = entry.rock, entry.rock.members(series)
     of_surfaces, of_blocks = dips.named
     counts = np.zeros((len(dips), len(rock.surfaces)), bool)
-    counts[:, own] = ((of_surfaces == "") & (of_blocks == ""))[:, None]
+    counts[:, members] = ((of_surfaces == "") & (of_blocks == ""))[:, None]
     blocks = np.where(of_surfaces == "", BlockNumbers(rock).of(of_blocks), -1)
-    for number in own:
+    for number in members:
         counts[:, number] |= of_surfaces == rock.surfaces[number].name
         counts[:, number] |= (blocks >= 0) & ((blocks == number) | (blocks == number + 1))
     counts[~dips.in_use] = False
@@ -147,7 +148,7 @@ def _require_dips(rock: Rock, number: int) -> None:
     if rock.is_level_set(surface):
         advice = "give them to its series"
     elif surface.has_points:
-        advice = f"{', '.join(name for name, each in METHODS.items() if each.is_constrained)} use them"
+        advice = f"{', '.join(name for name, method in METHODS.items() if method.is_constrained)} use them"
     file, line = rock.place_of("dips")
     what = f"dips of the rock mass name it, but {_why_none(rock, surface)}"
     raise InputRefused(what, file=file, line=line, item=surface_item(rock, surface), advice=advice)
@@ -175,27 +176,27 @@ def _by_blocks(
     runs: of runs_of_blocks."""
     rules = [surface.rule for surface in entry.rock.surfaces]
     plan = np.ascontiguousarray(dips.positions)
-    known = [_first_heights(work, entry, number, plan) for number in range(len(rules))]
+    first_heights = [_first_heights(work, entry, number, plan) for number in range(len(rules))]
     counts = np.ones((len(dips), len(rules)), bool)
     counts[:, ~runs.any(axis=0)] = False
     for _ in range(_ROUNDS):
-        found = [
+        surface_heights = [
             _heights_by_dips(work, entry, number, dips, counts[:, number]) if z is None else z
-            for number, z in enumerate(known)
+            for number, z in enumerate(first_heights)
         ]
-        blocks = blocks_at(rules, np.array(found), dips.heights)
+        blocks = blocks_at(rules, np.array(surface_heights), dips.heights)
         if shown is not None:
             blocks = np.where(shown == "", blocks, BlockNumbers(entry.rock).of(shown))
         before, counts = counts, runs[blocks]
-        if all(z is not None for z in known) or np.array_equal(counts, before):
+        if all(z is not None for z in first_heights) or np.array_equal(counts, before):
             break
     return counts
 
 
 def _heights_by_dips(work: Work, entry: RockInput, number: int, dips: Dips, counts: np.ndarray) -> np.ndarray:
     """(D,) heights of a surface of few points at dips, from its points and the dips that count for it."""
-    plan, own = np.ascontiguousarray(dips.positions), entry.data[number].dips
-    joined = Dips.joined([*([] if own is None else [own]), dips.some(counts)])
+    plan, surface_dips = np.ascontiguousarray(dips.positions), entry.data[number].dips
+    joined = Dips.joined([*([] if surface_dips is None else [surface_dips]), dips.some(counts)])
     slopes = Dips(joined.positions, joined.gradients) if len(joined) else None
     with entry.named(number):
         settings = checked_options(DEFAULT_METHOD, DEFAULT_OPTIONS)

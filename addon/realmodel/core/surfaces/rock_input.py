@@ -103,7 +103,7 @@ class RockInput:
 
     def field_of(self, surface: int) -> SeriesField | None:
         """The field that a surface is a level set of; None for a sheet."""
-        return next((each for each in self.fields if surface in each.numbers), None)
+        return next((series_field for series_field in self.fields if surface in series_field.numbers), None)
 
     @property
     def is_clipped(self) -> bool:
@@ -113,11 +113,13 @@ class RockInput:
     @property
     def reaches_base(self) -> bool:
         """Whether sheets that are made reach down to the base elevation, or below it, and are cut there."""
-        base, given = self.rock.base_elevation, zip(self.rock.surfaces, self.surfaces, strict=True)
+        base, pairs = self.rock.base_elevation, zip(self.rock.surfaces, self.surfaces, strict=True)
         if base is None:
             return False
         heights = [
-            each.vertices[:, 2] for of, each in given if each is not None and not self.rock.is_level_set(of)
+            shape.vertices[:, 2]
+            for of, shape in pairs
+            if shape is not None and not self.rock.is_level_set(of)
         ]
         return any(len(z) > 0 and z.min() <= base for z in heights)
 
@@ -157,7 +159,7 @@ class RockInput:
             self.interpolations[: m + 1],
             self.file_faces[: m + 1],
             [warning for warning in self.warnings if warning.surface not in gone],
-            {number: each for number, each in self.attributes.items() if number <= m},
+            {number: values for number, values in self.attributes.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
             self.overlapping,
             left_out=self.left_out,
@@ -165,7 +167,7 @@ class RockInput:
             edge=self.edge,
             has_faults=self.has_faults,
             data=data,
-            fields=[kept for each in self.fields if (kept := each.stage(m)) is not None],
+            fields=[staged for series_field in self.fields if (staged := series_field.stage(m)) is not None],
         )
 
 

@@ -57,8 +57,8 @@ class RockStructure:
     def distinct(self, surface: int) -> list[Sheet]:
         """The different sheets of a surface that is made, in the order of the compartments that they first
         serve."""
-        found = (self.sheet(compartment, surface) for compartment in range(len(self.sheets)))
-        return list(dict.fromkeys(found))
+        sheets = (self.sheet(compartment, surface) for compartment in range(len(self.sheets)))
+        return list(dict.fromkeys(sheets))
 
     def warn(self, compartments: list[int], warning: BuildWarning) -> None:
         """Adds a warning about some compartments, unless it is there already."""
@@ -73,7 +73,7 @@ class RockStructure:
         return replace(
             self,
             sheets=[sheets[: m + 1] for sheets in self.sheets],
-            faults=replace(self.faults, youngest=[min(each, m) for each in self.faults.youngest]),
+            faults=replace(self.faults, youngest=[min(youngest, m) for youngest in self.faults.youngest]),
         )
 
 

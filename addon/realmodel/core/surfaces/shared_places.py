@@ -27,16 +27,16 @@ class Places:
             return other.shared_with(self, most)[::-1]
         step = 1 if most is None else -(-len(self._at) // most)
         at, numbers = self._at[::step], self._numbers[::step]
-        there = np.minimum(np.searchsorted(other._at, at), len(other._at) - 1)
-        same = other._at[there] == at
-        return numbers[same], other._numbers[there[same]]
+        rows = np.minimum(np.searchsorted(other._at, at), len(other._at) - 1)
+        same = other._at[rows] == at
+        return numbers[same], other._numbers[rows[same]]
 
 
 def places_of(points: Sequence[np.ndarray]) -> list[Places]:
     """The positions of surfaces, each with points (N, 3), one at least."""
-    x, y = (np.concatenate([own[:, axis] for own in points]) for axis in (0, 1))
+    x, y = (np.concatenate([xyz[:, axis] for xyz in points]) for axis in (0, 1))
     cell = float(max(np.ptp(x), np.ptp(y))) * _SAME
-    return [Places(own, (x.min(), y.min()), cell) for own in points]
+    return [Places(xyz, (x.min(), y.min()), cell) for xyz in points]
 
 
 def is_raster(points: np.ndarray) -> bool:

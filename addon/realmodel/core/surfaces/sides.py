@@ -22,8 +22,11 @@ class FaultShape(NamedTuple):
 
     def native(self) -> list[tuple]:
         """The arguments of the native module: the faults, and those at which each ends."""
-        own = (self.vertices, self.triangles, False, list(range(1, 1 + len(self.ends))), self.dies_out)
-        return [own, *((other.vertices, other.triangles, False, [], other.dies_out) for other in self.ends)]
+        arguments = (self.vertices, self.triangles, False, list(range(1, 1 + len(self.ends))), self.dies_out)
+        return [
+            arguments,
+            *((other.vertices, other.triangles, False, [], other.dies_out) for other in self.ends),
+        ]
 
 
 @dataclass(frozen=True)
@@ -62,8 +65,8 @@ class RockFaults:
         """Rows (N, F) of sides with 0 where a branch is not there: beyond a fault at which it ends."""
         sides = sides.copy()
         for number in self.order():
-            for other, kept in self.ends[number]:
-                sides[sides[:, other] == -kept, number] = 0
+            for other, side in self.ends[number]:
+                sides[sides[:, other] == -side, number] = 0
         return sides
 
     def active(self, surface: int) -> np.ndarray:

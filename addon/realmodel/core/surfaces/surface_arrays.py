@@ -43,24 +43,27 @@ class SurfaceArrays:
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> SurfaceArrays:
         """Of the arrays of a file, which are not put together again."""
-        given = {name: arrays[f"surface_{name}"] for name in _ARRAYS}
+        stored_arrays = {name: arrays[f"surface_{name}"] for name in _ARRAYS}
         vertices, triangles = (
-            [given[name][begin:end] for begin, end in itertools.pairwise(given[f"{one}_offsets"].tolist())]
+            [
+                stored_arrays[name][begin:end]
+                for begin, end in itertools.pairwise(stored_arrays[f"{one}_offsets"].tolist())
+            ]
             for name, one in (("vertices", "vertex"), ("triangles", "triangle"))
         )
-        found = cls([Sheet(*each) for each in zip(vertices, triangles, strict=True)])
-        vars(found).update(given)
-        return found
+        surface_arrays = cls([Sheet(*pair) for pair in zip(vertices, triangles, strict=True)])
+        vars(surface_arrays).update(stored_arrays)
+        return surface_arrays
 
 
 def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     """(Ts,) int32: of each triangle of all surfaces the sheet of its surface that it is of, from 0; a surface
     that no fault displaces has one."""
-    found = [np.zeros(0, np.int64)]
+    numbers = [np.zeros(0, np.int64)]
     for entry, number in by_rock(inputs):
         sizes = _sizes(entry, number)
-        found.append(np.repeat(np.arange(len(sizes)), sizes))
-    return np.concatenate(found).astype(np.int32)
+        numbers.append(np.repeat(np.arange(len(sizes)), sizes))
+    return np.concatenate(numbers).astype(np.int32)
 
 
 def sheet_sizes(inputs: list[RockInput], number: int) -> list[int]:
@@ -75,17 +78,17 @@ def by_rock(inputs: list[RockInput]) -> list[tuple[RockInput, int]]:
 
 
 def _sizes(entry: RockInput, number: int) -> list[int]:
-    return [len(own) for _, own in entry.divided().distinct(number)]
+    return [len(triangles) for _, triangles in entry.divided().distinct(number)]
 
 
 def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:
     """The attributes (V,) of the vertices of one surface, by its global index: `height`; `variance` and
     `distance`, NaN where there are none."""
     interfaces = [entry.attributes.get(k, {}) for entry, k in by_rock(inputs)]
-    known = interfaces[number] if number < len(interfaces) else {}  # faults and bodies have none
+    attributes = interfaces[number] if number < len(interfaces) else {}  # faults and bodies have none
     unknown = np.full(len(vertices), np.nan)
     return {
         "height": vertices[:, 2].copy(),
-        "variance": known.get("variance", unknown),
-        "distance": known.get("distance", unknown),
+        "variance": attributes.get("variance", unknown),
+        "distance": attributes.get("distance", unknown),
     }

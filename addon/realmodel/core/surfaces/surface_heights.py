@@ -103,15 +103,15 @@ def _vertex_attributes(work: Work, points: np.ndarray, result: Interpolation, re
     `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest point,
     NaN where there are no points."""
     nodes, triangles = region
-    kept = np.isfinite(result.z)
-    if not kept.all():
-        kept = used_vertices(nodes, triangles[kept[triangles].all(axis=1)])
+    is_kept = np.isfinite(result.z)
+    if not is_kept.all():
+        is_kept = used_vertices(nodes, triangles[is_kept[triangles].all(axis=1)])
     variance = np.full(len(nodes), np.nan) if result.variance is None else result.variance
     if len(points):
         distance = work.native(native_module().nearest_distance, points, nodes)
     else:
         distance = np.full(len(nodes), np.nan)
-    return {"variance": variance[kept], "distance": distance[kept]}
+    return {"variance": variance[is_kept], "distance": distance[is_kept]}
 
 
 def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None = None) -> None:
@@ -152,16 +152,16 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
 
 
 def _tied(
-    task: Task, result: Interpolation, surface: Surface, own: SurfaceData
+    task: Task, result: Interpolation, surface: Surface, surface_data: SurfaceData
 ) -> tuple[Interpolation, np.ndarray]:
     """The heights with which a surface honors its points and bounds on the mesh of its region; and those that
     it had, the same array where it keeps them."""
     if not surface.tie or task.triangles is None or not len(task.triangles):
         return result, result.z
     free = result.z
-    data = tie_data(own.tied_points(surface), task.bounds)
+    data = tie_data(surface_data.tied_points(surface), task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
-    if warnings and own.is_along_bounds:  # the places that it was put through yield to its bounds
+    if warnings and surface_data.is_along_bounds:  # the places that it was put through yield to its bounds
         data = tie_data(np.empty((0, 3)), task.bounds)
         z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
     if z is not free:
@@ -173,9 +173,9 @@ def _on_trend(
     work: Work, entry: RockInput, number: int, trend: Trend, others: dict
 ) -> tuple[Interpolation, np.ndarray]:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method, as of _tied."""
-    surface, own, (nodes, triangles) = entry.rock.surfaces[number], entry.data[number], entry.planar_mesh()
-    dips = own.dips
-    points, mis_ties = without_mis_ties(own.points)
+    surface, data, (nodes, triangles) = entry.rock.surfaces[number], entry.data[number], entry.planar_mesh()
+    dips = data.dips
+    points, mis_ties = without_mis_ties(data.points)
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2])
     away = away[np.isfinite(away[:, 2])]
@@ -189,8 +189,8 @@ def _on_trend(
     task = Task(work, points, nodes, surface.method_options()[1], triangles, surfaces=others)
     border = result.z
     if task.settings.get("border") is not None:
-        given = heights_of(task, task.settings["border"], nodes, "border")
-        border = np.where(np.isfinite(given), given, border)
+        border_heights = heights_of(task, task.settings["border"], nodes, "border")
+        border = np.where(np.isfinite(border_heights), border_heights, border)
     warnings = [*([mis_ties] if mis_ties else []), *elsewhere(points, nodes)]
     if dips is not None and len(dips):
         warnings.append(
@@ -198,7 +198,7 @@ def _on_trend(
             "beyond a fault"
         )
     result = replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
-    return _tied(replace(task, bounds=own.bounds), result, surface, own)
+    return _tied(replace(task, bounds=data.bounds), result, surface, data)
 
 
 def _older_points_above(work: Work, entry: RockInput, number: int, shape: Sheet) -> list[BuildWarning]:
@@ -212,15 +212,15 @@ def _older_points_above(work: Work, entry: RockInput, number: int, shape: Sheet)
 
 def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Sheet:
     """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
-    known = np.isfinite(z)
-    if known.all():
+    is_known = np.isfinite(z)
+    if is_known.all():
         return Sheet(np.column_stack([nodes, z]), triangles)
-    kept = triangles[known[triangles].all(axis=1)]
-    if not len(kept):
+    faces = triangles[is_known[triangles].all(axis=1)]
+    if not len(faces):
         raise no_triangle_known()
-    used = used_vertices(nodes, kept)
+    used = used_vertices(nodes, faces)
     number = np.cumsum(used, dtype=np.int32) - 1
-    return Sheet(np.column_stack([nodes[used], z[used]]), number[kept])
+    return Sheet(np.column_stack([nodes[used], z[used]]), number[faces])
 
 
 def no_triangle_known() -> InputRefused:
@@ -253,8 +253,8 @@ def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tup
     has_limits = any(key in surface.options for key in BOUNDS)  # they come before data
     if surface.tie and not has_limits:
         plan = np.ascontiguousarray(vertices[:, :2])
-        own = entry.data[number]
-        data = tie_data(own.tied_points(surface), own.bounds)
+        surface_data = entry.data[number]
+        data = tie_data(surface_data.tied_points(surface), surface_data.bounds)
         raised = raised_heights(work, plan, triangles, raised, least, data)
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())

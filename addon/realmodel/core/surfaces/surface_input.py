@@ -86,8 +86,8 @@ class SurfaceInput:
             if surface.has_points:
                 points, warnings = self._points(step, in_memory if arrays is None else arrays.gather)
                 data = self._in_order(points, arrays)
-                own, dips = data.points if len(points) else None, self._dips(step)
-                read = replace(surface, points=own, dips=dips, shape_file=file)
+                surface_points, dips = data.points if len(points) else None, self._dips(step)
+                read = replace(surface, points=surface_points, dips=dips, shape_file=file)
                 used = None if dips is None else dips.used_only()
                 return ReadSurface(read, replace(data, dips=used), None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
@@ -104,8 +104,10 @@ class SurfaceInput:
             points = gather(_without(in_pieces(checked_points(points)), surface.left_out), np.empty((0, 3)))
             points = points if len(points) else None
         if self.met is not None:
-            own = np.empty((0, 3)) if points is None else checked_points(points)
-            points = gather((*in_pieces(own), np.array([place for _, place in self.met])), np.empty((0, 3)))
+            surface_points = np.empty((0, 3)) if points is None else checked_points(points)
+            points = gather(
+                (*in_pieces(surface_points), np.array([place for _, place in self.met])), np.empty((0, 3))
+            )
         if points is None or (isinstance(points, Sized) and not len(points)):
             return np.empty((0, 3)), warnings
         checked = checked_points(points)
@@ -157,12 +159,12 @@ def _sources_among(points: np.ndarray, picks: list[Pick]) -> Sources:
     rows: dict[tuple, list[int]] = {}
     for row in np.flatnonzero(np.isin(points[:, 0], [place[0] for _, place in picks])).tolist():
         rows.setdefault(tuple(points[row].tolist()), []).append(row)
-    found: Sources = {}
+    sources: Sources = {}
     for source, place in picks:
         if here := rows.get(tuple(map(float, place))):
             row = here.pop(0) if len(here) > 1 else here[0]
-            found[row] = (*found.get(row, ()), source)
-    return found
+            sources[row] = (*sources.get(row, ()), source)
+    return sources
 
 
 def _without(pieces: Iterable[np.ndarray], left_out: ArrayLike) -> Iterator[np.ndarray]:

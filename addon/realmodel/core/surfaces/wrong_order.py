@@ -31,31 +31,31 @@ def points_above_younger(entry: RockInput, numbers: Collection[int]) -> list[Bui
     above the ground. Rasters are left out: they may be of one ground at several times.
     """
     surfaces, data = entry.rock.surfaces, entry.data
-    known = [n for n in sorted(numbers) if _may_be_picks(data[n].known_points)]
-    points = {n: data[n].points for n in known}
-    places = dict(zip(known, places_of(list(points.values())), strict=True)) if known else {}
-    found: dict[int, WrongPoints] = {}
+    checked = [n for n in sorted(numbers) if _may_be_picks(data[n].known_points)]
+    points = {n: data[n].points for n in checked}
+    places = dict(zip(checked, places_of(list(points.values())), strict=True)) if checked else {}
+    wrong_points: dict[int, WrongPoints] = {}
     holes: dict[int, list[str]] = {}
-    for older, younger in combinations(known, 2):
+    for older, younger in combinations(checked, 2):
         if RULES[surfaces[older].rule].protects or not RULES[surfaces[younger].rule].cuts:
             continue  # the points of the younger one are looked at instead: wrong_sides
         if younger == older + 1 and surfaces[younger].minimum_thickness is not None:
             continue  # found where this is imposed
-        own, other, names = _in_one_hole(data[older], data[younger])
-        if not len(own):
-            own, other = places[older].shared_with(places[younger])
-        above = points[older][own]
-        beyond = above[:, 2] - points[younger][other, 2]
+        older_rows, younger_rows, names = _in_one_hole(data[older], data[younger])
+        if not len(older_rows):
+            older_rows, younger_rows = places[older].shared_with(places[younger])
+        above = points[older][older_rows]
+        beyond = above[:, 2] - points[younger][younger_rows, 2]
         if not names and 2 * (beyond > 0).sum() <= (beyond != 0).sum():
             continue
-        by_number = np.argsort(own)
-        wrong = WrongPoints.of(above[by_number], beyond[by_number], younger, own[by_number])
+        by_number = np.argsort(older_rows)
+        wrong = WrongPoints.of(above[by_number], beyond[by_number], younger, older_rows[by_number])
         if wrong is not None:
-            found[older] = found[older].joined(wrong) if older in found else wrong
+            wrong_points[older] = wrong_points[older].joined(wrong) if older in wrong_points else wrong
             holes.setdefault(older, []).extend(
                 name for name, by in zip(names, beyond, strict=False) if by > 0
             )
-    return [_warning(entry, older, wrong, holes[older]) for older, wrong in found.items()]
+    return [_warning(entry, older, wrong, holes[older]) for older, wrong in wrong_points.items()]
 
 
 def _may_be_picks(points: np.ndarray) -> bool:
@@ -78,10 +78,10 @@ def _warning(entry: RockInput, older: int, wrong: WrongPoints, holes: list[str])
 
 def _in_one_hole(first: SurfaceData, second: SurfaceData) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """The numbers of the points of two surfaces in the holes that meet both, (N,) each, and the holes."""
-    own, other = (
-        {source.hole: row for row, found in each.sources.items() for source in found}
-        for each in (first, second)
+    first_rows, second_rows = (
+        {source.hole: row for row, sources in data.sources.items() for source in sources}
+        for data in (first, second)
     )
-    holes = sorted(own.keys() & other.keys())
-    rows = np.array([(own[hole], other[hole]) for hole in holes], int).reshape(-1, 2)
+    holes = sorted(first_rows.keys() & second_rows.keys())
+    rows = np.array([(first_rows[hole], second_rows[hole]) for hole in holes], int).reshape(-1, 2)
     return rows[:, 0], rows[:, 1], holes

@@ -63,8 +63,8 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
     """
     surfaces, shapes = entry.rock.surfaces, entry.surfaces
     points = {number: entry.data[number].known_points for number in numbers if number > 0}
-    points = {number: known for number, known in points.items() if len(known)}
-    beneath = {number: _Beneath(len(own)) for number, own in points.items()}
+    points = {number: xyz for number, xyz in points.items() if len(xyz)}
+    beneath = {number: _Beneath(len(xyz)) for number, xyz in points.items()}
     for older in range(max(points, default=0)):
         shape = shapes[older]
         if shape is None:
@@ -72,8 +72,8 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
         younger = [number for number in points if number > older]
         z = heights_at(work, shape, np.concatenate([points[n][:, :2] for n in younger]))
         ends = np.cumsum([len(points[number]) for number in younger])
-        for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
-            beneath[number].add(own, older, RULES[surfaces[older].rule])
+        for number, z_beneath in zip(younger, np.split(z, ends[:-1]), strict=True):
+            beneath[number].add(z_beneath, older, RULES[surfaces[older].rule])
     warnings = []
     for number, below in beneath.items():
         floor = below.firm if RULES[surfaces[number].rule].cuts else below.top
@@ -93,15 +93,15 @@ class _Beneath:
         self.last: np.ndarray | None = None
 
     def add(self, z: np.ndarray, number: int, rule: Rule) -> None:
-        own = _Floor(len(z))
-        own.raise_to(z, number)
+        floor = _Floor(len(z))
+        floor.raise_to(z, number)
         covered = np.isfinite(z)
         if not rule.cuts:
-            own.raise_to(np.where(covered, self.top.z, np.nan), self.top.surface)
-        own.raise_to(np.where(covered, self.firm.z, np.nan), self.firm.surface)
-        self.top.take(own, covered)
+            floor.raise_to(np.where(covered, self.top.z, np.nan), self.top.surface)
+        floor.raise_to(np.where(covered, self.firm.z, np.nan), self.firm.surface)
+        self.top.take(floor, covered)
         if rule.protects:
-            self.firm.take(own, covered)
+            self.firm.take(floor, covered)
         self.last = z
 
 
@@ -156,7 +156,7 @@ class WrongPoints:
 
     def joined(self, other: WrongPoints) -> WrongPoints:
         """The wrong points of two parts of a surface."""
-        worst = min((self, other), key=lambda each: (-each.by, each.worst))
+        worst = min((self, other), key=lambda part: (-part.by, part.worst))
         items, others = (
             tuple(sorted({*getattr(self, name), *getattr(other, name)})) for name in ("items", "others")
         )
@@ -211,5 +211,5 @@ def listed(
     """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
     others: the numbers of these surfaces, one or (N,)."""
     points = entry.data[number].points
-    found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
-    return [] if found is None else [found.warning(entry, number, len(points), side)]
+    wrong = WrongPoints.of(points, beyond, others, np.arange(len(points)))
+    return [] if wrong is None else [wrong.warning(entry, number, len(points), side)]

@@ -84,11 +84,11 @@ def _longest(places: np.ndarray, runs: list[_Run], may_lie_above: np.ndarray) ->
             if weight >= best[number][0] and _agree(places, runs[before], run, may_lie_above):
                 best[number] = (weight, before)
     at = max(range(len(runs)), key=lambda number: best[number][0], default=-1)
-    found = []
+    numbers = []
     while at >= 0:
-        found.append(at)
+        numbers.append(at)
         at = best[at][1]
-    return found
+    return numbers
 
 
 def _agree(places: np.ndarray, above: _Run, below: _Run, may_lie_above: np.ndarray) -> bool:

@@ -87,15 +87,15 @@ def alike_of(rock: Rock, data: Sequence[SurfaceData], number: int, known: dict[b
     run = conformable_run(rock, data, number)
     if not run:
         return None
-    beside = [data[each] for each in run]
-    points = [np.ascontiguousarray(each.points) for each in beside]
-    return Alike(run.index(number), points, [each.dips for each in beside], known, mean_error(beside))
+    beside = [data[member] for member in run]
+    points = [np.ascontiguousarray(surface.points) for surface in beside]
+    return Alike(run.index(number), points, [surface.dips for surface in beside], known, mean_error(beside))
 
 
 def mean_error(surfaces: Sequence[SurfaceData]) -> float:
     """The mean variance of the errors of the heights of all points of surfaces that are read."""
-    counts = [len(each.points) for each in surfaces]
-    squares = sum(count * each.error for count, each in zip(counts, surfaces, strict=True))
+    counts = [len(surface.points) for surface in surfaces]
+    squares = sum(count * surface.error for count, surface in zip(counts, surfaces, strict=True))
     return squares / max(sum(counts), 1)
 
 
@@ -113,15 +113,15 @@ def proposals(
     runs: list[list[int]] = []
     errors: dict[tuple[int, int], _Compared] = {}
     fits: dict[bytes, Any] = {}
-    known = [number for number in numbers if _is_known(rock, data, number)]
-    for one, other in pairwise(known):
+    known_numbers = [number for number in numbers if _is_known(rock, data, number)]
+    for one, other in pairwise(known_numbers):
         if other != one + 1:
             continue
         pair = (one, other)
-        found = _compared(work, _parts(rock, data, fits, pair, sides))
-        if found is None or not found.together < _BETTER**2 * found.alone:
+        comparison = _compared(work, _parts(rock, data, fits, pair, sides))
+        if comparison is None or not comparison.together < _BETTER**2 * comparison.alone:
             continue
-        errors[one, other] = found
+        errors[one, other] = comparison
         if runs and runs[-1][-1] == one:
             runs[-1].append(other)
         else:
@@ -138,23 +138,23 @@ def _is_known(rock: Rock, data: Sequence[SurfaceData], number: int) -> bool:
 def _parts(
     rock: Rock,
     data: Sequence[SurfaceData],
-    known: dict[bytes, Any],
+    fits: dict[bytes, Any],
     pair: tuple[int, int],
     sides: Mapping[int, np.ndarray] | None,
 ) -> list[_Part]:
-    """The data of two surfaces, by the parts of space where both have enough points. known: as of Alike."""
+    """The data of two surfaces, by the parts of space where both have enough points. fits: as of Alike."""
     surfaces = [data[number] for number in pair]
-    points = [np.ascontiguousarray(each.points) for each in surfaces]
+    points = [np.ascontiguousarray(surface.points) for surface in surfaces]
     if sides is None:
-        alike = [alike_of(rock, data, number, known) for number in pair]
-        return [_Part(points, [each.dips for each in surfaces], alike, mean_error(surfaces))]
+        alike = [alike_of(rock, data, number, fits) for number in pair]
+        return [_Part(points, [surface.dips for surface in surfaces], alike, mean_error(surfaces))]
     of_points = [sides[number] for number in pair]
-    found = []
+    parts = []
     for key in np.unique(of_points[0], axis=0):
-        own = [each[(rows == key).all(axis=1)] for each, rows in zip(points, of_points, strict=True)]
-        if min(map(len, own)) >= _LEAST:
-            found.append(_Part(own, [None, None], [None, None], mean_error(surfaces)))
-    return found
+        part_points = [xyz[(rows == key).all(axis=1)] for xyz, rows in zip(points, of_points, strict=True)]
+        if min(map(len, part_points)) >= _LEAST:
+            parts.append(_Part(part_points, [None, None], [None, None], mean_error(surfaces)))
+    return parts
 
 
 def _compared(work: Work, parts: Sequence[_Part]) -> _Compared | None:
@@ -162,16 +162,16 @@ def _compared(work: Work, parts: Sequence[_Part]) -> _Compared | None:
     squares: list[list[np.ndarray]] = [[], []]
     settings, nodes = checked_options("kriging", {}), np.empty((0, 2))
     try:
-        for part, own in product(parts, range(2)):
-            both = Companions(own, part.points, part.dips, error=part.error)
+        for part, index in product(parts, range(2)):
+            both = Companions(index, part.points, part.dips, error=part.error)
             for which, companions in enumerate((None, both)):
-                task = Task(work, part.points[own], nodes, settings, dips=part.dips[own])
-                task = replace(task, companions=companions, alike=part.alike[own], error=part.error)
+                task = Task(work, part.points[index], nodes, settings, dips=part.dips[index])
+                task = replace(task, companions=companions, alike=part.alike[index], error=part.error)
                 error = validate("kriging", task, 2).errors
                 squares[which].append(error[np.isfinite(error)] ** 2)
     except InputRefused:  # it is said where the surface itself is interpolated
         return None
-    alone, together = (np.concatenate([np.empty(0), *each]) for each in squares)
+    alone, together = (np.concatenate([np.empty(0), *arrays]) for arrays in squares)
     if not len(alone) or not len(together):
         return None
     return _Compared(float(alone.mean()), float(together.mean()))
@@ -180,7 +180,8 @@ def _compared(work: Work, parts: Sequence[_Part]) -> _Compared | None:
 def _proposal(rock: Rock, run: list[int], errors: list[_Compared]) -> BuildWarning:
     names = number_list([f"'{rock.surfaces[number].name}'" for number in run])
     alone, together = (
-        float(np.sqrt(np.mean([getattr(each, key) for each in errors]))) for key in ("alone", "together")
+        float(np.sqrt(np.mean([getattr(compared, key) for compared in errors])))
+        for key in ("alone", "together")
     )
     text = (
         f"surfaces {names} are conformable: a contact that is left out is estimated with an error of "

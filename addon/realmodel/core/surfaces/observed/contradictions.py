@@ -24,20 +24,24 @@ def without_contradictions(
     """The data of the surfaces of a rock mass without faults, without bounds that contradict; and these
     bounds. Those of a surface that goes through places on its bounds, as it has no points, stay as they
     are."""
-    found, left_out = list(data), list[LeftOut]()
-    for number, (surface, own) in enumerate(zip(rock.surfaces, data, strict=True)):
-        bounds = own.bounds
-        if not (len(bounds) and len(own.points)) or own.is_along_bounds or not rock.is_interpolated(surface):
+    consistent_data, left_out = list(data), list[LeftOut]()
+    for number, (surface, surface_data) in enumerate(zip(rock.surfaces, data, strict=True)):
+        bounds = surface_data.bounds
+        if (
+            not (len(bounds) and len(surface_data.points))
+            or surface_data.is_along_bounds
+            or not rock.is_interpolated(surface)
+        ):
             continue
-        points, _ = without_mis_ties(own.points)
+        points, _ = without_mis_ties(surface_data.points)
         wrong = consistent(np.ascontiguousarray(points), bounds).left_out
         if not len(wrong):
             continue
-        left_out += [_listed(surface, own, bounds, wrong, row) for row in wrong.tolist()]
-        kept = np.ones(len(bounds), bool)
-        kept[wrong] = False
-        found[number] = replace(own, bounds=bounds.some(kept))
-    return found, left_out
+        left_out += [_listed(surface, surface_data, bounds, wrong, row) for row in wrong.tolist()]
+        is_kept = np.ones(len(bounds), bool)
+        is_kept[wrong] = False
+        consistent_data[number] = replace(surface_data, bounds=bounds.some(is_kept))
+    return consistent_data, left_out
 
 
 def _listed(surface: Surface, data: SurfaceData, bounds: Bounds, wrong: np.ndarray, row: int) -> LeftOut:

@@ -74,8 +74,8 @@ class BlockNumbers:
 
     def of(self, names: np.ndarray) -> np.ndarray:
         """(N,) int64 the numbers of blocks by their names (N,); -1 where there is no such block."""
-        found, row = np.unique(names, return_inverse=True)
-        numbers = np.array([self._numbers.get(name, -1) for name in found.tolist()], np.int64)
+        distinct, row = np.unique(names, return_inverse=True)
+        numbers = np.array([self._numbers.get(name, -1) for name in distinct.tolist()], np.int64)
         return numbers[row.ravel()] if len(numbers) else np.empty(0, np.int64)
 
 
@@ -101,8 +101,8 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     used &= ~_without_surface(rock, situation, blocks, left_out)
     used &= ~_against_bodies(rock, situation, blocks, left_out)
     rows = np.flatnonzero(used)
-    own = blocks[rows]
-    ordered = np.where(own < len(rock.surfaces), own, -1)
+    blocks_used = blocks[rows]
+    ordered = np.where(blocks_used < len(rock.surfaces), blocks_used, -1)
     _, parts = _numbered(_sides(situation, len(observations))[rows])
     is_sheet = np.array([not rock.is_level_set(surface) for surface in rock.surfaces], bool)
     may = Succession([surface.rule for surface in rock.surfaces]).may_lie_above(is_sheet)
@@ -110,10 +110,10 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     is_wrong = np.isin(np.arange(len(observations)), wrong)
     left_out.add(is_wrong, "wrong_order", "an older block lies above a younger one here, or a block twice")
     used &= ~is_wrong
-    found, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
+    parts_derived, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
     text = "it meets a block here that is not next to it in its series: no surface is known to be here"
     left_out.add(np.isin(np.arange(len(observations)), not_adjacent), "not_adjacent", text)
-    return Derived(*found, used, left_out.entries)
+    return Derived(*parts_derived, used, left_out.entries)
 
 
 class _Listed:
@@ -124,19 +124,21 @@ class _Listed:
         self.entries: list[LeftOut] = []
 
     def add(self, chosen: np.ndarray, kind: str, text: str) -> None:
-        given = self._given
+        observations = self._given
         before: int | None = None
         for row in np.flatnonzero(chosen).tolist():
             follows = (
-                before == row - 1 and given.holes[row] != "" and given.holes[row] == given.holes[row - 1]
+                before == row - 1
+                and observations.holes[row] != ""
+                and observations.holes[row] == observations.holes[row - 1]
             )
-            if not (follows and given.blocks[row] == given.blocks[row - 1]):
+            if not (follows and observations.blocks[row] == observations.blocks[row - 1]):
                 entry = LeftOut(
                     kind,
-                    f"{given.source(row)}, '{given.blocks[row]}': {text}",
-                    str(given.blocks[row]),
-                    *Origin.of(given.holes[row], given.depths[row])[:2],
-                    tuple(given.places[row].tolist()),
+                    f"{observations.source(row)}, '{observations.blocks[row]}': {text}",
+                    str(observations.blocks[row]),
+                    *Origin.of(observations.holes[row], observations.depths[row])[:2],
+                    tuple(observations.places[row].tolist()),
                 )
                 self.entries.append(entry)
             before = row
@@ -159,10 +161,10 @@ def _without_surface(rock: Rock, situation: Situation, blocks: np.ndarray, left_
     missing = np.zeros(len(blocks), bool)
     if situation.covered is not None:
         layers = np.flatnonzero((blocks >= 0) & (blocks < len(rock.surfaces)))
-        own = blocks[layers]
+        layer_blocks = blocks[layers]
         # the first surface that exists somewhere forms no block there, unless it is the oldest of all
-        older = np.cumsum(situation.covered[layers], axis=1)[np.arange(len(layers)), own] > 1
-        missing[layers] = ~situation.covered[layers, own] | ((own > 0) & ~older)
+        older = np.cumsum(situation.covered[layers], axis=1)[np.arange(len(layers)), layer_blocks] > 1
+        missing[layers] = ~situation.covered[layers, layer_blocks] | ((layer_blocks > 0) & ~older)
         left_out.add(missing, "no_surface", "the surface over this block, or every older one, is not here")
     return missing
 
@@ -202,8 +204,8 @@ def _of_used(
     first_rows = np.full(len(first), len(used))
     np.minimum.at(first_rows, place, np.arange(len(used)))
     at_place = [np.zeros((len(first), len(rock.surfaces)), bool) for _ in range(2)]
-    for found, said in zip(at_place, (above, below), strict=True):
-        np.logical_or.at(found, place, said)
+    for mask, said in zip(at_place, (above, below), strict=True):
+        np.logical_or.at(mask, place, said)
     meets = at_place[0] & at_place[1]
     _, column = _numbered(np.column_stack([places[:, :2], sides]))
     seen_on, errors_of = observations.seen_on[used], observations.errors[used]
@@ -224,15 +226,15 @@ def _of_used(
             np.flatnonzero((said[:, number] | is_on) & ~meets[place, number]) for said in (above, below)
         )
         crossed = _crossed(places, column, lower, upper, on)
-        kept = [
+        bound_rows = [
             np.union1d(_tightest(places, column, rows, on, sign), rows[crossed[column[rows]]])
             for rows, sign in ((lower, 1.0), (upper, -1.0))
         ]
-        rows = used[np.concatenate(kept)]
+        rows = used[np.concatenate(bound_rows)]
         bounds.append(
             Bounds(
                 observations.places[rows],
-                np.repeat([True, False], [len(each) for each in kept]),
+                np.repeat([True, False], [len(part) for part in bound_rows]),
                 observations.holes[rows],
                 observations.depths[rows],
             )
@@ -245,12 +247,12 @@ def _sources_at(place: np.ndarray, on: np.ndarray, holes: np.ndarray, depths: np
     all rows."""
     number = np.full(len(place), -1)
     number[place[on]] = np.arange(len(on))
-    found: Sources = {}
+    sources: Sources = {}
     for row in np.flatnonzero((number[place] >= 0) & (holes != "")).tolist():
         at, hole = int(number[place[row]]), str(holes[row])
-        if all(hole != each.hole for each in found.get(at, ())):
-            found[at] = (*found.get(at, ()), Origin.of(hole, depths[row]))
-    return found
+        if all(hole != origin.hole for origin in sources.get(at, ())):
+            sources[at] = (*sources.get(at, ()), Origin.of(hole, depths[row]))
+    return sources
 
 
 def _statements(
@@ -265,18 +267,18 @@ def _statements(
         covered = situation.covered[used]
     first, pattern = _numbered(covered)
     for number, row in enumerate(first):
-        there = np.flatnonzero(covered[row])
+        present = np.flatnonzero(covered[row])
         # a surface that does not exist here changes nothing here
-        at = np.searchsorted(there, np.arange(count), side="right") - 1
-        after = [int(at[each]) for each in situation.after]
-        succession = Succession([rules[each] for each in there], after)
+        at = np.searchsorted(present, np.arange(count), side="right") - 1
+        after = [int(at[surface]) for surface in situation.after]
+        succession = Succession([rules[surface] for surface in present], after)
         new = np.full(count + len(after), -1)
-        new[there] = np.arange(len(there))
-        new[count:] = len(there) + np.arange(len(after))
+        new[present] = np.arange(len(present))
+        new[count:] = len(present) + np.arange(len(after))
         rows = np.flatnonzero(pattern == number)
-        own = new[blocks[used[rows]]]
-        above[np.ix_(rows, there)] = succession.at_or_above[own]
-        below[np.ix_(rows, there)] = succession.at_or_below[own]
+        new_blocks = new[blocks[used[rows]]]
+        above[np.ix_(rows, present)] = succession.at_or_above[new_blocks]
+        below[np.ix_(rows, present)] = succession.at_or_below[new_blocks]
     if situation.inside is not None:
         for body, dug in enumerate(situation.after):
             if situation.voids[body]:  # what fills a void lies below surfaces that it was dug through
@@ -293,12 +295,12 @@ def _said_before(situation: Situation, used: np.ndarray) -> np.ndarray:
     """(U, S) bool: of places that are used, the surfaces for which each is the one before, as no fault that
     lies between the two displaces them."""
     assert situation.across is not None and situation.sides is not None and situation.displaced is not None
-    found = np.zeros((len(used), len(situation.displaced)), bool)
+    is_said = np.zeros((len(used), len(situation.displaced)), bool)
     second = np.flatnonzero(situation.across[used])
     second = second[(second > 0) & (used[second - 1] == used[second] - 1)]
     passed = situation.sides[used[second]] != situation.sides[used[second] - 1]
-    found[second] = ~(passed[:, None] & situation.displaced).any(axis=2)
-    return found
+    is_said[second] = ~(passed[:, None] & situation.displaced).any(axis=2)
+    return is_said
 
 
 def _crossed(
@@ -337,25 +339,28 @@ def with_contacts(rock: Rock, data: Sequence[SurfaceData], derived: Derived) -> 
     """The data of the surfaces of a rock mass with these contacts in the place of those that they had from
     observations, and with the bounds and those by contacts of older surfaces. A surface that has no point, no
     contact, and needs some, goes through places on its bounds."""
-    found = []
-    for number, (surface, own, kept) in enumerate(
+    all_data = []
+    for number, (surface, surface_data, older_bounds) in enumerate(
         zip(rock.surfaces, data, kept_bounds(rock, data), strict=True)
     ):
-        bounds = Bounds.joined([derived.bounds[number], kept])
-        own = replace(own, bounds=bounds)
+        bounds = Bounds.joined([derived.bounds[number], older_bounds])
+        surface_data = replace(surface_data, bounds=bounds)
         if surface.has_points:
             contacts = derived.contacts[number]
-            is_alone = not (len(contacts) or own.contacts_from or rock.is_level_set(surface))
+            is_alone = not (len(contacts) or surface_data.contacts_from or rock.is_level_set(surface))
             if is_along_bounds := is_alone and surface.needs_points and len(bounds) > 0:
                 contacts = along_bounds(bounds)
-            points = np.concatenate([own.own, contacts]) if len(contacts) else own.own
-            own = replace(
-                own,
+            points = np.concatenate([surface_data.own, contacts]) if len(contacts) else surface_data.own
+            surface_data = replace(
+                surface_data,
                 points=points,
-                sources=own.picks
-                | {own.contacts_from + row: each for row, each in derived.sources[number].items()},
+                sources=surface_data.picks
+                | {
+                    surface_data.contacts_from + row: origins
+                    for row, origins in derived.sources[number].items()
+                },
                 error=float(np.sum(derived.errors[number] ** 2)) / max(len(points), 1),
                 is_along_bounds=is_along_bounds,
             )
-        found.append(own)
-    return found
+        all_data.append(surface_data)
+    return all_data

@@ -29,12 +29,12 @@ def beside_blocks(rules: Sequence[str], ground: int | None = None) -> np.ndarray
     """(B, S) bool: of the surfaces under and over each block, those that are conformable with it. ground: the
     number of the surface that is the ground of today."""
     count, parting = len(rules), _parting(rules, ground)
-    found = np.zeros((count, count), bool)
+    is_conformable = np.zeros((count, count), bool)
     for block in range(count):
-        found[block, block] = not parting[block]
+        is_conformable[block, block] = not parting[block]
         if block and block - 1 != ground:
-            found[block, block - 1] = True
-    return found
+            is_conformable[block, block - 1] = True
+    return is_conformable
 
 
 def runs_of_blocks(rules: Sequence[str], ground: int | None = None) -> np.ndarray:
@@ -42,10 +42,10 @@ def runs_of_blocks(rules: Sequence[str], ground: int | None = None) -> np.ndarra
     parting = _parting(rules, ground)
     run = np.cumsum(parting)  # a surface that parts is the lowest of its run
     block_run = np.concatenate([[0], run[:-1]])
-    found = block_run[:, None] == run[None, :]
+    in_run = block_run[:, None] == run[None, :]
     if ground is not None:
-        found[:, ground] = False
-    return found
+        in_run[:, ground] = False
+    return in_run
 
 
 def blocks_at(rules: Sequence[str], heights: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -54,10 +54,10 @@ def blocks_at(rules: Sequence[str], heights: np.ndarray, z: np.ndarray) -> np.nd
     deposited, top = _deposited(rules, heights)
     z = np.where(np.isnan(z) | (z > top), top, z)
     blocks = np.full(len(z), -1)  # air
-    for number, (rule, own) in enumerate(zip(rules, deposited, strict=True)):
+    for number, (rule, z_surface) in enumerate(zip(rules, deposited, strict=True)):
         if RULES[rule].cuts:
-            blocks[z > own] = -1
-        blocks[(blocks < 0) & (z <= own)] = number
+            blocks[z > z_surface] = -1
+        blocks[(blocks < 0) & (z <= z_surface)] = number
     return np.maximum(blocks, 0)
 
 
@@ -65,11 +65,11 @@ def _deposited(rules: Sequence[str], heights: np.ndarray) -> tuple[list[np.ndarr
     """(N,) the heights of each surface as it came, NaN where it does not exist, and of the top at last."""
     top = np.full(heights.shape[1], np.nan)
     firm = np.full(heights.shape[1], -np.inf)
-    found = []
+    deposited = []
     for rule, height in zip(rules, heights, strict=True):
-        own = height if RULES[rule].cuts else np.fmax(height, top)
-        own = np.where(np.isnan(height), np.nan, np.fmax(own, firm))
-        top = np.where(np.isnan(own), top, own)
-        firm = np.where(RULES[rule].protects & ~np.isnan(own), own, firm)
-        found.append(own)
-    return found, top
+        z = height if RULES[rule].cuts else np.fmax(height, top)
+        z = np.where(np.isnan(height), np.nan, np.fmax(z, firm))
+        top = np.where(np.isnan(z), top, z)
+        firm = np.where(RULES[rule].protects & ~np.isnan(z), z, firm)
+        deposited.append(z)
+    return deposited, top

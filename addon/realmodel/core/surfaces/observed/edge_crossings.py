@@ -37,12 +37,12 @@ def with_places(
     places, depths = observations.places, observations.depths
     begin, left = end - 1, (1.0 - share)
     between = left[:, None] * places[begin] + share[:, None] * places[end]
-    found = replace(
+    joined = replace(
         observations.some(rows[order]),
         places=np.concatenate([places, between])[order],
         depths=np.concatenate([depths, left * depths[begin] + share * depths[end]])[order],
     )
-    return found, order < count
+    return joined, order < count
 
 
 def _crossings(observations: Observations, mesh: Sheet) -> tuple[np.ndarray, np.ndarray]:

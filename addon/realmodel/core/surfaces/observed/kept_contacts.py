@@ -38,6 +38,6 @@ def kept_bounds(rock: Rock, data: Sequence[SurfaceData]) -> list[Bounds]:
                 places[number].append(contacts)
                 done |= {younger.series} if rock.is_level_set(younger) else set()
     return [
-        Bounds.at_or_above(np.concatenate(each), rock.is_level_set(surface))
-        for each, surface in zip(places, surfaces, strict=True)
+        Bounds.at_or_above(np.concatenate(parts), rock.is_level_set(surface))
+        for parts, surface in zip(places, surfaces, strict=True)
     ]

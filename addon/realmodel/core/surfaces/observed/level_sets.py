@@ -51,18 +51,18 @@ class FieldStatements:
         follows = self._given.goes_on[self._used[1:]] & (np.diff(self._used) == 1)
         return np.flatnonzero(follows) + 1
 
-    def _add(self, own: list[int], said: tuple[np.ndarray, np.ndarray], place: np.ndarray) -> np.ndarray:
+    def _add(self, numbers: list[int], said: tuple[np.ndarray, np.ndarray], place: np.ndarray) -> np.ndarray:
         """Adds what is known of the surfaces of a series. Returns (P,) bool, the places where a bed is
         missing."""
-        up, down = (each[:, own] for each in said)
-        at_place = [np.zeros((len(self._first), len(own)), bool) for _ in range(2)]
-        for found, each in zip(at_place, (up, down), strict=True):
-            np.logical_or.at(found, place, each)
-        lowest, highest = _first_of(at_place[0], len(own)), _last_of(at_place[1])
+        up, down = (mask[:, numbers] for mask in said)
+        at_place = [np.zeros((len(self._first), len(numbers)), bool) for _ in range(2)]
+        for met, mask in zip(at_place, (up, down), strict=True):
+            np.logical_or.at(met, place, mask)
+        lowest, highest = _first_of(at_place[0], len(numbers)), _last_of(at_place[1])
         is_bound = highest < lowest
         ways = self._ways
-        of_ways = _first_of(up[ways] & up[ways - 1], len(own)), _last_of(down[ways] & down[ways - 1])
-        for k, number in enumerate(own):
+        of_ways = _first_of(up[ways] & up[ways - 1], len(numbers)), _last_of(down[ways] & down[ways - 1])
+        for k, number in enumerate(numbers):
             self.contacts[number] = np.sort(self._first[(lowest == k) & (highest == k)])
             self._lowest[number] = np.sort(self._first[is_bound & (lowest == k)]), ways[of_ways[0] == k]
             self._highest[number] = np.sort(self._first[is_bound & (highest == k)]), ways[of_ways[1] == k]
@@ -72,8 +72,8 @@ class FieldStatements:
         """The bounds of a level set by its number: of places, and of the ways through intervals."""
         places, used = self._given.places, self._used
         parts = self._lowest[number], self._highest[number]
-        begin = np.concatenate([each for at, ways in parts for each in (used[at], used[ways - 1])])
-        end = np.concatenate([used[each] for part in parts for each in part])
+        begin = np.concatenate([rows for at, ways in parts for rows in (used[at], used[ways - 1])])
+        end = np.concatenate([used[rows] for part in parts for rows in part])
         is_lower = np.repeat([True, False], [sum(map(len, part)) for part in parts])
         return Bounds(places[begin], is_lower, self._given.holes[end], self._given.depths[end], places[end])
 

@@ -73,7 +73,7 @@ def observed_on_map(
     classes = np.array([names.index(block) if block else -1 for block in blocks])
     lines, apart = border_lines(polygons, classes, frame.spacing)
     warnings = _gaps(polygons, classes, apart)
-    borders = _Near([_closed(ring) for each in polygons for ring in each.rings], frame.spacing / 8)
+    borders = _Near([_closed(ring) for polygon in polygons for ring in polygon.rings], frame.spacing / 8)
     on_lines = _contacts(polygons, classes, lines, frame)
     within, overlaps = _within(polygons, classes, borders, frame)
     left_out += overlaps
@@ -82,36 +82,36 @@ def observed_on_map(
     z = frame.heights(plan) if len(plan) else np.empty(0)
     of_lines = frame.height_errors(on_lines[0], z)
     errors = np.concatenate([np.repeat(of_lines, 2), np.zeros(len(within[0]))])
-    known = np.isfinite(z)
-    if not known.all():
-        missing = np.unique(plan[~known], axis=0)
+    is_known = np.isfinite(z)
+    if not is_known.all():
+        missing = np.unique(plan[~is_known], axis=0)
         text = f"{len(missing)} places of the map are where the ground is not known, and are left out"
         warnings.append(f"{text}: one is at {place_text(missing[0].tolist())}")
-    places = np.column_stack([plan, z])[known]
-    blocks_there = np.array([*names, ""])[of_class[known]]
-    return Observations(places, blocks_there, height_errors=errors[known]), left_out, warnings
+    places = np.column_stack([plan, z])[is_known]
+    blocks_there = np.array([*names, ""])[of_class[is_known]]
+    return Observations(places, blocks_there, height_errors=errors[is_known]), left_out, warnings
 
 
 def _blocks(polygons: list[UnitPolygon], units: UnitNames) -> tuple[list[str], list[LeftOut]]:
     """The block of each polygon, by the name that UnitNames gives it; "" for none. A feature of several
     polygons is left out once."""
-    found, left_out = [], dict[str, LeftOut]()
-    for each in polygons:
-        block = "" if units.says_nothing(each.unit) else units.block(each.unit)
+    blocks, left_out = [], dict[str, LeftOut]()
+    for polygon in polygons:
+        block = "" if units.says_nothing(polygon.unit) else units.block(polygon.unit)
         if block is None:
-            left_out[each.item] = unknown_block(f"{each.item}, '{each.unit}'", each.unit)
-        found.append(block or "")
-    return found, list(left_out.values())
+            left_out[polygon.item] = unknown_block(f"{polygon.item}, '{polygon.unit}'", polygon.unit)
+        blocks.append(block or "")
+    return blocks, list(left_out.values())
 
 
 def _gaps(polygons: list[UnitPolygon], classes: np.ndarray, apart: list[Apart]) -> list[str]:
     said = []
     for joined, what in ((True, "which count as one line"), (False, "where no contact is seen")):
         listed = [
-            f"{polygons[a].item} and {polygons[b].item} (up to {each.width:.3g} along {each.length:.3g})"
-            for each in apart
-            for a, b in [each.polygons]
-            if each.joined == joined and classes[a] >= 0 and classes[b] >= 0
+            f"{polygons[a].item} and {polygons[b].item} (up to {gap.width:.3g} along {gap.length:.3g})"
+            for gap in apart
+            for a, b in [gap.polygons]
+            if gap.joined == joined and classes[a] >= 0 and classes[b] >= 0
         ]
         if listed:
             text = f"{len(listed)} pairs of polygons have gaps or overlaps between their borders, {what}"
@@ -153,16 +153,18 @@ def _contacts(
             places, edge = places_along(line, frame.spacing)
             plan.append(places)
             beside.append(line.polygons[edge])
-    found, sides = np.concatenate(plan), np.concatenate(beside)
-    kept = frame.covers(found)
-    kept[kept] = _Near(frame.faults, frame.spacing / 16).distance(found[kept]) > _NEAR_FAULT * frame.spacing
-    found, sides = found[kept], sides[kept]
+    contacts, sides = np.concatenate(plan), np.concatenate(beside)
+    is_kept = frame.covers(contacts)
+    is_kept[is_kept] = (
+        _Near(frame.faults, frame.spacing / 16).distance(contacts[is_kept]) > _NEAR_FAULT * frame.spacing
+    )
+    contacts, sides = contacts[is_kept], sides[is_kept]
     # another polygon lies over both, as of a unit that was drawn later
-    hidden = np.zeros(len(found), bool)
-    for number, rows in _in_boxes(polygons, found):
-        own = rows[(classes[sides[rows]] != classes[number]).all(axis=1)]
-        hidden[own] |= inside(polygons[number].rings, found[own])
-    return found[~hidden], classes[sides[~hidden]]
+    hidden = np.zeros(len(contacts), bool)
+    for number, rows in _in_boxes(polygons, contacts):
+        rows_below = rows[(classes[sides[rows]] != classes[number]).all(axis=1)]
+        hidden[rows_below] |= inside(polygons[number].rings, contacts[rows_below])
+    return contacts[~hidden], classes[sides[~hidden]]
 
 
 def _within(
@@ -176,10 +178,10 @@ def _within(
     owner = np.full(len(plan), -1)
     seen = np.zeros(len(polygons), bool)
     for number, rows in _in_boxes(polygons, plan):
-        own = rows[inside(polygons[number].rings, plan[rows])]
-        seen[number] = len(own) > 0
-        owner[own] = np.where(owner[own] < 0, number, owner[own])
-    more = [_middle(each, frame.box) for number, each in enumerate(polygons) if not seen[number]]
+        rows_within = rows[inside(polygons[number].rings, plan[rows])]
+        seen[number] = len(rows_within) > 0
+        owner[rows_within] = np.where(owner[rows_within] < 0, number, owner[rows_within])
+    more = [_middle(polygon, frame.box) for number, polygon in enumerate(polygons) if not seen[number]]
     alone = np.flatnonzero(~seen)
     at = np.array(more).reshape(-1, 2)
     is_here = np.isfinite(at).all(axis=1)
@@ -197,18 +199,18 @@ def _within(
         )
         left_out.append(LeftOut("overlap", text, polygons[a].unit))
     twice = np.unique([row for rows in claimed.values() for row in rows]).astype(np.int64)
-    kept = owner >= 0
-    kept[twice] = False
-    kept &= classes[owner] >= 0
-    return (plan[kept], classes[owner[kept]]), left_out
+    is_kept = owner >= 0
+    is_kept[twice] = False
+    is_kept &= classes[owner] >= 0
+    return (plan[is_kept], classes[owner[is_kept]]), left_out
 
 
 def _in_boxes(polygons: list[UnitPolygon], plan: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
     """The number of each polygon whose box has places (N, 2), and their rows."""
     order = np.argsort(plan[:, 0], kind="stable")
     x = plan[order, 0]
-    for number, each in enumerate(polygons):
-        corners = np.concatenate(each.rings)
+    for number, polygon in enumerate(polygons):
+        corners = np.concatenate(polygon.rings)
         low, high = corners.min(axis=0), corners.max(axis=0)
         rows = order[np.searchsorted(x, low[0]) : np.searchsorted(x, high[0], "right")]
         rows = rows[(plan[rows, 1] >= low[1]) & (plan[rows, 1] <= high[1])]
@@ -223,7 +225,7 @@ def _middle(polygon: UnitPolygon, box: np.ndarray) -> np.ndarray:
     end = np.concatenate([np.roll(ring, -1, axis=0) for ring in polygon.rings])
     (left, bottom), (right, top) = box.tolist()
     heights = np.unique(np.clip(begin[:, 1], bottom, top))
-    best, found = 0.0, np.full(2, np.nan)
+    best, middle = 0.0, np.full(2, np.nan)
     steps = np.diff(heights)
     for tried, at in enumerate(np.argsort(-steps, kind="stable")):
         if tried >= _LINES and best > 0:
@@ -234,5 +236,5 @@ def _middle(polygon: UnitPolygon, box: np.ndarray) -> np.ndarray:
         x = np.sort(begin[crosses, 0] + share * (end[crosses, 0] - begin[crosses, 0]))
         for low, high in np.clip(x, left, right).reshape(-1, 2).tolist():
             if high - low > best:
-                best, found = high - low, np.array([0.5 * (low + high), y])
-    return found
+                best, middle = high - low, np.array([0.5 * (low + high), y])
+    return middle

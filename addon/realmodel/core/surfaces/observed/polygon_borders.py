@@ -66,7 +66,7 @@ def border_lines(
 ) -> tuple[list[BorderLine], list[Apart]]:
     """The lines between polygons of different classes (P,), and where borders that should be one are apart.
     spacing: of the places that are taken of the lines."""
-    rings = [(number, ring) for number, each in enumerate(polygons) for ring in _turned(each)]
+    rings = [(number, ring) for number, polygon in enumerate(polygons) for ring in _turned(polygon)]
     corners = np.concatenate([ring for _, ring in rings])
     plan, vertex = np.unique(corners, axis=0, return_inverse=True)
     vertex = vertex.ravel()
@@ -79,13 +79,13 @@ def border_lines(
     divided = _at_ends(plan, open_edges, _ON_EDGE * spacing)
     more, open_edges = _matched(divided, classes)
     plan, near, apart = _near(plan, open_edges, classes, spacing)
-    ends, sides = (np.concatenate(each) for each in zip(met, more, near, strict=True))
+    ends, sides = (np.concatenate(arrays) for arrays in zip(met, more, near, strict=True))
     return _lines(plan, ends, sides, classes), apart
 
 
 def _turned(polygon: UnitPolygon) -> list[np.ndarray]:
     """The rings with the polygon to their left: outlines counter-clockwise, holes clockwise."""
-    found = []
+    rings = []
     for number, ring in enumerate(polygon.rings):
         if polygon.has_roles:
             is_hole = number > 0
@@ -93,15 +93,15 @@ def _turned(polygon: UnitPolygon) -> list[np.ndarray]:
             others = polygon.rings[:number] + polygon.rings[number + 1 :]
             is_hole = bool(inside(others, 0.5 * (ring[:1] + ring[1:2]))[0])
         is_left = twice_area(ring) > 0
-        found.append(ring if is_left != is_hole else ring[::-1])
-    return found
+        rings.append(ring if is_left != is_hole else ring[::-1])
+    return rings
 
 
 def inside(rings: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
     """(N,) bool: which places (N, 2) lie within rings, by the even-odd rule (exact)."""
-    found = np.zeros(len(places), bool)
+    is_inside = np.zeros(len(places), bool)
     if not rings or not len(places):
-        return found
+        return is_inside
     begin = np.concatenate(rings)
     end = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     order = np.argsort(places[:, 1], kind="stable")
@@ -113,11 +113,11 @@ def inside(rings: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
     at = order[ranks_in_runs(count) + np.repeat(first, count)]
     rises = begin[edge, 1] < end[edge, 1]
     lower, upper = (
-        np.where(rises[:, None], *each) for each in ((begin[edge], end[edge]), (end[edge], begin[edge]))
+        np.where(rises[:, None], *ends) for ends in ((begin[edge], end[edge]), (end[edge], begin[edge]))
     )
     turn = native_module().orient2d(lower, upper, np.ascontiguousarray(places[at]))
-    np.logical_xor.at(found, at, turn > 0)
-    return found
+    np.logical_xor.at(is_inside, at, turn > 0)
+    return is_inside
 
 
 def _matched(edges: _Edges, classes: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], _Edges]:
@@ -131,10 +131,10 @@ def _matched(edges: _Edges, classes: np.ndarray) -> tuple[tuple[np.ndarray, np.n
     owner = np.full((count, 2), -1)
     is_one = np.ones(count, bool)
     for side in (0, 1):
-        own = np.flatnonzero(is_forward == (side == 0))[::-1]
-        owner[number[own], side] = edges.owner[own]  # the first of several
-        differ = classes[owner[number[own], side]] != classes[edges.owner[own]]
-        is_one[number[own[differ]]] = False
+        side_edges = np.flatnonzero(is_forward == (side == 0))[::-1]
+        owner[number[side_edges], side] = edges.owner[side_edges]  # the first of several
+        differ = classes[owner[number[side_edges], side]] != classes[edges.owner[side_edges]]
+        is_one[number[side_edges[differ]]] = False
     ends = np.empty((count, 2), np.int64)
     ends[number] = np.stack([low, high], axis=1)
     both = (owner[:, 0] >= 0) & (owner[:, 1] >= 0)
@@ -203,8 +203,8 @@ def _near(
     apart = []
     for some, is_joined in ((joined, True), (has & ~joined, False)):
         apart += _apart(owner[some], other[some], (length / count)[edge][some], width[some], is_joined)
-    apart = [each for each in apart if each.length >= _SHORT * spacing]
-    own = np.flatnonzero(joined & (owner < other))
+    apart = [pair for pair in apart if pair.length >= _SHORT * spacing]
+    pieces = np.flatnonzero(joined & (owner < other))
     # ends of pieces within edges are further vertices
     inner = np.flatnonzero(part > 0)
     vertex = edges.ends[edge, 0]
@@ -212,7 +212,7 @@ def _near(
     within = begin[edge[inner]] + (part[inner] / count[edge[inner]])[:, None] * way[edge[inner]]
     is_last = np.append(edge[1:] != edge[:-1], True)
     stop = np.where(is_last, edges.ends[edge, 1], np.append(vertex[1:], 0))
-    ends, sides = np.stack([vertex, stop], axis=1)[own], np.stack([owner, other], axis=1)[own]
+    ends, sides = np.stack([vertex, stop], axis=1)[pieces], np.stack([owner, other], axis=1)[pieces]
     return np.concatenate([plan, within]), (ends, sides), apart
 
 
@@ -220,13 +220,13 @@ def _apart(
     owner: np.ndarray, other: np.ndarray, length: np.ndarray, width: np.ndarray, joined: bool
 ) -> list[Apart]:
     pairs = np.sort(np.stack([owner, other], axis=1), axis=1)
-    found, row = np.unique(pairs, axis=0, return_inverse=True)
-    along = np.bincount(row.ravel(), length, len(found)) / 2  # both borders
-    widest = np.zeros(len(found))
+    distinct, row = np.unique(pairs, axis=0, return_inverse=True)
+    along = np.bincount(row.ravel(), length, len(distinct)) / 2  # both borders
+    widest = np.zeros(len(distinct))
     np.maximum.at(widest, row.ravel(), width)
     return [
         Apart((a, b), far, wide, joined)
-        for (a, b), far, wide in zip(found.tolist(), along.tolist(), widest.tolist(), strict=True)
+        for (a, b), far, wide in zip(distinct.tolist(), along.tolist(), widest.tolist(), strict=True)
     ]
 
 
@@ -235,13 +235,13 @@ def _lines(plan: np.ndarray, ends: np.ndarray, sides: np.ndarray, classes: np.nd
     place."""
     of = np.sort(classes[sides], axis=1)
     keys, number = np.unique(of, axis=0, return_inverse=True)
-    found = []
+    lines = []
     for key, pair in enumerate(keys.tolist()):
-        own = np.flatnonzero(number.ravel() == key)
-        for walk, edges, closed in _walks(ends[own]):
+        pair_edges = np.flatnonzero(number.ravel() == key)
+        for walk, edges, closed in _walks(ends[pair_edges]):
             corners = plan[walk]
-            found.append(BorderLine((pair[0], pair[1]), corners, sides[own[edges]], closed))
-    return found
+            lines.append(BorderLine((pair[0], pair[1]), corners, sides[pair_edges[edges]], closed))
+    return lines
 
 
 def _walks(ends: np.ndarray) -> list[tuple[list[int], list[int], bool]]:
@@ -251,7 +251,7 @@ def _walks(ends: np.ndarray) -> list[tuple[list[int], list[int], bool]]:
         at[a].append((edge, b))
         at[b].append((edge, a))
     done = np.zeros(len(ends), bool)
-    found = []
+    walks = []
 
     def walk(begin: int, edge: int, to: int) -> None:
         vertices, edges = [begin, to], [edge]
@@ -264,7 +264,7 @@ def _walks(ends: np.ndarray) -> list[tuple[list[int], list[int], bool]]:
             vertices.append(to)
             edges.append(edge)
         closed = to == begin and len(at[to]) == 2
-        found.append((vertices[:-1] if closed else vertices, edges, closed))
+        walks.append((vertices[:-1] if closed else vertices, edges, closed))
 
     for only_ends in (True, False):
         for begin in sorted(at):
@@ -273,7 +273,7 @@ def _walks(ends: np.ndarray) -> list[tuple[list[int], list[int], bool]]:
             for edge, to in at[begin]:
                 if not done[edge]:
                     walk(begin, edge, to)
-    return found
+    return walks
 
 
 def places_along(line: BorderLine, spacing: float) -> tuple[np.ndarray, np.ndarray]:

@@ -43,11 +43,11 @@ def companions_of(
     """The sheets with which a surface is interpolated; None where none of the others has points. known: as
     of Alike."""
     beside = sheets_beside(rock, number)
-    if not any(len(data[each].points) for each in beside if each != number):
+    if not any(len(data[other].points) for other in beside if other != number):
         return None
-    sheets = [data[each] for each in beside]
-    points = [np.ascontiguousarray(each.points) for each in sheets]
-    dips = [each.dips for each in sheets]
+    sheets = [data[other] for other in beside]
+    points = [np.ascontiguousarray(sheet.points) for sheet in sheets]
+    dips = [sheet.dips for sheet in sheets]
     return Companions(beside.index(number), points, dips, known, mean_error(sheets))
 
 

@@ -41,31 +41,31 @@ class Succession:
     def cut_later(self, first: int) -> list[int]:
         """The surfaces younger than one that remove rock that was there when it came: those that cut, until
         one protects the rock."""
-        found = []
+        numbers = []
         for younger in range(first + 1, len(self._rules)):
             if younger > 0 and self._rules[younger - 1].protects:
                 break
             if self._rules[younger].cuts:
-                found.append(younger)
-        return found
+                numbers.append(younger)
+        return numbers
 
     def _before(self, block: int) -> list[int]:
         """The surfaces that make the top just before a surface came: the one before it; of each that does not
         cut the one before that, too, as it may lie on it; and of each the youngest older one that protects
         itself, as it may end on that."""
-        found = [False] * block
+        is_before = [False] * block
         waiting = [block - 1] if block else []
         while waiting:
             number = waiting.pop()
-            if found[number]:
+            if is_before[number]:
                 continue
-            found[number] = True
+            is_before[number] = True
             if number and not self._rules[number].cuts:
                 waiting.append(number - 1)
             firm = next((n for n in range(number - 1, -1, -1) if self._rules[n].protects), None)
             if firm is not None:
                 waiting.append(firm)
-        return [number for number in range(block) if found[number]]
+        return [number for number in range(block) if is_before[number]]
 
     def removes(self, block: int, after: int) -> bool:
         """Whether a place in a block can be inside a body that came after a surface: one younger than that,
@@ -78,7 +78,7 @@ class Succession:
         bool, the surfaces with one height over a place. An older block may where no sheet lies over it and
         under the younger one."""
         count = len(self._rules)
-        over, under = (each[:count, is_sheet] for each in (self.at_or_above, self.at_or_below))
+        over, under = (relation[:count, is_sheet] for relation in (self.at_or_above, self.at_or_below))
         number = np.arange(count)
         between = np.array([(row & under).any(axis=1) for row in over]).reshape(count, count)
         return ~between | (number[:, None] >= number)

@@ -62,7 +62,7 @@ class SurfaceData:
     @property
     def picks(self) -> Sources:
         """The sources of the points that are no contacts."""
-        return {row: each for row, each in self.sources.items() if row < self.contacts_from}
+        return {row: origins for row, origins in self.sources.items() if row < self.contacts_from}
 
     def source(self, number: int) -> Origin:
         """That of a point, the first of several."""
@@ -75,15 +75,15 @@ class SurfaceData:
 
     def some(self, chosen: np.ndarray) -> SurfaceData:
         """The same with some of the points, (P,) bool."""
-        own = chosen[: self.contacts_from]
-        rows = np.arange(len(own)) if self.rows is None else self.rows
+        is_pick = chosen[: self.contacts_from]
+        rows = np.arange(len(is_pick)) if self.rows is None else self.rows
         number = np.cumsum(chosen) - 1
         return replace(
             self,
             points=self.points[chosen],
-            contacts_from=int(own.sum()),
-            sources={int(number[row]): each for row, each in self.sources.items() if chosen[row]},
-            rows=rows[own],
+            contacts_from=int(is_pick.sum()),
+            sources={int(number[row]): origins for row, origins in self.sources.items() if chosen[row]},
+            rows=rows[is_pick],
         )
 
     def through(self, points: np.ndarray) -> SurfaceData:
