@@ -95,7 +95,7 @@ def _refused(
 
 
 def _renumbered(built: BuiltCells, present: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:
-    """The cells of a model of some structures, numbered as if all `count` of them had been given. there:
+    """The cells of a model of some structures, numbered as if all `count` of them had been given. present:
     their numbers; part: (P,) the parts that theirs are of."""
     surfaces = len(built.volumes) - len(present)
     number = np.append(np.arange(surfaces), surfaces + present).astype(np.int32)

@@ -237,7 +237,7 @@ def _numbered(
     model: ModelData, side: Side, present: np.ndarray, added: np.ndarray, first_number: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Positions (N, 3) that the model has no vertex at yet, each once, and the vertex number of each given
-    one: edges may meet in a vertex that one of them passes. there: the vertices on the side."""
+    one: edges may meet in a vertex that one of them passes. present: the vertices on the side."""
     both = np.concatenate([model.vertices[present], added])
     _, first, same = np.unique(_on_line(both, side), return_index=True, return_inverse=True)
     first = first[same[len(present) :]]  # the first of the equal ones: one that is there

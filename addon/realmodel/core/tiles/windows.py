@@ -303,14 +303,14 @@ class Windows:
     def _continued_near(self, number: int, around: Box) -> tuple:
         """The triangles of a structure that are nearest to anything in the window; of a body, or of a fault
         that is far away, all of them."""
-        corners, is_continuation, directions = self._continued[number]
+        corners, is_continuation, end_sides = self._continued[number]
         space = self._space(around)
         away = 2 * norm(space[1] - space[0])
         low, high = self._extents[number]
         near = ((low <= space[1] + away) & (high >= space[0] - away)).all(axis=1)
         if number >= len(self.structures.faults) or not near.any():
             return self._continued[number]
-        return np.ascontiguousarray(corners[near]), np.ascontiguousarray(is_continuation[near]), directions
+        return np.ascontiguousarray(corners[near]), np.ascontiguousarray(is_continuation[near]), end_sides
 
     def _rock(self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, of_plan: dict) -> RockInput:
         entry = self.inputs[rock]
