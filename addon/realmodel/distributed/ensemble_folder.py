@@ -44,7 +44,7 @@ def ensemble(
 
     client: of distributed; None: a LocalCluster with a process for each processor. A run that was stopped
     goes on where it was when it is started again with the same project, seed, correlation and places; the
-    number of realizations may be larger. The result is the same for any number of workers. also(result,
+    number of realizations may be larger. The result is the same for any number of workers. also(found,
     outputs) writes more files, which appear with the others.
 
     Raises as core.ensembles.ensemble; UsageError where Dask is missing or the folder holds another ensemble;

@@ -44,7 +44,7 @@ def planned_hole(
     (+y). dip: degrees below the horizontal, 90 straight down. Raises UsageError, BuildFailed.
 
     >>> hole = model.planned_hole((0.5, 1.0, 6.0), azimuth=90, dip=45, length=8)
-    >>> [(hole.block_names[interval.block], round(interval.begin, 3)) for interval in hole.intervals]
+    >>> [(hole.block_names[each.block], round(each.begin, 3)) for each in hole.intervals]
     [('soil', 3.182), ('sand', 4.243)]
     """
     axis = HoleAxis(collar, azimuth, dip, length)
