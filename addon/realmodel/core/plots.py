@@ -90,8 +90,8 @@ def cross_validation(
     """The estimated over the measured elevations of the points of a result of cross_validate; where the
     method has a variance, in two colors, for errors within two standard deviations and beyond. unit, page,
     words: as of `variogram`."""
-    known = np.isfinite(result.errors)
-    places = np.column_stack([result.points[known, 2], result.z[known]])
+    is_known = np.isfinite(result.errors)
+    places = np.column_stack([result.points[is_known, 2], result.z[is_known]])
     low, high = (float(places.min()), float(places.max())) if len(places) else (0.0, 1.0)
     margin = 0.04 * (high - low) or 0.5
     limits = (low - margin, high + margin)
@@ -100,7 +100,7 @@ def cross_validation(
     axes.drawing.line(axes.at([(limits[0], limits[0]), (limits[1], limits[1])]), GRAY, 0.8)
     beyond = np.zeros(len(places), bool)
     if result.standardized is not None:
-        beyond = np.abs(result.standardized[known]) > 2
+        beyond = np.abs(result.standardized[is_known]) > 2
     radius = 2.2 * max(min(1.0, _MANY / max(len(places), 1)), 0.1) ** 0.5
     for chosen, color in ((~beyond, BLUE), (beyond, RED)):
         some = places[chosen][:: max(1, int(np.ceil(chosen.sum() / _MOST_DOTS)))]

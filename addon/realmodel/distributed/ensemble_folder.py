@@ -80,10 +80,10 @@ def ensemble(
                 store.put(numbers, sums)
                 done += len(numbers)
                 report(_BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations")
-    found = Ensemble.of(realizer, added(map(store.get, batches(realizations))), points)
-    write_ensemble(found, folder, also)
+    result = Ensemble.of(realizer, added(map(store.get, batches(realizations))), points)
+    write_ensemble(result, folder, also)
     store.remove()
-    return found
+    return result
 
 
 def _batch(shared: tuple[Realizer, np.ndarray], numbers: range) -> Sums:
@@ -136,7 +136,7 @@ class _Store:
     def put(self, numbers: range, sums: Sums) -> None:
         arrays: dict[str, Any] = {"volumes": sums.volumes, "counts": sums.counts}  # savez has other keywords
         for name, values in (("heights", sums.heights), ("squares", sums.squares)):
-            arrays |= {f"{name}_{k}": each for k, each in enumerate(values) if each is not None}
+            arrays |= {f"{name}_{k}": array for k, array in enumerate(values) if array is not None}
         file = self._file(numbers)
         part = file.with_suffix(".part")
         try:

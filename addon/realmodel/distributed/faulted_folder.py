@@ -129,10 +129,10 @@ def _catalog(shared: Shared, names: list[Name], digest: str, warnings: list[Buil
             for a, b in np.unique(both, axis=0).tolist():
                 into.join((*one, a), (*other, b))
     records = [store.read_record("joined", name) for name in names]
-    found = dict.fromkeys(warnings)
+    distinct = dict.fromkeys(warnings)
     for record in records:
-        for each in record["warnings"]:
-            found[BuildWarning(**{**each, "items": tuple(each["items"])})] = None
+        for warning in record["warnings"]:
+            distinct[BuildWarning(**{**warning, "items": tuple(warning["items"])})] = None
     return Catalog(
         frame.project,
         frame.cell_kind,
@@ -142,5 +142,5 @@ def _catalog(shared: Shared, names: list[Name], digest: str, warnings: list[Buil
         [entry_of(name, record) for name, record in zip(names, records, strict=True)],
         faces,
         0,
-        list(found),
+        list(distinct),
     )

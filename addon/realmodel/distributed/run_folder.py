@@ -44,7 +44,7 @@ def require_own(folder: Path) -> None:
     try:
         if (folder / CATALOG).exists() or (folder / RUN / _DIGEST).exists() or not folder.exists():
             return
-        if any(each.name not in (RUN, TILES) for each in folder.iterdir()):
+        if any(path.name not in (RUN, TILES) for path in folder.iterdir()):
             raise UsageError(f"{folder}: a folder with other content; choose a new one")
     except OSError as error:
         raise OutputFailed(f"{folder}: {error.strerror or error}") from error
@@ -61,7 +61,7 @@ def mapped_arrays(folder: Path) -> Iterator[MappedArrays]:
         run_folder, made = Path(tempfile.gettempdir()), []
     else:
         run_folder = folder / RUN
-        made = [each for each in (run_folder, folder) if not each.exists()]
+        made = [path for path in (run_folder, folder) if not path.exists()]
     try:
         with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
             try:
@@ -69,9 +69,9 @@ def mapped_arrays(folder: Path) -> Iterator[MappedArrays]:
             finally:
                 wait_for_stopped()  # what reads surfaces writes here, and uses the workers
     finally:
-        for each in made:
+        for path in made:
             with suppress(OSError):
-                each.rmdir()  # where nothing else came
+                path.rmdir()  # where nothing else came
 
 
 class Store:
@@ -225,7 +225,7 @@ def blocks_of(frame: Frame, records: list[dict], parts: Parts, whole_cells: Part
     if not records:
         return []
     of_tiles = [[Block(**block) for block in record["blocks"]] for record in records]
-    components, of_blocks = (each.count(len(of_tiles[0])) for each in (parts, whole_cells))
+    components, of_blocks = (connected.count(len(of_tiles[0])) for connected in (parts, whole_cells))
     blocks = []
     for number, block in enumerate(of_tiles[0]):
         volume = math.fsum(blocks_[number].volume for blocks_ in of_tiles)

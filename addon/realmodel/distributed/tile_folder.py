@@ -200,9 +200,9 @@ def _build(shared: Shared, name: Name) -> None:
     edges = BorderEdges.of(model, numbers)
     sides["faces"] = np.unique(edges.face)
     for side, _ in _neighbors(frame, name, names):
-        found = interfaces_on(model, edges.on(model, side))
-        ends = np.searchsorted(numbers, found.ends)
-        sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": ends}
+        interfaces = interfaces_on(model, edges.on(model, side))
+        ends = np.searchsorted(numbers, interfaces.ends)
+        sides |= {f"{side.name}_on": interfaces.on, f"{side.name}_ends": ends}
     with Outputs() as outputs, outputs.file(store.file("built", name)) as file:
         write_mapped(tile_arrays(model), file)
     store.write(store.file("sides", name), sides)
@@ -223,9 +223,9 @@ def _join(shared: Shared, name: Name) -> None:
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
         neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
-    numbers, own = borders[name].numbers, len(model.vertices)
+    numbers, count = borders[name].numbers, len(model.vertices)
     model = with_vertices_of(model, BorderEdges.of(model, numbers, faces), neighbors)
-    numbers = np.concatenate([numbers, np.arange(own, len(model.vertices), dtype=numbers.dtype)])
+    numbers = np.concatenate([numbers, np.arange(count, len(model.vertices), dtype=numbers.dtype)])
     report = model.validate(places_of(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
@@ -233,13 +233,13 @@ def _join(shared: Shared, name: Name) -> None:
     border = BorderEdges.of(model, numbers, faces)
     for side, theirs, their_places in neighbors:
         edges = border.on(model, side)
-        found = patches_on(model, side, edges, positions_on(model, side, edges, theirs, their_places))
-        part = model.cell_component[found.cell]
+        side_patches = patches_on(model, side, edges, positions_on(model, side, edges, theirs, their_places))
+        part = model.cell_component[side_patches.cell]
         patches |= {
-            f"{side.name}_shape": found.shape,
-            f"{side.name}_block": found.block,
+            f"{side.name}_shape": side_patches.shape,
+            f"{side.name}_block": side_patches.block,
             f"{side.name}_part": part,
-            f"{side.name}_open": np.array(found.open),
+            f"{side.name}_open": np.array(side_patches.open),
         }
     parts = np.flatnonzero(model.cell_component == np.arange(len(model.cell_block)))  # their first cells
     patches |= {"parts": parts, "block_of_part": model.cell_block[parts]}
@@ -264,12 +264,12 @@ def _catalog(shared: Shared, names: list[Name], digest: str, warnings: list[Buil
         for part, block in zip(arrays["parts"].tolist(), arrays["block_of_part"].tolist(), strict=True):
             parts.add((*name, part), block)
     for name in names:
-        own = read_arrays(store.file("patches", name))
+        ours = read_arrays(store.file("patches", name))
         for side, other in _neighbors(frame, name, names):
             if side.name not in ("east", "north"):
                 continue
             theirs = read_arrays(store.file("patches", other))
-            match = matched(_patches(own, side.name), _patches(theirs, OPPOSITE[side.name]), side)
+            match = matched(_patches(ours, side.name), _patches(theirs, OPPOSITE[side.name]), side)
             if match.unequal:
                 near = "" if match.place is None else f" near {place_text(match.place)}"
                 text = (
@@ -304,10 +304,10 @@ def _warnings(store: Store, names: list[Name]) -> list[BuildWarning]:
             if warning["kind"] != "no_area":
                 key = (*key, warning["text"])
             items.setdefault(key, set()).update(warning["items"])
-    found = []
+    warnings = []
     for (kind, rock, surface, *text), numbers in items.items():
         if kind == "no_area":
             what = "triangle" if len(numbers) == 1 else "triangles"
             text = [f"{len(numbers)} {what} without area left out"]
-        found.append(BuildWarning(text[0], kind, rock, surface, tuple(sorted(numbers))))
-    return found
+        warnings.append(BuildWarning(text[0], kind, rock, surface, tuple(sorted(numbers))))
+    return warnings

@@ -48,8 +48,8 @@ def prepared(
         structures = divide(work, structures, box_around(inputs, structures, has_sheets=True))
     for entry in inputs:
         entry.surfaces = [
-            each and Sheet(arrays.keep(each.vertices), arrays.keep(each.triangles), each.numbers)
-            for each in entry.surfaces
+            sheet and Sheet(arrays.keep(sheet.vertices), arrays.keep(sheet.triangles), sheet.numbers)
+            for sheet in entry.surfaces
         ]
     windows = Windows(work, inputs, structures, arrays.keep)
     warnings = [warning for entry in inputs for warning in entry.warnings]
@@ -69,8 +69,10 @@ def frame_of(project: Project, windows: Windows, size: tuple[float, float], cell
         list_blocks(inputs, np.zeros(len(names) + len(structures)), CellComplex.empty(cells), structures),
         replace(
             structures,
-            faults=[replace(each, vertices=None, triangles=None, points=None) for each in structures.faults],
-            bodies=[replace(each, vertices=None, triangles=None) for each in structures.bodies],
+            faults=[
+                replace(fault, vertices=None, triangles=None, points=None) for fault in structures.faults
+            ],
+            bodies=[replace(body, vertices=None, triangles=None) for body in structures.bodies],
         ),
         [*names, *structures.names],
         np.array([0] * len(names) + structures.kinds, np.int32),
@@ -108,9 +110,9 @@ class SurfaceReader:
             else:
                 in_files.append((number, surface))
         tasks = self._workers.in_any_order(_read, self._arrays.folder, in_files, work.check, here=True)
-        for done, ((number, _), found) in enumerate(tasks, 1):
+        for done, ((number, _), result) in enumerate(tasks, 1):
             work.step(done / len(in_files))
-            yield number, found.with_arrays(self._arrays.opened)
+            yield number, result.with_arrays(self._arrays.opened)
 
 
 def _read(folder: Path, task: tuple[int, SurfaceInput]) -> ReadSurface:

@@ -65,14 +65,14 @@ def require_this_version(client: Any) -> None:
             text = f"the scheduler lacks RealModel {version} ({error}): install it there"
             raise UsageError(text) from error
         of_workers = client.run(_version, on_error="return")
-    for address, there in of_workers.items():
-        if isinstance(there, OSError):
+    for address, answer in of_workers.items():
+        if isinstance(answer, OSError):
             continue  # a worker that is lost
-        if isinstance(there, Exception):
-            text = f"the worker {address} lacks RealModel {version} ({there}): install it there"
-            raise UsageError(text) from there
-        if there != version:
-            text = f"the worker {address} has RealModel {there}: install {version} there, which this is"
+        if isinstance(answer, Exception):
+            text = f"the worker {address} lacks RealModel {version} ({answer}): install it there"
+            raise UsageError(text) from answer
+        if answer != version:
+            text = f"the worker {address} has RealModel {answer}: install {version} there, which this is"
             raise UsageError(text)
 
 
@@ -225,7 +225,7 @@ def _settings() -> contextlib.AbstractContextManager:
     import dask
 
     environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
-    environment = {name: each for name, each in environment.items() if not name.startswith("MALLOC_")}
+    environment = {name: value for name, value in environment.items() if not name.startswith("MALLOC_")}
     environment |= _HEAP
     return dask.config.set({**_SETTINGS, "distributed.nanny.pre-spawn-environ": environment})
 

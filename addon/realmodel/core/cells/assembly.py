@@ -45,8 +45,8 @@ def build_stage(
         for entry, whole in zip(inputs, model.rock_inputs, strict=True)
     ):
         return model
-    given = model.project
-    project = replace(given, rocks=[entry.rock for entry in inputs])
+    whole_project = model.project
+    project = replace(whole_project, rocks=[entry.rock for entry in inputs])
 
     def task(work: Work) -> SomeModel:
         structures = model.structures.stage(m)
@@ -88,15 +88,15 @@ def assemble(
     """The model that these cells are of."""
     began = time.perf_counter()
     with work.phase(0.0, 1.0, "assembling the model"):
-        own = _complex(inputs, built, structures)
-        own.find_components(work)
+        cell_complex = _complex(inputs, built, structures)
+        cell_complex.find_components(work)
         work.step(0.8)
-        blocks = list_blocks(inputs, built.volumes, own, structures)
+        blocks = list_blocks(inputs, built.volumes, cell_complex, structures)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
         kinds = [0] * len(names) + structures.kinds
         compartment, compartment_names, sides = compartments(inputs, built.parts, structures)
         model = ModelData(
-            own,
+            cell_complex,
             named_blocks(blocks),
             _surfaces(inputs, structures),
             surface_kind=np.array(kinds, np.int32),
@@ -191,7 +191,7 @@ def _warnings(
     warnings += warnings_where_rock_is(inputs, built, structures)
     is_cut_off = bool((built.complex.face_surface == LID).any())
     for entry in (entry for entry in inputs if is_cut_off and entry.fields):
-        tops = [own for own in entry.fields if own.numbers.stop == len(entry.surfaces)] or entry.fields
+        tops = [field for field in entry.fields if field.numbers.stop == len(entry.surfaces)] or entry.fields
         what = (
             f"the rock of series '{tops[-1].name}' is cut off at elevation {tops[-1].top:g}: nothing ends it"
         )

@@ -48,11 +48,11 @@ def build_joined(
     Bodies that are not there yet divide nothing. reach: of the structures; None: it is made here.
     Raises InputRefused.
     """
-    there = structures.there()
-    if len(there) < len(structures):
-        few, part = structures.only(there)
+    present = structures.there()
+    if len(present) < len(structures):
+        few, part = structures.only(present)
         built = build_joined(work, inputs, few, cells)
-        return _renumbered(built, np.array(there, np.int64), part, len(structures))
+        return _renumbered(built, np.array(present, np.int64), part, len(structures))
     if reach is None and structures.is_divided:
         reach = Reach(work, structures)
     solids = SolidsOfFields(work, inputs)
@@ -94,11 +94,11 @@ def _refused(
     return refused_structure(error, structures.faults, structures.bodies)
 
 
-def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:
-    """The cells of a model of some structures, numbered as if all `count` of them had been given. there:
+def _renumbered(built: BuiltCells, present: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:
+    """The cells of a model of some structures, numbered as if all `count` of them had been given. present:
     their numbers; part: (P,) the parts that theirs are of."""
-    surfaces = len(built.volumes) - len(there)
-    number = np.append(np.arange(surfaces), surfaces + there).astype(np.int32)
+    surfaces = len(built.volumes) - len(present)
+    number = np.append(np.arange(surfaces), surfaces + present).astype(np.int32)
     volumes = np.zeros(surfaces + count)
     volumes[number] = built.volumes
     face = built.complex.face_surface
@@ -116,16 +116,16 @@ def built_cells(
 ) -> BuiltCells:
     """The cells of a result of the native module, with each body as one block of all rock masses, and their
     parts: one where nothing divides rock masses."""
-    own = CellComplex.of(arrays, cells)
+    cell_complex = CellComplex.of(arrays, cells)
     first, count = _first_surfaces(inputs), len(structures)
-    block, surfaces = own.cell_block, first[-1]
+    block, surfaces = cell_complex.cell_block, first[-1]
     rocks = np.arange(len(inputs), dtype=np.int32)
     rock = np.append(np.repeat(rocks, np.diff(first)), np.repeat(rocks, count))
     of_body = surfaces + (block - surfaces) % max(1, count)
     of_bodies = arrays["volumes"][surfaces:].reshape(len(inputs), count).sum(axis=0)
     part = arrays["cell_part"] if "cell_part" in arrays else np.zeros(len(block), np.int32)
     return BuiltCells(
-        replace(own, cell_block=np.where(block >= surfaces, of_body, block).astype(np.int32)),
+        replace(cell_complex, cell_block=np.where(block >= surfaces, of_body, block).astype(np.int32)),
         np.append(arrays["volumes"][:surfaces], of_bodies),
         CellParts(part, block, rock, blocks_divided(inputs, structures)),
         [
@@ -157,15 +157,15 @@ def _part(
     work.check()
     inputs = solids.inputs
     sides = structures.sides[part].tolist()
-    found = solids.of([compartment_of(structures, entry, part) for entry in inputs])
-    divides = np.array([len(triangles) > 0 for _, triangles, _ in found], bool)
+    level_sets = solids.of([compartment_of(structures, entry, part) for entry in inputs])
+    divides = np.array([len(triangles) > 0 for _, triangles, _ in level_sets], bool)
     places = [
         PartPlace(structures, part, tuple(beneath)) for beneath in itertools.product(*map(_levels, inputs))
     ]
     within = np.array([_sides_at(place) for place in places], np.int8).reshape(len(places), -1)
     # nothing is beneath a surface of which the field has no level here
-    there = np.flatnonzero((within[:, ~divides] > 0).all(axis=1))
-    places = [places[number] for number in there.tolist()]
+    possible = np.flatnonzero((within[:, ~divides] > 0).all(axis=1))
+    places = [places[number] for number in possible.tolist()]
     stacks = [_stacks_at(inputs, place) for place in places]
     wanted, around = None, None
     if reach is not None:
@@ -174,24 +174,31 @@ def _part(
     rocks = [
         [
             _rock_stack(entry, stack, entry.region or around, begin, beneath)
-            for entry, stack, begin, beneath in zip(inputs, own, first[:-1], place.beneath, strict=True)
+            for entry, stack, begin, beneath in zip(
+                inputs, place_stacks, first[:-1], place.beneath, strict=True
+            )
         ]
-        for own, place in zip(stacks, places, strict=True)
+        for place_stacks, place in zip(stacks, places, strict=True)
     ]
     if len(places) == 1:
         return sides, rocks[0], wanted, None
-    between = list(zip(within[there][:, divides].tolist(), rocks, strict=True))
-    return sides, [], wanted, ([found[number] for number in np.flatnonzero(divides)], between)
+    between = list(zip(within[possible][:, divides].tolist(), rocks, strict=True))
+    return sides, [], wanted, ([level_sets[number] for number in np.flatnonzero(divides)], between)
 
 
 def _levels(entry: RockInput) -> list[dict[int, bool]]:
     """Of the places between the level sets of a rock mass: of each level set, by its number, whether the
     place is beneath it."""
     of_fields = [
-        [{number: number >= lowest for number in own.numbers} for lowest in (*own.numbers, own.numbers.stop)]
-        for own in entry.fields
+        [
+            {number: number >= lowest for number in field.numbers}
+            for lowest in (*field.numbers, field.numbers.stop)
+        ]
+        for field in entry.fields
     ]
-    return [dict(itertools.chain(*(each.items() for each in row))) for row in itertools.product(*of_fields)]
+    return [
+        dict(itertools.chain(*(beneath.items() for beneath in row))) for row in itertools.product(*of_fields)
+    ]
 
 
 def _sides_at(place: PartPlace) -> list[int]:
@@ -206,20 +213,22 @@ class SolidsOfFields:
         self.inputs = inputs
         self._solids: dict[ScalarField, list[LevelSolid]] = {}
         for entry in inputs:
-            for own in entry.fields:
-                for field in own.distinct():
+            for series_field in entry.fields:
+                for field in series_field.distinct():
                     solids = entry.level_solids.pop(field, None)
                     self._solids[field] = solids or level_solids(work, field)
 
     def of(self, compartments: list[int]) -> list[tuple]:
         """Those in the compartments of each rock mass, as native build_parts takes them."""
-        found = []
+        boundaries = []
         firsts = _first_surfaces(self.inputs)[:-1]
         for entry, compartment, first in zip(self.inputs, compartments, firsts, strict=True):
-            for own in entry.fields:
-                solids = self._solids[own.fields[compartment]]
-                found += [(*solids[n - own.first].boundary.arrays, first + n) for n in own.numbers]
-        return found
+            for series_field in entry.fields:
+                solids = self._solids[series_field.fields[compartment]]
+                boundaries += [
+                    (*solids[n - series_field.first].boundary.arrays, first + n) for n in series_field.numbers
+                ]
+        return boundaries
 
 
 def _stacks_at(inputs: list[RockInput], place: PartPlace) -> list[Stack]:
@@ -236,19 +245,25 @@ def _in_reach(reach: Reach, stacks: list[list[Stack]], part: int, cells: str) ->
     if structures.continued is not None and columns.any():
         # around a tile: sheets that ended here would be divided by lines that depend on what is far away
         columns = np.ones_like(columns)
-    kept = {sheet: reach.over(columns, sheet) for own in stacks for stack in own for sheet in stack.sheets}
+    masks = {
+        sheet: reach.over(columns, sheet)
+        for place_stacks in stacks
+        for stack in place_stacks
+        for sheet in stack.sheets
+    }
     stacks = [
-        [stack.without([not kept[sheet].any() for sheet in stack.sheets]) for stack in own] for own in stacks
+        [stack.without([not masks[sheet].any() for sheet in stack.sheets]) for stack in place_stacks]
+        for place_stacks in stacks
     ]
     around = None
-    each = list(itertools.chain(*stacks))
-    is_there, has_void = any(stack.sheets for stack in each), any(stack.emptied for stack in each)
+    all_stacks = list(itertools.chain(*stacks))
+    is_there, has_void = any(stack.sheets for stack in all_stacks), any(stack.emptied for stack in all_stacks)
     if cells == "blocks" and is_there and not has_void:
         # blocks end at one border: those that each sheet ends at by itself leave many small ones between
         around = reach.around(columns)
     is_bounded = cells == "columns" and not space.all()
     wanted = (reach.low, reach.step, space.astype(np.uint8)) if is_bounded else None
-    return [[stack.some(kept) for stack in own] for own in stacks], wanted, around
+    return [[stack.some(masks) for stack in place_stacks] for place_stacks in stacks], wanted, around
 
 
 def _rock_stack(
@@ -258,9 +273,9 @@ def _rock_stack(
     surface. beneath: as PartPlace has it."""
     # what a surface that only fills a body, or lies below everything, bounds is a wall; a level set is a
     # level here, above all rock or at the base
-    named = {DEEP: FILLER} | {own: LID if below else FLOOR for own, below in beneath.items()}
-    own_numbers = [named.get(own, own) for own in stack.surfaces]
-    numbers = [first + own if own >= 0 else own for own in own_numbers]
+    named = {DEEP: FILLER} | {number: LID if below else FLOOR for number, below in beneath.items()}
+    own_numbers = [named.get(number, number) for number in stack.surfaces]
+    numbers = [first + number if number >= 0 else number for number in own_numbers]
     surfaces = [
         (number, block, sheet.numbers)
         for number, block, sheet in zip(numbers, stack.blocks, stack.sheets, strict=True)
@@ -269,8 +284,8 @@ def _rock_stack(
     if entry.rock.base_elevation is None:  # else nothing stays below the oldest surface
         fills = [of == FILLER for of in stack.surfaces[: max(stack.emptied, default=0)]]
     sheets = [sheet.arrays for sheet in stack.sheets]
-    given = (sheets, None if region is None else region.arrays, stack.base_elevation, stack.rules)
-    return given, surfaces, list(stack.emptied), fills
+    stack_arrays = (sheets, None if region is None else region.arrays, stack.base_elevation, stack.rules)
+    return stack_arrays, surfaces, list(stack.emptied), fills
 
 
 def _stack(inputs: list[RockInput], place: PartPlace, number: int, first: int, surfaces: int) -> Stack:
@@ -280,7 +295,7 @@ def _stack(inputs: list[RockInput], place: PartPlace, number: int, first: int, s
     rules = [surface.rule for surface in entry.rock.surfaces]
     stack = plain_stack(sheets, rules, entry.rock.base_elevation, first)
     if entry.fields:
-        top = max(own.top for own in entry.fields)
+        top = max(field.top for field in entry.fields)
         stack = between_levels(stack, place.beneath[number], top, entry.planar_mesh())
         sheets = [sheet for sheet, of in zip(stack.sheets, stack.surfaces, strict=True) if of >= 0]
     count = len(structures.faults)
@@ -294,10 +309,10 @@ def _stack(inputs: list[RockInput], place: PartPlace, number: int, first: int, s
     ends = structures.ends or beyond_all(sheets, structures)
     plans = [entry.region] if entry.region is not None else distinct_plans(sheets)
     for at, (after, body) in enumerate(inside):
-        given = structures.bodies[body]
-        if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
+        input_body = structures.bodies[body]
+        if input_body.void and at + 1 < len(inside) and inside[at + 1][0] == after:
             continue  # what comes next leaves nothing of it
-        block = NOTHING if given.void else body_block(structures, surfaces, number, body)
+        block = NOTHING if input_body.void else body_block(structures, surfaces, number, body)
         covered = distinct_plans(sheets[: after + 1])
         stack = inside_body(stack, after, block, ends, plans, covered)
     return cut_at_base(stack, entry.rock.base_elevation)
@@ -312,7 +327,10 @@ def body_block(structures: Structures, surfaces: int, rock: int, body: int) -> i
 def beyond_all(sheets: Sequence[Sheet], structures: Structures) -> tuple[float, float]:
     """Heights below and above all sheets and bodies."""
     shapes = [*(vertices for vertices, _ in sheets), *(body.triangulation()[0] for body in structures.bodies)]
-    low, high = min(each[:, 2].min() for each in shapes), max(each[:, 2].max() for each in shapes)
+    low, high = (
+        min(vertices[:, 2].min() for vertices in shapes),
+        max(vertices[:, 2].max() for vertices in shapes),
+    )
     away = (high - low) + 1.0
     return float(low - away), float(high + away)
 
@@ -323,19 +341,19 @@ def blocks_divided(inputs: list[RockInput], structures: Structures) -> np.ndarra
     hidden in later ones."""
     first = _first_surfaces(inputs)
     count = len(structures.faults)
-    found = np.zeros((len(structures), first[-1] + len(inputs) * len(structures)), np.uint8)
+    divided = np.zeros((len(structures), first[-1] + len(inputs) * len(structures)), np.uint8)
     ages = [(times, number) for number, times in enumerate(structures.times)]
     for fault, displaced in enumerate(structures.displaced):
         for rock, youngest in displaced.items():
             last = min(youngest, len(inputs[rock].surfaces) - 1)
-            found[fault, first[rock] : first[rock] + last + 1] = 1
+            divided[fault, first[rock] : first[rock] + last + 1] = 1
             for times, body in ages:
                 if rock in times and times[rock] <= youngest:
-                    found[fault, body_block(structures, first[-1], rock, body)] = 1
+                    divided[fault, body_block(structures, first[-1], rock, body)] = 1
     for times, body in ages:
         for rock, after in times.items():
-            found[count + body, first[rock] : first[rock] + after + 1] = 1
+            divided[count + body, first[rock] : first[rock] + after + 1] = 1
             for others, other in ages:
                 if rock in others and (others[rock], other) <= (after, body):
-                    found[count + body, body_block(structures, first[-1], rock, other)] = 1
-    return found
+                    divided[count + body, body_block(structures, first[-1], rock, other)] = 1
+    return divided

@@ -46,9 +46,9 @@ def _dying(structures: Structures) -> np.ndarray:
 
 def warnings_where_rock_is(inputs: list, built: BuiltCells, structures: Structures) -> list[BuildWarning]:
     """The warnings about compartments that hold rock."""
-    found = []
+    warnings = []
     for entry in (entry for entry in inputs if entry.divided().warnings):
         parts = np.unique(built.parts.part).tolist()
         held = {compartment_of(structures, entry, part) for part in parts}
-        found += [warning for members, warning in entry.divided().warnings if held.intersection(members)]
-    return found
+        warnings += [warning for members, warning in entry.divided().warnings if held.intersection(members)]
+    return warnings

@@ -80,7 +80,7 @@ class ModelData:
     @classmethod
     def of(cls, data: ModelData) -> Self:
         """The same as an object of this class."""
-        return cls(**{each.name: getattr(data, each.name) for each in fields(data)})
+        return cls(**{entry.name: getattr(data, entry.name) for entry in fields(data)})
 
     def __post_init__(self) -> None:
         if self.surface_kind is None:
@@ -105,12 +105,12 @@ class ModelData:
     @property
     def surface_is_level_set(self) -> np.ndarray:
         """(S,) bool: the surfaces that are level sets of the field of a series."""
-        found = [
+        are_level_sets = [
             entry.field_of(number) is not None
             for entry in self.rock_inputs
             for number in range(len(entry.surfaces))
         ]
-        return np.array(found + [False] * (len(self.surface_names) - len(found)), bool)
+        return np.array(are_level_sets + [False] * (len(self.surface_names) - len(are_level_sets)), bool)
 
     def native(self) -> dict[str, Any]:
         """The cells as functions of the native module take them."""
@@ -284,7 +284,7 @@ class ModelData:
         triangles, sheets = self.surface(number).triangles, [0]
         if not self.surface_kind[number]:
             sheets = sheet_sizes(self.rock_inputs, number)
-        return [own for own in np.split(triangles, np.cumsum(sheets[:-1])) if len(own)]
+        return [sheet for sheet in np.split(triangles, np.cumsum(sheets[:-1])) if len(sheet)]
 
 
 SomeModel = TypeVar("SomeModel", bound=ModelData)  # what is made of a model is of its class

@@ -73,11 +73,11 @@ def read_record(arrays: Mapping[str, np.ndarray], surfaces: SurfaceArrays) -> di
 
 def _shapes(surfaces: SurfaceArrays) -> dict[str, np.ndarray]:
     """The parts of `surface_vertices` and `surface_triangles`, which most sheets of a record are."""
-    found = {}
+    parts = {}
     for number, shape in enumerate(surfaces.shapes):
         for name, array in zip(("vertices", "triangles"), shape, strict=True):
-            found[f"surface_{name}[{number}]"] = array
-    return found
+            parts[f"surface_{name}[{number}]"] = array
+    return parts
 
 
 def _within_folder(project: Project) -> Callable[[Any], Any]:
@@ -101,17 +101,17 @@ def without_record(arrays: Mapping[str, np.ndarray], surfaces: SurfaceArrays, na
     """The fields of ModelData that follow from the arrays of a file of RealModel 0.1, which had no record:
     names, properties and shapes."""
     blocks = {block.surface: block for block in blocks_of_arrays(arrays)}
-    inputs = [RockInput(Rock(each, []), []) for each in arrays["rock_names"].tolist()]
+    inputs = [RockInput(Rock(rock_name, []), []) for rock_name in arrays["rock_names"].tolist()]
     structures, rock = Structures([], [], [], []), -1
     named = zip(arrays["surface_kind"].tolist(), arrays["surface_names"].tolist(), strict=True)
-    for number, (kind, own) in enumerate(named):
+    for number, (kind, label) in enumerate(named):
         vertices, triangles = surfaces.shapes[number]
         block = blocks.get(number)
         library_id = 0 if block is None else block.property
         if kind == 1:
-            structures.faults.append(Fault(own, vertices, triangles))
+            structures.faults.append(Fault(label, vertices, triangles))
         elif kind == 2:
-            structures.bodies.append(Body(own, vertices, triangles, property=library_id))
+            structures.bodies.append(Body(label, vertices, triangles, property=library_id))
         else:
             # without a block beneath it a surface is the oldest of its rock mass
             rock = rock + 1 if block is None else block.rock
@@ -122,7 +122,7 @@ def without_record(arrays: Mapping[str, np.ndarray], surfaces: SurfaceArrays, na
             entry.surfaces.append(Sheet(vertices, triangles))
             entry.interpolations.append(None)
             entry.file_faces.append(None)
-            surface = Surface(own, vertices, triangles, property=library_id)
+            surface = Surface(label, vertices, triangles, property=library_id)
             surface.block = None if block is None else block.name
             entry.rock.surfaces.append(surface)
     rocks = [entry.rock for entry in inputs]

@@ -13,14 +13,14 @@ def native_rocks(model: ModelData, stage: int | None = None) -> list[tuple]:
     rocks, first = [], 0
     for number, rock in enumerate(model.project.rocks):
         count = len(rock.surfaces)
-        kept = count if stage is None else min(count, stage + 1)
-        surfaces = [model.surface(first + k) for k in range(kept)]
+        end = count if stage is None else min(count, stage + 1)
+        surfaces = [model.surface(first + k) for k in range(end)]
         if model.rock_inputs:
             meshed = model.rock_inputs[number].region
             region = None if meshed is None else meshed.arrays
         else:
             region = triangulate_rings(rock.rings()) if rock.region is not None else None
-        rules = [surface.rule for surface in rock.surfaces[:kept]]
+        rules = [surface.rule for surface in rock.surfaces[:end]]
         rocks.append((surfaces, region, rock.base_elevation, rules))
         first += count
     return rocks

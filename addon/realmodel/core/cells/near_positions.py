@@ -24,11 +24,11 @@ def near_positions(positions: np.ndarray) -> np.ndarray:
     cells, members, numbers = [np.empty(0, np.int64)], [np.empty(0, np.int64)], 0
     # near ones share a cell of one of these grids
     for shift in product((0.0, 0.5), repeat=positions.shape[1]):
-        own = np.floor((positions - positions[:1]) / size + shift).astype(np.int64)
-        mixed = (own * _MIXED[: own.shape[1]]).sum(axis=1)
+        indices = np.floor((positions - positions[:1]) / size + shift).astype(np.int64)
+        mixed = (indices * _MIXED[: indices.shape[1]]).sum(axis=1)
         _, key, sharing = np.unique(mixed, return_inverse=True, return_counts=True)
         shared = np.flatnonzero(sharing[key.ravel()] > 1)  # few; and some that are not, by chance
-        _, cell = np.unique(own[shared], axis=0, return_inverse=True)
+        _, cell = np.unique(indices[shared], axis=0, return_inverse=True)
         cells.append(cell.ravel() + numbers)
         members.append(shared)
         numbers += len(shared)

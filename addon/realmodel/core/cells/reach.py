@@ -56,8 +56,8 @@ class Reach:
             if side:
                 possible &= (mask & (_ABOVE if side > 0 else _BELOW)) > 0
         low, high = self.structures.boxes()
-        found = possible & self._cells_in(low[part], high[part])
-        return found if (found & self.asked).any() else np.zeros_like(found)
+        cells = possible & self._cells_in(low[part], high[part])
+        return cells if (cells & self.asked).any() else np.zeros_like(cells)
 
     def around(self, columns: np.ndarray) -> Sheet:
         """A region in plan: these columns, a small margin around them, and everything beyond the last
@@ -74,7 +74,7 @@ class Reach:
         cells = _wider(cells)
         number = np.arange(lines[0].size * lines[1].size).reshape(lines[0].size, -1)
         corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
-        a, b, c, d = (each[cells] for each in corners)
+        a, b, c, d = (corner[cells] for corner in corners)
         squares = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
         plan = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
         vertices, triangles = triangulate_rings([_corners(plan[ring]) for ring in border_loops(squares)])
@@ -90,17 +90,17 @@ class Reach:
     def _corners_of(self, sheet: Sheet) -> np.ndarray:
         """(4, T) the corners of the columns that the triangles of a sheet meet, in a row through all corners
         of columns; sheets of a surface differ in heights."""
-        for other, found in self.ranges:
+        for other, corners in self.ranges:
             if sheet.triangles is other.triangles and sheet.has_plan_of(other):
-                return found
+                return corners
         low, high = extents(sheet.corners[..., :2])
         margin = _MARGIN * self.step[:2]
         first, last = self._range(low - margin, high + margin)
         (x0, y0), (x1, y1) = first.T, last.T + 1
         lines = self.count[1] + 1
-        found = np.array([x0 * lines + y0, x0 * lines + y1, x1 * lines + y0, x1 * lines + y1])
-        self.ranges.append((sheet, found))
-        return found
+        corners = np.array([x0 * lines + y0, x0 * lines + y1, x1 * lines + y0, x1 * lines + y1])
+        self.ranges.append((sheet, corners))
+        return corners
 
     def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The first and the last cells of boxes; a box beside a cell counts as in it."""
@@ -120,20 +120,20 @@ class Reach:
 
     def _sides(self, work: Work, fault: FaultShape) -> np.ndarray:
         beyond = native_module().structure_continuation(fault.native(), self.structures.divided_box())
-        own, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
-        part = _hanging_together(~(own | beyond))
-        beside = _wider(own) & (part >= 0)
+        crossed, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
+        part = _hanging_together(~(crossed | beyond))
+        beside = _wider(crossed) & (part >= 0)
         middles = self._middles()
         # the first and the last of all, too: the fault is continued as far as the points reach
         asked = np.concatenate([middles[beside], middles[[0, -1], [0, -1], [0, -1]]])
         side = np.zeros(self.count, np.int8)
         side[beside] = fault_sides(work, asked, fault)[:-2]
-        found = np.full(self.count, _BOTH, np.uint8)
+        mask = np.full(self.count, _BOTH, np.uint8)
         for number in np.unique(part[beside]):
             seen = side[beside & (part == number)]
             if (seen == seen[0]).all():
-                found[part == number] = _ABOVE if seen[0] > 0 else _BELOW
-        return found
+                mask[part == number] = _ABOVE if seen[0] > 0 else _BELOW
+        return mask
 
     def _middles(self) -> np.ndarray:
         axes = [self.low[k] + self.step[k] * (np.arange(self.count[k]) + 0.5) for k in range(3)]

@@ -35,13 +35,13 @@ def refused_stack(error: NativeError, inputs: list[RockInput]) -> InputRefused |
             str(error), file=file, line=line, item=rock.item, advice="a region covers each position once"
         )
     if error.kind == "base_not_below":
-        own = inputs[int(error.items[0])]
-        rock = own.rock
+        rock_input = inputs[int(error.items[0])]
+        rock = rock_input.rock
         file, line = rock.place_of("base_elevation")
         what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
         lowest = f", whose lowest point is {place_text(place)}" if place else ""
         lower = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
-        if place and (beyond := _beyond_its_points(own, place[2])):
+        if place and (beyond := _beyond_its_points(rock_input, place[2])):
             lower = f"{lower}; {beyond}"
         return InputRefused(what + lowest, file=file, line=line, item=rock.item, advice=lower, place=place)
     entry, number = _surface_at(inputs, error.surface)

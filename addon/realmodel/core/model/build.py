@@ -99,9 +99,9 @@ def _build(work: Work, project: Project, cells: str, stage: int | None, memory: 
     forms = surface_forms(inputs, structures)
     check_bases(work, inputs, forms)
     warn_of_eroded_contacts(work, inputs, forms)
-    given = replace(project, rocks=[entry.rock for entry in inputs])
+    built_project = replace(project, rocks=[entry.rock for entry in inputs])
     with work.part(ends["intersect"], 1.0):
-        return Model.of(assemble(work, given, inputs, built, timings, structures))
+        return Model.of(assemble(work, built_project, inputs, built, timings, structures))
 
 
 def _phase_ends(project: Project) -> dict[str, float]:

@@ -199,14 +199,14 @@ def section(
 
     def task(work: Work) -> Section:
         with work.phase(0.0, 1.0, "cutting"):
-            found = work.native(
+            arrays = work.native(
                 native_module().section_by_plane,
                 model.native(),
                 point,
                 normal,
             )
         return Section(
-            **_section_arrays(model, found),
+            **_section_arrays(model, arrays),
             plane=(point, normal),
             faults=traces_on_plane(model, point, normal),
             holes=hole_lines(model),
@@ -362,31 +362,31 @@ def _joined(panels: list[dict]) -> dict:
 def _plane(
     point: Sequence[float] | np.ndarray, normal: Sequence[float] | np.ndarray
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    found = []
-    for name, given in (("point", point), ("normal", normal)):
+    vectors = []
+    for name, value in (("point", point), ("normal", normal)):
         try:
-            numbers = np.asarray(given, np.float64)
+            numbers = np.asarray(value, np.float64)
         except (TypeError, ValueError) as error:
             raise UsageError(f"{name} must be three numbers") from error
         if numbers.shape != (3,) or not np.isfinite(numbers).all():
-            raise UsageError(f"{name} must be three finite numbers, not {given!r}")
-        found.append(tuple(numbers.tolist()))
-    if not any(found[1]):
+            raise UsageError(f"{name} must be three finite numbers, not {value!r}")
+        vectors.append(tuple(numbers.tolist()))
+    if not any(vectors[1]):
         raise UsageError("normal must not be zero: it gives the orientation of the plane and its upper side")
-    return found[0], found[1]
+    return vectors[0], vectors[1]
 
 
-def _section_arrays(model: ModelData, found: dict) -> dict:
+def _section_arrays(model: ModelData, arrays: dict) -> dict:
     """The arrays of a Section."""
-    cells = found["cells"]
+    cells = arrays["cells"]
     blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
     block = np.where(blocks[:, 0] >= 0, blocks[:, 0], blocks[:, 1])
     compartment = np.append(model.cell_compartment, np.int32(-1))[cells].astype(np.int32, copy=False)
     library_ids = np.array([entry.property for entry in model.blocks], np.int32)
     return {
-        "vertices": found["vertices"],
-        "offsets": found["offsets"],
-        "polygon_vertices": found["polygon_vertices"],
+        "vertices": arrays["vertices"],
+        "offsets": arrays["offsets"],
+        "polygon_vertices": arrays["polygon_vertices"],
         "cells": cells,
         "blocks": blocks,
         "block": block,
@@ -402,19 +402,19 @@ def _section_arrays(model: ModelData, found: dict) -> dict:
 
 def _assembled(work: Work, model: SomeModel, halves: dict, began: float) -> Cut[SomeModel]:
     with work.phase(_CUT_SHARE, 1.0, "assembling the halves"):
-        found = Section(**_section_arrays(model, halves["section"]))
+        plane_section = Section(**_section_arrays(model, halves["section"]))
         above = _half(work, model, halves["above"], halves["above_touches"])
         work.step(0.5)
         below = _half(work, model, halves["below"], halves["below_touches"])
     for half in (above, below):
         half.timings["cut"] = time.perf_counter() - began
-    return Cut(above, below, found, halves["above"]["cells"], halves["below"]["cells"])
+    return Cut(above, below, plane_section, halves["above"]["cells"], halves["below"]["cells"])
 
 
 def _half(work: Work, model: SomeModel, arrays: dict, touches: bool) -> SomeModel:
-    own = CellComplex.of(arrays, "blocks" if touches else model.cell_kind)
-    own.find_components(work)
-    cells, components = own.count_blocks(len(model.blocks))
+    cell_complex = CellComplex.of(arrays, "blocks" if touches else model.cell_kind)
+    cell_complex.find_components(work)
+    cells, components = cell_complex.count_blocks(len(model.blocks))
     blocks = [
         replace(
             block,
@@ -426,7 +426,7 @@ def _half(work: Work, model: SomeModel, arrays: dict, touches: bool) -> SomeMode
     ]
     return replace(
         model,
-        complex=own,
+        complex=cell_complex,
         blocks=named_blocks(blocks),
         is_cut=True,
         warnings=list(model.warnings),

@@ -177,7 +177,7 @@ class _FieldSize:
 def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
     """The fields of the series of a rock mass. structures: the number of faults and bodies, each of which may
     part a field in two."""
-    found = []
+    sizes = []
     # as many as lines part a plane in; where there are more, each compartment has a field of its own
     combinations = min(1 + structures * (structures + 1) // 2, MOST_TOGETHER) if structures else 0
     of_sides = combinations * (_BYTES_OF_SIDES + _BYTES_OF_FAULT * structures)
@@ -189,8 +189,8 @@ def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
         system = 2 * 8 * rows**2 + of_sides * lattice.nodes
         nx, ny, _ = lattice.counts
         columns = max(len(plan.triangles) for plan in [entry.planar_mesh(), *_plans(entry)]) / 2
-        found.append(_FieldSize(lattice.nodes, triangles, math.sqrt(columns / (nx * ny)), system, seconds))
-    return found
+        sizes.append(_FieldSize(lattice.nodes, triangles, math.sqrt(columns / (nx * ny)), system, seconds))
+    return sizes
 
 
 def _times(structures: int) -> int:

@@ -138,8 +138,8 @@ def _check(arrays: Mapping[str, np.ndarray]) -> None:
         ("block_surface", 0, "surface_names"),
         ("cell_compartment", 0, "compartment_names"),
     ):
-        found = arrays[name]
-        if found.size and not least <= found.min() <= found.max() < len(arrays[of]):
+        numbers = arrays[name]
+        if numbers.size and not least <= numbers.min() <= numbers.max() < len(arrays[of]):
             raise ValueError(f"{name} has numbers that are not of {of}")
     kinds = arrays["surface_kind"]
     if (arrays["face_cells"][:, 0] < 0).any() or not np.isin(kinds, (0, 1, 2)).all():

@@ -160,7 +160,7 @@ def surfaces_to_pyvista(model: UsedSurfaces) -> pyvista.MultiBlock:
     for number, name in enumerate(model.surface_names):
         vertices, triangles = model.surface(number)
         mesh = polygon_mesh(vertices, 3 * np.arange(len(triangles) + 1), triangles.ravel(), {})
-        for each, values in model.surface_attributes(number).items():
-            mesh.point_data[each] = values
+        for attribute, values in model.surface_attributes(number).items():
+            mesh.point_data[attribute] = values
         meshes.append((name, mesh))
     return blocks_of_meshes(meshes)

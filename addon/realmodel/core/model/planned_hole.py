@@ -49,8 +49,8 @@ def planned_hole(
     """
     axis = HoleAxis(collar, azimuth, dip, length)
     east, north = axis.heading.tolist()
-    found = section(model, axis.collar, (north, -east, 0.0), threads=model.threads)
-    intervals = intervals_on(found, axis)
+    vertical_section = section(model, axis.collar, (north, -east, 0.0), threads=model.threads)
+    intervals = intervals_on(vertical_section, axis)
     contacts = on_surfaces(model, contacts_between(intervals, axis), axis)
     return PlannedHole(
         axis,

@@ -42,8 +42,8 @@ class BodyOfRock:
     def holds(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) bool: the points inside."""
         vertices, triangles = self.shape
-        given: list[tuple] = [(vertices, triangles, True, [], False)]
-        return work.native(native_module().structure_sides, given, points) < 0
+        structures: list[tuple] = [(vertices, triangles, True, [], False)]
+        return work.native(native_module().structure_sides, structures, points) < 0
 
 
 @dataclass(frozen=True)
@@ -66,10 +66,10 @@ class ClosedForm:
     def compartments_of(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point (N, 3) lies in; -1 for none."""
         sides = sides_of(work, points, self.faults)
-        found = np.full(len(points), -1, np.int64)
+        compartments = np.full(len(points), -1, np.int64)
         for number, row in enumerate(self.compartments):
-            found[(sides == row).all(axis=1)] = number
-        return found
+            compartments[(sides == row).all(axis=1)] = number
+        return compartments
 
     def blocks_at(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the block at each point (N, 3); AIR for none. Points of no compartment are in none."""
@@ -106,18 +106,18 @@ class ClosedForm:
     def above(self, work: Work, surface: int, points: np.ndarray) -> np.ndarray:
         """(N,) how far a surface lies above points (N, 3), NaN where it has no height; a level set about how
         far away on their younger side."""
-        for own in self.fields:
-            if surface in own.numbers:
-                return -own.distances(surface, points, self.compartments_of(work, points))
+        for field in self.fields:
+            if surface in field.numbers:
+                return -field.distances(surface, points, self.compartments_of(work, points))
         return self.heights(work, surface, points) - points[:, 2]
 
     def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
         """(N,) heights of a surface at points in the compartments `where`. That of a level set is where it
         would be if f rose by 1 along z: above a point where f is less than its level."""
-        for own in self.fields:
-            if surface in own.numbers:
-                return points[:, 2] - own.excess(surface, points, where)
-        found = np.full(len(points), np.nan)
+        for field in self.fields:
+            if surface in field.numbers:
+                return points[:, 2] - field.excess(surface, points, where)
+        heights = np.full(len(points), np.nan)
         of_sheet: dict[Sheet, list[int]] = {}
         for compartment, sheets in enumerate(self.sheets):
             sheet = sheets[surface]
@@ -126,8 +126,8 @@ class ClosedForm:
         for sheet, compartments in of_sheet.items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
-                found[here] = heights_at(work, sheet, points[here, :2])
-        return found
+                heights[here] = heights_at(work, sheet, points[here, :2])
+        return heights
 
 
 def closed_forms(model: ModelData) -> list[ClosedForm]:
@@ -146,9 +146,9 @@ def surface_forms(entries: Sequence[RockInput], structures: Structures) -> list[
 def _forms(entries: Sequence[RockInput], structures: Structures, number: dict[int, int]) -> list[ClosedForm]:
     """number: of the block beneath each surface, or of each body, which are numbered after the faults."""
     count = sum(len(entry.surfaces) for entry in entries)
-    found, first = [], 0
+    forms, first = [], 0
     for rock, entry in enumerate(entries):
-        own = range(first, first + len(entry.surfaces))
+        surfaces = range(first, first + len(entry.surfaces))
         first += len(entry.surfaces)
         structure = entry.divided()
         bodies = [
@@ -160,20 +160,20 @@ def _forms(entries: Sequence[RockInput], structures: Structures, number: dict[in
             for n, body in enumerate(structures.bodies)
             if rock in structures.times[n]
         ]
-        found.append(
+        forms.append(
             ClosedForm(
                 [surface.rule for surface in entry.rock.surfaces],
                 structure.faults,
                 structure.compartments,
                 structure.sheets,
-                [number.get(surface, AIR) for surface in own],
+                [number.get(surface, AIR) for surface in surfaces],
                 entry.rock.base_elevation,
                 bodies,
                 entry.region,
                 entry.fields,
             )
         )
-    return found
+    return forms
 
 
 @keyword_only
@@ -203,8 +203,8 @@ def blocks_of_all(work: Work, forms: list[ClosedForm], points: np.ndarray) -> np
     """(N,) the block at points (N, 3) of several rock masses; AIR for none."""
     blocks = np.full(len(points), AIR, np.int64)
     for form in forms:
-        own = form.blocks_at(work, points)
-        blocks = np.where(own != AIR, own, blocks)
+        rock_blocks = form.blocks_at(work, points)
+        blocks = np.where(rock_blocks != AIR, rock_blocks, blocks)
     return blocks
 
 

@@ -46,5 +46,7 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
                     f"farthest lies {wrong.by:.4g} above it: point {data.row(wrong.worst)} at "
                     f"{place_text(wrong.place)}; {_KEPT if is_observed else _NOT_KEPT}"
                 )
-                own = surfaces[cutter].name  # a stage without it has no such warning
-                entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, own, wrong.rows(data)))
+                cutter_name = surfaces[cutter].name  # a stage without it has no such warning
+                entry.warnings.append(
+                    BuildWarning(text, "eroded", entry.rock.name, cutter_name, wrong.rows(data))
+                )

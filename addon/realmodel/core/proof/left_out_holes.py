@@ -53,7 +53,7 @@ class LeftOutHole:
     @property
     def errors(self) -> np.ndarray:
         """(E,) the known errors of its contacts."""
-        return np.array([each.error for each in self.contacts if each.error is not None])
+        return np.array([contact.error for contact in self.contacts if contact.error is not None])
 
 
 @dataclass(frozen=True)
@@ -122,24 +122,24 @@ def validated_holes(work: Work, model: ModelData, folds: int | None = None) -> H
         raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
     rocks = [entry.rock for entry in model.rock_inputs]
     holes = [[(number, hole) for hole in _holes_of(rock)] for number, rock in enumerate(rocks)]
-    every = [each for own in holes for each in own]
+    every = [hole for rock_holes in holes for hole in rock_holes]
     if len(every) < 2:
         raise InputRefused(
             f"the model has {len(every)} holes: leaving one out takes two or more",
             advice="give boreholes with intervals or picks",
         )
     turns = in_turn(_places(work, rocks, every), folds or DEFAULT_FOLDS)
-    found: dict[tuple[int, str], LeftOutHole] = {}
+    results: dict[tuple[int, str], LeftOutHole] = {}
     groups = len(turns)
     for group, chosen in enumerate(turns):
         out = [every[number] for number in np.flatnonzero(chosen).tolist()]
         with work.part(group / groups, (group + 1) / groups):
             try:
-                found |= _without(work, model.project, model.rock_inputs, out)
+                results |= _without(work, model.project, model.rock_inputs, out)
             except InputRefused as error:
                 lost = [LeftOutHole(rocks[n].name, hole, 0.0, None, (), str(error)) for n, hole in out]
-                found |= dict(zip(out, lost, strict=True))
-    return HoleValidation([found[each] for each in every], groups)
+                results |= dict(zip(out, lost, strict=True))
+    return HoleValidation([results[hole] for hole in every], groups)
 
 
 def _holes_of(rock: Rock) -> list[str]:
@@ -156,26 +156,25 @@ def _places(work: Work, rocks: Sequence[Rock], every: Sequence[tuple[int, str]])
     for row, (number, hole) in enumerate(every):
         observed = rocks[number].observed
         met = [place for _, place in rocks[number].hole_picks.get(hole, (None, ()))[1]]
-        own = [] if observed is None else observed.places[observed.holes == hole].tolist()
-        plan[row] = np.mean([place[:2] for place in (*met, *own)], axis=0)
-    found = places_of(work, plan)
-    return np.arange(len(every)) if found is None else found
+        logged = [] if observed is None else observed.places[observed.holes == hole].tolist()
+        plan[row] = np.mean([place[:2] for place in (*met, *logged)], axis=0)
+    places = places_of(work, plan)
+    return np.arange(len(every)) if places is None else places
 
 
 def _without(
     work: Work, project: Project, inputs: Sequence[RockInput], out: Sequence[tuple[int, str]]
 ) -> dict[tuple[int, str], LeftOutHole]:
     """What the surfaces made without some holes, (rock mass, name), say of these."""
-    given = [
-        _rock_without(entry, {hole for number, hole in out if number == own})
-        for own, entry in enumerate(inputs)
+    rocks = [
+        _rock_without(entry, {hole for number, hole in out if number == n}) for n, entry in enumerate(inputs)
     ]
     with work.phase(0.0, 0.1, "leaving out holes"):
-        without, known = read_inputs(work, replace(project, rocks=given))
+        without, reduced = read_inputs(work, replace(project, rocks=rocks))
     with work.part(0.1, 0.4):
         mesh_inputs(work, without)
     with work.part(0.4, 1.0):
-        structures = make_surfaces(work, known, without, None)
+        structures = make_surfaces(work, reduced, without, None)
     forms = surface_forms(without, structures)
     return {(number, hole): _judged(work, inputs[number], forms[number], hole) for number, hole in out}
 
@@ -191,9 +190,9 @@ def _rock_without(entry: RockInput, holes: set[str]) -> Rock:
         points = np.delete(data.own, gone, axis=0)
         is_some = surface.has_points and len(points)
         surfaces.append(replace(surface, points=points if is_some else None))
-    kept = None if observed is None else observed.some(~np.isin(observed.holes, left_out))
-    picks = {hole: each for hole, each in rock.hole_picks.items() if hole not in holes}
-    return replace(rock, surfaces=surfaces, observations=kept, hole_picks=picks)
+    observations = None if observed is None else observed.some(~np.isin(observed.holes, left_out))
+    picks = {hole: hole_picks for hole, hole_picks in rock.hole_picks.items() if hole not in holes}
+    return replace(rock, surfaces=surfaces, observations=observations, hole_picks=picks)
 
 
 def _judged(work: Work, entry: RockInput, form: ClosedForm, hole: str) -> LeftOutHole:
@@ -218,18 +217,18 @@ def _judged(work: Work, entry: RockInput, form: ClosedForm, hole: str) -> LeftOu
 
 
 def _length_in_block(
-    work: Work, rock: Rock, form: ClosedForm, own: Observations
+    work: Work, rock: Rock, form: ClosedForm, log: Observations
 ) -> tuple[float, float | None]:
     """The length of the intervals of a hole, and the share of it in the right block."""
-    blocks = BlockNumbers(rock).of(own.blocks)
+    blocks = BlockNumbers(rock).of(log.blocks)
     if form.base_elevation is None:
         blocks[blocks == 0] = -1  # without a base there is no such block
-    ends = np.flatnonzero(in_one_interval(own, own.in_use & (blocks >= 0)))
+    ends = np.flatnonzero(in_one_interval(log, log.in_use & (blocks >= 0)))
     if not len(ends):
         return 0.0, None
-    lengths = norm(own.places[ends] - own.places[ends - 1])
-    found = form.blocks_at(work, places_along(own, ends)).reshape(-1, PLACES)
+    lengths = norm(log.places[ends] - log.places[ends - 1])
+    blocks_met = form.blocks_at(work, places_along(log, ends)).reshape(-1, PLACES)
     numbers = np.array(form.blocks)
-    right = (found == numbers[blocks[ends]][:, None]) & (found != AIR)
+    right = (blocks_met == numbers[blocks[ends]][:, None]) & (blocks_met != AIR)
     total = float(lengths.sum())
     return total, float((right.mean(axis=1) * lengths).sum() / total) if total else None

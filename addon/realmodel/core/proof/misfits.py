@@ -68,22 +68,22 @@ def misfits(
 
 
 def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_tolerance: float) -> list[Misfit]:
-    found: list[Misfit] = []
+    misfits: list[Misfit] = []
     forms, first = closed_forms(model), 0
     for number, (entry, form) in enumerate(zip(model.rock_inputs, forms, strict=True)):
         near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry)
         for at, surface in enumerate(entry.rock.surfaces):
             which = first + at, at, number
-            found += _points(model, which, near)
-            found += _bounds(model, which, near)
+            misfits += _points(model, which, near)
+            misfits += _bounds(model, which, near)
             if entry.data[at].dips is not None and not entry.rock.is_level_set(surface):
-                found += _dips(model, which, dip_tolerance)
-        for own in entry.fields:
-            found += _dips_of_field(work, entry.rock, own, form, dip_tolerance)
+                misfits += _dips(model, which, dip_tolerance)
+        for field in entry.fields:
+            misfits += _dips_of_field(work, entry.rock, field, form, dip_tolerance)
         observed = entry.rock.observed
         if observed is not None and len(observed):
-            found += _blocks(work, model, number, form, near)
-        found += [
+            misfits += _blocks(work, model, number, form, near)
+        misfits += [
             Misfit(
                 "left_out", entry.rock.name, e.block, e.hole, e.depth, None, e.place, e.block, e.text, None
             )
@@ -92,7 +92,7 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
         ]
         first += len(entry.rock.surfaces)
     order = {kind: number for number, kind in enumerate(MISFIT_KINDS)}
-    return sorted(found, key=lambda each: (order[each.kind], -(each.by or 0.0)))
+    return sorted(misfits, key=lambda misfit: (order[misfit.kind], -(misfit.by or 0.0)))
 
 
 def _range_of_heights(entry: RockInput) -> float:
@@ -119,75 +119,81 @@ def _points(model: ModelData, which: tuple[int, int, int], near: float) -> Itera
 
 
 def _bounds(model: ModelData, which: tuple[int, int, int], near: float) -> Iterator[Misfit]:
-    for each in violated_bounds(model, which, near):
-        side, other = ("at or above", "below") if each.is_lower else ("at or below", "above")
-        says = f"{each.surface} {side} {each.place[2]:,.6g}"
+    for bound in violated_bounds(model, which, near):
+        side, other = ("at or above", "below") if bound.is_lower else ("at or below", "above")
+        says = f"{bound.surface} {side} {bound.place[2]:,.6g}"
         rock = model.rock_inputs[which[2]].rock
         if rock.is_level_set(rock.surfaces[which[1]]):
-            own, other = ("older", "younger") if each.is_lower else ("younger", "older")
-            says, other = f"on the {own} side of {each.surface}", f"on its {other} side"
-        has = f"{each.by:.4g} {other}"
-        source = each.hole, each.depth, None
-        yield Misfit("bound", each.rock, each.surface, *source, each.place, says, has, each.by)
+            wanted, other = ("older", "younger") if bound.is_lower else ("younger", "older")
+            says, other = f"on the {wanted} side of {bound.surface}", f"on its {other} side"
+        has = f"{bound.by:.4g} {other}"
+        source = bound.hole, bound.depth, None
+        yield Misfit("bound", bound.rock, bound.surface, *source, bound.place, says, has, bound.by)
 
 
 def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: float) -> Iterator[Misfit]:
     rock, seen = model.rock_inputs[number].rock, look(work, model, number, form)
-    given = rock.observed
-    assert given is not None
-    begin, end = given.places[seen.rows[:, 0]], given.places[seen.rows[:, 1]]
+    observed = rock.observed
+    assert observed is not None
+    begin, end = observed.places[seen.rows[:, 0]], observed.places[seen.rows[:, 1]]
     length = (1.0 - seen.share) * norm(end - begin)
     is_place = seen.rows[:, 0] == seen.rows[:, 1]
     chosen = (seen.share < 1.0) & ~seen.is_beside & ((length > near) | is_place)
-    for each in np.flatnonzero(chosen).tolist():
-        row, last = seen.rows[each].tolist()
-        block, there = str(given.blocks[row]), int(seen.found[each])
-        name = _NO_ROCK if there == AIR else seen.names.get(there) or model.blocks[there].name
-        hole, depth, *_ = Origin.of(given.holes[row], given.depths[row])
-        to = Origin.of(hole, given.depths[last]).depth
+    for n in np.flatnonzero(chosen).tolist():
+        row, last = seen.rows[n].tolist()
+        block, met = str(observed.blocks[row]), int(seen.found[n])
+        name = _NO_ROCK if met == AIR else seen.names.get(met) or model.blocks[met].name
+        hole, depth, *_ = Origin.of(observed.holes[row], observed.depths[row])
+        to = Origin.of(hole, observed.depths[last]).depth
         says = f"{block} to {to:.6g}" if to is not None and last > row else block
-        has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
-        source = hole, depth, given.row(row)
-        place = tuple(begin[each].tolist())
-        low = None if is_place[each] else tuple(end[each].tolist())
-        yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]), low)
+        has = name if is_place[n] else f"{100 * (1 - seen.share[n]):.0f} % outside, most in {name}"
+        source = hole, depth, observed.row(row)
+        place = tuple(begin[n].tolist())
+        low = None if is_place[n] else tuple(end[n].tolist())
+        yield Misfit("block", rock.name, block, *source, place, says, has, float(length[n]), low)
 
 
 def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> Iterator[Misfit]:
     entry = model.rock_inputs[which[2]]
     surface, dips = entry.rock.surfaces[which[1]], entry.data[which[1]].dips
     assert dips is not None
-    own = surface.dips  # they come first
+    surface_dips = surface.dips  # they come first
     rows: list[int | None] = [None] * len(dips)
-    if isinstance(own, Dips):
-        in_use = np.flatnonzero(own.in_use).tolist()
-        rows[: len(in_use)] = map(own.row, in_use)
+    if isinstance(surface_dips, Dips):
+        in_use = np.flatnonzero(surface_dips.in_use).tolist()
+        rows[: len(in_use)] = map(surface_dips.row, in_use)
     slopes, heights = _slopes(model, which, np.column_stack([dips.positions, dips.heights]))
-    normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))
+    normals, model_normals = (
+        np.column_stack([-gradients, np.ones(len(gradients))]) for gradients in (dips.gradients, slopes)
+    )
     z = np.where(np.isnan(dips.heights), heights, dips.heights)
     places = np.column_stack([dips.positions, z])
-    return _differing((entry.rock.name, surface.name), (rows, places, normals), there, tolerance)
+    return _differing((entry.rock.name, surface.name), (rows, places, normals), model_normals, tolerance)
 
 
 def _dips_of_field(
-    work: Work, rock: Rock, own: SeriesField, form: ClosedForm, tolerance: float
+    work: Work, rock: Rock, field: SeriesField, form: ClosedForm, tolerance: float
 ) -> Iterator[Misfit]:
     """The dips of a series that its field does not have; outside of its lattice it has none."""
-    dips = next(series for series in rock.series if series.name == own.name).space_dips()
+    dips = next(series for series in rock.series if series.name == field.name).space_dips()
     if dips is not None:
         used = np.flatnonzero(dips.in_use)
         places, rows = dips.positions[used], [dips.row(row) for row in used.tolist()]
-        there = own.slopes(places, form.compartments_of(work, places))
-        yield from _differing((rock.name, own.name), (rows, places, dips.normals[used]), there, tolerance)
+        model_normals = field.slopes(places, form.compartments_of(work, places))
+        yield from _differing(
+            (rock.name, field.name), (rows, places, dips.normals[used]), model_normals, tolerance
+        )
 
 
-def _differing(of: tuple[str, str], dips: tuple, there: np.ndarray, tolerance: float) -> Iterator[Misfit]:
+def _differing(
+    of: tuple[str, str], dips: tuple, model_normals: np.ndarray, tolerance: float
+) -> Iterator[Misfit]:
     """The dips of a rock mass and something in it whose normals differ from those that the model has, (D, 3).
     dips: their rows, places and normals."""
     rows, places, normals = dips
-    angles = np.degrees(atan2(norm(np.cross(normals, there)), (normals * there).sum(axis=1)))
+    angles = np.degrees(atan2(norm(np.cross(normals, model_normals)), (normals * model_normals).sum(axis=1)))
     for k in np.flatnonzero(angles > tolerance).tolist():
-        texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
+        texts = attitude_text(normals[k]), f"{attitude_text(model_normals[k])}, {angles[k]:.0f}° off"
         place = tuple(places[k].tolist())
         yield Misfit("dip", *of, "", None, rows[k], place, *texts, float(angles[k]))
 
@@ -199,14 +205,14 @@ def _slopes(
     be NaN: of the triangle there."""
     vertices, _ = model.surface(which[0])
     step = 1e-6 * float(np.ptp(vertices[:, :2], axis=0).max())
-    known = places.copy()
-    at = heights_of_points(model, *which, known)
-    known[:, 2] = np.where(np.isnan(places[:, 2]), at, places[:, 2])
+    points = places.copy()
+    at = heights_of_points(model, *which, points)
+    points[:, 2] = np.where(np.isnan(places[:, 2]), at, places[:, 2])
     slopes = np.empty((len(places), 2))
     for axis in (0, 1):
         shift = np.zeros(3)
         shift[axis] = step
-        ahead, behind = (heights_of_points(model, *which, known + sign * shift) for sign in (1.0, -1.0))
+        ahead, behind = (heights_of_points(model, *which, points + sign * shift) for sign in (1.0, -1.0))
         one_sided = np.where(np.isnan(ahead), (at - behind) / step, (ahead - at) / step)
         both = (ahead - behind) / (2 * step)
         slopes[:, axis] = np.where(np.isnan(both), one_sided, both)

@@ -75,15 +75,17 @@ class Observed:
     @property
     def share(self) -> float | None:
         """The share of all observations that lie in their blocks; None where there are none."""
-        total = sum(each.observations for each in self.blocks)
-        inside = sum((each.share or 0.0) * each.observations for each in self.blocks)
+        total = sum(block.observations for block in self.blocks)
+        inside = sum((block.share or 0.0) * block.observations for block in self.blocks)
         return inside / total if total else None
 
     def summary(self) -> str:
         """A line about all of it."""
         share = "none over the region" if self.share is None else f"{100 * self.share:.1f} % in their blocks"
-        worst = max((abs(each.residual) for each in self.contacts if each.residual is not None), default=0.0)
-        used = sum(each.observations for each in self.blocks)
+        worst = max(
+            (abs(contact.residual) for contact in self.contacts if contact.residual is not None), default=0.0
+        )
+        used = sum(block.observations for block in self.blocks)
         return (
             f"{counted(used, 'observation')}, {share}; {counted(len(self.contacts), 'contact')}, the "
             f"farthest {worst:.3g} off; {len(self.violated)} of {counted(self.bounds, 'bound')} not kept; "
@@ -106,23 +108,23 @@ def _observed(work: Work, model: ModelData) -> Observed:
     blocks, contacts, violated, left_out, count = [], [], [], [], 0
     forms, first = closed_forms(model), 0
     for number, (entry, form) in enumerate(zip(model.rock_inputs, forms, strict=True)):
-        rock, given = entry.rock, entry.rock.observed
-        if given is not None and len(given):
+        rock, observed = entry.rock, entry.rock.observed
+        if observed is not None and len(observed):
             blocks += _blocks(work, model, number, form)
             for at, surface in enumerate(rock.surfaces):
                 data = entry.data[at]
                 places = data.contacts[: 0 if data.is_along_bounds else None]
                 z = heights_of_points(model, first + at, at, number, places)
-                near = NEAR * float(np.ptp(given.places[:, 2]))
+                near = NEAR * float(np.ptp(observed.places[:, 2]))
                 for row, (place, height) in enumerate(zip(places.tolist(), z.tolist(), strict=True)):
                     residual = None if height != height else place[2] - height
                     source = data.source(data.contacts_from + row)[:2]
                     contacts.append(ObservedContact(rock.name, surface.name, *source, tuple(place), residual))
                 count += len(data.bounds)
                 violated += violated_bounds(model, (first + at, at, number), near)
-        left_out += [(rock.name, each) for each in entry.left_out]
+        left_out += [(rock.name, observation) for observation in entry.left_out]
         first += len(rock.surfaces)
-    violated.sort(key=lambda each: -each.by)
+    violated.sort(key=lambda bound: -bound.by)
     return Observed(blocks, contacts, count, violated, left_out)
 
 
@@ -136,10 +138,10 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
         return []
     own_field = model.rock_inputs[r].field_of(at)
     places, row = bounds.along(np.inf if own_field is None else own_field.fields[0].lattice.spacing[0])
-    there = replace(bounds.some(row), places=places, ends=None)
+    bounds_along = replace(bounds.some(row), places=places, ends=None)
     beyond = np.zeros(len(bounds))
     heights = heights_of_points(model, number, at, r, places, are_bounds=True)
-    np.maximum.at(beyond, row, there.beyond(heights))
+    np.maximum.at(beyond, row, bounds_along.beyond(heights))
     return [
         ViolatedBound(
             rock.name,
@@ -155,11 +157,11 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
 
 def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm) -> list[ObservedBlock]:
     rock, seen = model.rock_inputs[number].rock, look(work, model, number, form)
-    found = []
+    blocks = []
     for block in np.unique(seen.wanted).tolist():
-        own = seen.wanted == block
-        over = own & ~seen.is_beside
+        in_block = seen.wanted == block
+        over = in_block & ~seen.is_beside
         share = float(seen.share[over].mean()) if over.any() else None
         name = seen.names[block]
-        found.append(ObservedBlock(rock.name, name, int(over.sum()), int((own & ~over).sum()), share))
-    return found
+        blocks.append(ObservedBlock(rock.name, name, int(over.sum()), int((in_block & ~over).sum()), share))
+    return blocks

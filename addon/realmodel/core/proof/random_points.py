@@ -37,15 +37,17 @@ def check_points(work: Work, model: ModelData, arrays: dict, places: int, seed: 
     wrong = np.flatnonzero(is_block != said)
     some = wrong[:_LOOKED_AT]
     moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
-    moved = [each.reshape(-1, len(moves)) for each in looked_up((points[some, None] + moves).reshape(-1, 3))]
+    moved = [
+        numbers.reshape(-1, len(moves)) for numbers in looked_up((points[some, None] + moves).reshape(-1, 3))
+    ]
     # a face or surface that divides rock is nearer than rounding moves the point
-    near = np.any([(each != each[:, :1]).any(axis=1) for each in moved], axis=0)
+    near = np.any([(numbers != numbers[:, :1]).any(axis=1) for numbers in moved], axis=0)
     wrong = np.setdiff1d(wrong, some[near])
     offenders = [
         _offender(model, points[n], int(cells[n]), int(is_block[n]), int(said[n])) for n in wrong[:_SHOWN]
     ]
-    found = [_entry("places", "points", len(points), len(wrong), int(near.sum()), began, offenders)]
-    return [*found, _check_faces(work, model, places, random)]
+    tests = [_entry("places", "points", len(points), len(wrong), int(near.sum()), began, offenders)]
+    return [*tests, _check_faces(work, model, places, random)]
 
 
 def _points(model: ModelData, places: int, random: np.random.Generator) -> np.ndarray:
@@ -58,9 +60,11 @@ def _points(model: ModelData, places: int, random: np.random.Generator) -> np.nd
     some = random.integers(0, len(first), third)
     corner = random.integers(0, np.diff(model.face_offsets)[some] - 1)
     at = model.face_vertices[first[some]], *(model.face_vertices[first[some] + corner + k] for k in (0, 1))
-    beside = _in_triangles(np.stack([model.vertices[each] for each in at], axis=1), random)
+    beside = _in_triangles(np.stack([model.vertices[vertex] for vertex in at], axis=1), random)
     structures = (*model.structures.faults, *model.structures.bodies)
-    shapes = [vertices[triangles] for vertices, triangles in (each.triangulation() for each in structures)]
+    shapes = [
+        vertices[triangles] for vertices, triangles in (structure.triangulation() for structure in structures)
+    ]
     near = np.empty((0, 3))
     for shape in shapes:
         rows = random.integers(0, len(shape), -(-third // len(shapes)))
@@ -78,7 +82,7 @@ def _in_triangles(corners: np.ndarray, random: np.random.Generator) -> np.ndarra
 
 
 def _offender(model: ModelData, point: np.ndarray, cell: int, block: int, said: int) -> dict:
-    names = [f"block '{each.name}'" for each in model.blocks]
+    names = [f"block '{entry.name}'" for entry in model.blocks]
     text = f"the model has {names[block] if block >= 0 else 'nothing'}, the closed form "
     text += f"{names[said] if said >= 0 else 'nothing'} at {place_text(point)}"
     return {
@@ -102,16 +106,16 @@ def _check_faces(work: Work, model: ModelData, places: int, random: np.random.Ge
     allowed = _rounding(model) * (1 + _steepness(model))
     is_sheet = _are_sheets(model)
     for number in np.unique(model.face_surface[faces]):
-        own = np.flatnonzero(model.face_surface[faces] == number)
+        rows = np.flatnonzero(model.face_surface[faces] == number)
         vertices, triangles = model.surface(number)
         if is_sheet[number]:
             for sheet in model.sheet_triangles(number):
-                z = heights_at(work, Sheet(vertices, sheet), points[own, :2])
-                off = np.abs(z - points[own, 2])
-                away[own] = np.fmin(away[own], off)
+                z = heights_at(work, Sheet(vertices, sheet), points[rows, :2])
+                off = np.abs(z - points[rows, 2])
+                away[rows] = np.fmin(away[rows], off)
         else:
             nearest = native_module().nearest_triangles
-            _, away[own] = work.native(nearest, vertices[triangles], points[own])
+            _, away[rows] = work.native(nearest, vertices[triangles], points[rows])
     wrong = np.flatnonzero(away > allowed)
     slivers = np.array([_width(model, faces[n]) <= allowed for n in wrong], bool)
     wrong = wrong[~slivers]

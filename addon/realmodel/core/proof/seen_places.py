@@ -38,25 +38,25 @@ class Seen:
 def look(work: Work, model: ModelData, number: int, form: ClosedForm) -> Seen:
     """What the model has at the observations of a rock mass, by its number; form: its closed form."""
     entry = model.rock_inputs[number]
-    given = entry.rock.observed
-    assert given is not None
+    observed = entry.rock.observed
+    assert observed is not None
     bodies = [
         (n, body)
         for n, (body, times) in enumerate(zip(model.structures.bodies, model.structures.times, strict=True))
         if number in times
     ]
-    numbers = BlockNumbers(entry.rock, [body.name for _, body in bodies]).of(given.blocks)
+    numbers = BlockNumbers(entry.rock, [body.name for _, body in bodies]).of(observed.blocks)
     of_model = np.array([*form.blocks, *(body.block for body in form.bodies), -1], np.int64)
     wanted = of_model[numbers]
     used = wanted >= 0
     if entry.used is not None:
         used &= entry.used
-    samples, owner, rows, on_ground = _samples(given, used)
+    samples, owner, rows, on_ground = _samples(observed, used)
     of_block = wanted[rows[:, 0]]
-    near = NEAR * float(np.ptp(given.places[:, 2])) if len(given) else 0.0
+    near = NEAR * float(np.ptp(observed.places[:, 2])) if len(observed) else 0.0
     samples[on_ground, 2] = _lowered(work, entry, form, samples[on_ground])
-    there = [form.blocks_at(work, samples + np.array([0.0, 0.0, shift])) for shift in (near, -near)]
-    inside = (there[0] == of_block[owner]) | (there[1] == of_block[owner])
+    model_blocks = [form.blocks_at(work, samples + np.array([0.0, 0.0, shift])) for shift in (near, -near)]
+    inside = (model_blocks[0] == of_block[owner]) | (model_blocks[1] == of_block[owner])
     beside = np.zeros(len(samples), bool)
     if entry.region is not None:
         vertices, triangles = entry.region
@@ -69,18 +69,18 @@ def look(work: Work, model: ModelData, number: int, form: ClosedForm) -> Seen:
     first: dict[int, str] = {AIR: ""}
     for block, name in zip(of_model.tolist(), names, strict=False):
         first.setdefault(block, name)
-    found = _most(owner[~inside], there[1][~inside], of_block)
-    return Seen(rows, of_block, parts, found, is_beside, first)
+    most = _most(owner[~inside], model_blocks[1][~inside], of_block)
+    return Seen(rows, of_block, parts, most, is_beside, first)
 
 
 def _most(owner: np.ndarray, blocks: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
     """(O,) the block that most places of each observation have; where it has none, that of `otherwise`.
     owner, blocks: (N,) of places."""
-    found = otherwise.copy()
+    most = otherwise.copy()
     pairs, count = np.unique(np.column_stack([owner, blocks]), axis=0, return_counts=True)
     order = np.argsort(count, kind="stable")
-    found[pairs[order, 0]] = pairs[order, 1]
-    return found
+    most[pairs[order, 0]] = pairs[order, 1]
+    return most
 
 
 def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray) -> np.ndarray:
@@ -103,23 +103,25 @@ def places_along(given: Observations, ends: np.ndarray) -> np.ndarray:
     return (begin[:, None] + shares[None, :, None] * way[:, None]).reshape(-1, 3)
 
 
-def _samples(given: Observations, used: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _samples(
+    observed: Observations, used: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Places at which observations are looked at (N, 3), of which observation each is (N,), the first and the
     last row of each observation (O, 2), and (N,) bool whether a place may be seen on the ground, as it is in
     no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its
     rows."""
-    follows = in_one_interval(given, used)
+    follows = in_one_interval(observed, used)
     ends = np.flatnonzero(follows)
-    along = places_along(given, ends)
+    along = places_along(observed, ends)
     # a place without a hole, or one that is alone in its block in a hole, and on no boundary
     in_interval = follows | np.append(follows[1:], False)
-    _, place, times = np.unique(given.places, axis=0, return_inverse=True, return_counts=True)
+    _, place, times = np.unique(observed.places, axis=0, return_inverse=True, return_counts=True)
     alone = np.flatnonzero(used & ~in_interval & (times[place.ravel()] == 1))
     first = np.cumsum(~follows) - 1  # the number of the observation that a row is of
     rows = np.concatenate([np.repeat(ends, PLACES), alone])
     numbers, owner = np.unique(first[rows], return_inverse=True)
-    on_ground = np.concatenate([np.zeros(len(along), bool), given.holes[alone] == ""])
-    places = np.concatenate([along, given.places[alone]])
+    on_ground = np.concatenate([np.zeros(len(along), bool), observed.holes[alone] == ""])
+    places = np.concatenate([along, observed.places[alone]])
     begin = np.flatnonzero(~follows)
-    ends = np.append(begin[1:], len(given)) - 1
+    ends = np.append(begin[1:], len(observed)) - 1
     return places, owner.ravel(), np.column_stack([begin, ends])[numbers], on_ground

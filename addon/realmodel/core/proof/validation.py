@@ -210,13 +210,13 @@ def validate(
             return [ValidationTest("arrays", number, says, "faces", faces, len(wrong), 0, 0.0, offenders)]
         native, arrays = native_module(), _native_model(model)
         with work.phase(0.0, 0.6, "checking every cell and face"):
-            found = work.native(native.check_topology, arrays)
-        if places and not model.is_cut and found[0]["failed"] == 0 and len(model.vertices):
+            results = work.native(native.check_topology, arrays)
+        if places and not model.is_cut and results[0]["failed"] == 0 and len(model.vertices):
             with work.phase(0.6, 1.0, "comparing with the closed form"):
                 if not model.is_stack:
-                    found += check_points(work, model, arrays, int(places), int(seed))
+                    results += check_points(work, model, arrays, int(places), int(seed))
                 else:
-                    found += work.native(
+                    results += work.native(
                         native.check_samples,
                         arrays,
                         native_rocks(model),
@@ -224,7 +224,7 @@ def validate(
                         int(places),
                         int(seed),
                     )
-        tests = [_test(entry, model) for entry in found]
+        tests = [_test(entry, model) for entry in results]
         return sorted(tests, key=lambda test: test.number)
 
     tests = run(task, progress, cancel, threads=threads)
@@ -279,7 +279,7 @@ def _bases(model: ModelData) -> np.ndarray:
     bases = [np.nan if rock.base_elevation is None else rock.base_elevation for rock in model.project.rocks]
     oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
     is_cut = [entry.reaches_base or entry.rock.has_fields for entry in model.rock_inputs]
-    found = []
+    elevations = []
     for block in model.blocks:
         rocks = [block.rock] if is_cut[block.rock] or block.surface == oldest[block.rock] else []
         if block.surface >= oldest[-1]:
@@ -289,8 +289,8 @@ def _bases(model: ModelData) -> np.ndarray:
         stands = {bases[rock] for rock in rocks} - {np.nan}
         if len(stands) > 1:
             return np.empty(0)
-        found.append(min(stands, default=np.nan))
-    return np.array(found, np.float64)
+        elevations.append(min(stands, default=np.nan))
+    return np.array(elevations, np.float64)
 
 
 def _block_of_surface(model: ModelData) -> np.ndarray:

@@ -87,8 +87,8 @@ class BorderEdges:
             at, face = _spread(model.face_offsets[faces], size), np.repeat(faces, size)
             at, face = at[on[corners[at]]], face[on[corners[at]]]
         following = np.where(at + 1 == model.face_offsets[face + 1], model.face_offsets[face], at + 1)
-        kept = on[corners[following]]
-        at, face, following = at[kept], face[kept], following[kept]
+        is_edge = on[corners[following]]
+        at, face, following = at[is_edge], face[is_edge], following[is_edge]
         return cls(vertices, face, at, corners[at], corners[following])
 
     def on(self, model: ModelData, side: Side) -> BorderEdges:
@@ -96,8 +96,10 @@ class BorderEdges:
         places = model.vertices
         vertices = self.vertices[places[self.vertices, side.axis] == side.line]
         is_on = (places[self.first, side.axis] == side.line) & (places[self.second, side.axis] == side.line)
-        kept = is_on & (places[self.first, side.along] != places[self.second, side.along])
-        return BorderEdges(vertices, *(each[kept] for each in (self.face, self.at, self.first, self.second)))
+        is_edge = is_on & (places[self.first, side.along] != places[self.second, side.along])
+        return BorderEdges(
+            vertices, *(array[is_edge] for array in (self.face, self.at, self.first, self.second))
+        )
 
 
 def _pairs(edges: BorderEdges) -> np.ndarray:
@@ -143,14 +145,14 @@ def with_vertices_of(
     the places (N, 3) of its vertices."""
     inserted, count = [], len(model.vertices)
     for side, theirs, places in neighbors:
-        found = _insertion(model, side, border.on(model, side), theirs, places, count)
-        if found is not None:
-            inserted.append(found)
-            count += len(found.places)
+        insertion = _insertion(model, side, border.on(model, side), theirs, places, count)
+        if insertion is not None:
+            inserted.append(insertion)
+            count += len(insertion.places)
     if not inserted:
         return model
     face, at, size, numbers = (
-        np.concatenate([getattr(each, name) for each in inserted])
+        np.concatenate([getattr(insertion, name) for insertion in inserted])
         for name in ("face", "at", "count", "numbers")
     )
     begin = np.cumsum(size) - size
@@ -159,7 +161,7 @@ def with_vertices_of(
     numbers = numbers[_spread(begin[order], size)].astype(model.face_vertices.dtype)
     cells = replace(
         model.complex,
-        vertices=np.concatenate([model.vertices, *(each.places for each in inserted)]),
+        vertices=np.concatenate([model.vertices, *(insertion.places for insertion in inserted)]),
         face_vertices=_with_inserted(model.face_vertices, at + 1, size, numbers),
         face_offsets=_moved_on(model.face_offsets, face + 1, size),
     )
@@ -198,12 +200,12 @@ def _insertion(
     for number in np.unique(on):
         theirs = places[np.unique(other.ends[other.on == number])]
         theirs = theirs[np.unique(theirs[:, side.along], return_index=True)[1]]  # and ascending
-        own = on == number
-        there = _on_line(model.vertices[ends[own].ravel()], side)
-        theirs = theirs[~np.isin(_on_line(theirs, side), there)]
-        start = np.searchsorted(theirs[:, side.along], along[own, 0], "right")
-        stop = np.searchsorted(theirs[:, side.along], along[own, 1], "left")
-        begin[own], count[own] = start + sum(len(each) for each in points), np.maximum(stop - start, 0)
+        is_on = on == number
+        present = _on_line(model.vertices[ends[is_on].ravel()], side)
+        theirs = theirs[~np.isin(_on_line(theirs, side), present)]
+        start = np.searchsorted(theirs[:, side.along], along[is_on, 0], "right")
+        stop = np.searchsorted(theirs[:, side.along], along[is_on, 1], "left")
+        begin[is_on], count[is_on] = start + sum(len(piece) for piece in points), np.maximum(stop - start, 0)
         points.append(theirs)
     if not count.any():
         return None
@@ -215,7 +217,7 @@ def _insertion(
     place[place == len(pairs)] = 0
     needed = (pairs[place] == _pairs(edges)) & (count[place] > 0)
     face, at, place = edges.face[needed], edges.at[needed], place[needed]
-    first, second = (model.vertices[own[needed], side.along] for own in (edges.first, edges.second))
+    first, second = (model.vertices[vertices[needed], side.along] for vertices in (edges.first, edges.second))
     backward = first > second
     size = count[place]
     inserted = _spread(first_new[place], size)
@@ -232,17 +234,17 @@ def _on_line(places: np.ndarray, side: Side) -> np.ndarray:
 
 
 def _numbered(
-    model: ModelData, side: Side, there: np.ndarray, added: np.ndarray, first_number: int
+    model: ModelData, side: Side, present: np.ndarray, added: np.ndarray, first_number: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Positions (N, 3) that the model has no vertex at yet, each once, and the vertex number of each given
-    one: edges may meet in a vertex that one of them passes. there: the vertices on the side."""
-    both = np.concatenate([model.vertices[there], added])
+    one: edges may meet in a vertex that one of them passes. present: the vertices on the side."""
+    both = np.concatenate([model.vertices[present], added])
     _, first, same = np.unique(_on_line(both, side), return_index=True, return_inverse=True)
-    first = first[same[len(there) :]]  # the first of the equal ones: one that is there
-    new, number = np.unique(first[first >= len(there)], return_inverse=True)
+    first = first[same[len(present) :]]  # the first of the equal ones: one that is there
+    new, number = np.unique(first[first >= len(present)], return_inverse=True)
     numbers = np.empty(len(added), np.int64)
-    numbers[first < len(there)] = there[first[first < len(there)]]
-    numbers[first >= len(there)] = first_number + number
+    numbers[first < len(present)] = present[first[first < len(present)]]
+    numbers[first >= len(present)] = first_number + number
     return both[new], numbers
 
 
@@ -282,7 +284,7 @@ def patches_on(model: ModelData, side: Side, edges: BorderEdges, positions: np.n
     between = height[:, :1] + share * (height[:, 1:] - height[:, :1])
     height = np.where(share == 0, height[:, :1], np.where(share == 1, height[:, 1:], between))
     order = np.lexsort((*height.T, height.sum(axis=1), part, face))
-    face, part, cell, height, divided = (each[order] for each in (face, part, cell, height, divided))
+    face, part, cell, height, divided = (array[order] for array in (face, part, cell, height, divided))
     begin = np.flatnonzero(begins_run(np.column_stack([face, part])))
     size = np.diff([*begin, len(face)])
     lowest, highest = begin[size > 1], (begin + size - 1)[size > 1]
@@ -297,8 +299,8 @@ def positions_on(
     model: ModelData, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray
 ) -> np.ndarray:
     """Where on a side a model has vertices, or its neighbor, ascending. edges: on this side."""
-    own = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
-    return np.unique(np.concatenate([own, places[other.ends.ravel(), side.along]]))
+    positions = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
+    return np.unique(np.concatenate([positions, places[other.ends.ravel(), side.along]]))
 
 
 def _ends(model: ModelData, side: Side, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -327,10 +329,10 @@ def matched(one: Patches, other: Patches, side: Side) -> Matched:
         cells = np.unique(np.column_stack([one.cell, other.cell]), axis=0)
         return Matched(cells, len(one.cell))
     rows = {row: k for k, row in enumerate(_rows(other))}
-    found = [rows.get(row, -1) for row in _rows(one)]
-    pairs = [(k, m) for k, m in enumerate(found) if m >= 0]
-    alone = [k for k, m in enumerate(found) if m < 0]
-    left = sorted(set(range(len(other.cell))).difference(found))
+    matches = [rows.get(row, -1) for row in _rows(one)]
+    pairs = [(k, m) for k, m in enumerate(matches) if m >= 0]
+    alone = [k for k, m in enumerate(matches) if m < 0]
+    left = sorted(set(range(len(other.cell))).difference(matches))
     pairs += [(k, m) for k in alone for m in left if _overlap(one, k, other, m)]
     wrong = [one.shape[k] for k in alone] + [other.shape[m] for m in left]
     place = None
@@ -360,5 +362,5 @@ def _overlap(one: Patches, k: int, other: Patches, m: int) -> bool:
     if not low < high:
         return False
     middle = (low + high) / 2
-    bottom = max(np.interp(middle, each[:2], each[2:4]) for each in (a, b))
-    return bottom < min(np.interp(middle, each[:2], each[4:6]) for each in (a, b))
+    bottom = max(np.interp(middle, shape[:2], shape[2:4]) for shape in (a, b))
+    return bottom < min(np.interp(middle, shape[:2], shape[4:6]) for shape in (a, b))

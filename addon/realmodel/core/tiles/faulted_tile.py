@@ -69,28 +69,28 @@ def build_faulted_tile(work: Work, frame: Frame, window: Window, name: Name) -> 
         labels = labels[0][first], *labels[1:]
     of_tile = np.full(len(mine), -1)
     of_tile[mine] = number
-    found = _model(frame, window, cells, labels)
-    part = np.arange(len(found.cell_block)) if frame.cell_kind == "blocks" else found.cell_component
-    both = np.column_stack([found.cell_component, part])
+    tile_model = _model(frame, window, cells, labels)
+    part = np.arange(len(tile_model.cell_block)) if frame.cell_kind == "blocks" else tile_model.cell_component
+    both = np.column_stack([tile_model.cell_component, part])
     between = np.flatnonzero((is_mine[:, 0] != is_mine[:, 1]) & (model.face_cells >= 0).all(axis=1))
-    own = np.where(is_mine[between, 0], 0, 1)
-    others = owner[model.face_cells[between, 1 - own]]
-    parts = both[of_tile[model.face_cells[between, own]]]
+    side = np.where(is_mine[between, 0], 0, 1)
+    others = owner[model.face_cells[between, 1 - side]]
+    parts = both[of_tile[model.face_cells[between, side]]]
     seams = {}
     for other in np.unique(others, axis=0).tolist():
         which = (others == other).all(axis=1)
         seams[tuple(other)] = Seam.of(
-            as_whole, between[which], own[which], parts[which], is_one[between[which]]
+            as_whole, between[which], side[which], parts[which], is_one[between[which]]
         )
     reach = reach_of(model.complex, mine, together) if mine.any() else None
-    return FaultedTile(model, found, seams, reach, part)
+    return FaultedTile(model, tile_model, seams, reach, part)
 
 
-def _within_one_cell(own: CellComplex, built: BuiltCells, layers: int) -> np.ndarray:
+def _within_one_cell(cell_complex: CellComplex, built: BuiltCells, layers: int) -> np.ndarray:
     """(F,) bool: the faces that lie within one cell of a model of blocks. Between cells of one block in one
     rock mass these are walls between columns, and in bodies also surfaces, the first `layers` of all: a body
     has columns between older surfaces."""
-    surface, cells, own_block = own.face_surface, own.face_cells, built.parts.own_block
+    surface, cells, own_block = cell_complex.face_surface, cell_complex.face_cells, built.parts.own_block
     is_same = (cells >= 0).all(axis=1) & (own_block[cells[:, 0]] == own_block[cells[:, 1]])
     return is_same & ((surface == _WALL) | ((surface >= 0) & (surface < layers)))
 
@@ -112,29 +112,31 @@ def _labels(built: BuiltCells, frame: Frame, window: Window, mine: np.ndarray) -
     """What compartments gives for the cells of the tile, by all faults of the whole."""
     inputs, few, structures = window.inputs, window.structures, frame.structures
     surfaces = sum(len(entry.surfaces) for entry in inputs)
-    own = np.arange(surfaces + len(inputs) * len(few))
+    block_numbers = np.arange(surfaces + len(inputs) * len(few))
     for rock in range(len(inputs)):
         for body in range(len(few.bodies)):
-            there = int(window.numbers[len(few.faults) + body]) - len(structures.faults)
-            own[body_block(few, surfaces, rock, body)] = body_block(structures, surfaces, rock, there)
+            number = int(window.numbers[len(few.faults) + body]) - len(structures.faults)
+            block_numbers[body_block(few, surfaces, rock, body)] = body_block(
+                structures, surfaces, rock, number
+            )
     rocks = np.arange(len(inputs), dtype=np.int32)
     counts = [len(entry.surfaces) for entry in inputs]
     as_whole = CellParts(
         window.part[built.parts.part][mine],
-        own[built.parts.own_block][mine],
+        block_numbers[built.parts.own_block][mine],
         np.append(np.repeat(rocks, counts), np.repeat(rocks, len(structures))),
         blocks_divided(inputs, structures),
     )
     return compartments(inputs, as_whole, structures)
 
 
-def _model(frame: Frame, window: Window, own: CellComplex, labels: tuple) -> Model:
-    volume = own.cell_volumes()
-    cells, components = own.count_blocks(len(frame.blocks))
+def _model(frame: Frame, window: Window, cell_complex: CellComplex, labels: tuple) -> Model:
+    volume = cell_complex.cell_volumes()
+    cells, components = cell_complex.count_blocks(len(frame.blocks))
     blocks = [
         replace(
             block,
-            volume=float(volume[own.cell_block == n].sum()),
+            volume=float(volume[cell_complex.cell_block == n].sum()),
             cells=int(cells[n]),
             components=int(components[n]),
         )
@@ -147,7 +149,7 @@ def _model(frame: Frame, window: Window, own: CellComplex, labels: tuple) -> Mod
     shapes = [entry.surface(number) for entry in window.inputs for number in range(len(entry.surfaces))]
     labels_of_cells, names, sides = labels
     return Model(
-        own,
+        cell_complex,
         named_blocks(blocks),
         SurfaceArrays(shapes + ends),
         surface_names=frame.surface_names,

@@ -90,12 +90,12 @@ def tile_grid(meshes: Sequence[np.ndarray], tile_size: tuple[float, float]) -> T
         if not values:
             lines.append(np.array([0.0, size]))
             continue
-        low, high = min(each.min() for each in values), max(each.max() for each in values)
+        low, high = min(positions.min() for positions in values), max(positions.max() for positions in values)
         count = max(1, math.ceil((high - low) / size * (1 - 1e-9)))
         if count > _MOST_TILES:
             raise UsageError(f"{count} tiles along one axis are too many; make them larger")
         beyond = max((high - low) * _BEYOND, abs(low) * 2.0**-20, abs(high) * 2.0**-20, 2.0**-20)
-        near = [_near_lines(each, low, size) for each in values] if count > 1 else []
+        near = [_near_lines(positions, low, size) for positions in values] if count > 1 else []
         inner = [_line_near(near, low + k * size, size * _SEARCHED) for k in range(1, count)]
         lines.append(np.array([low - beyond, *inner, high + beyond]))
     if len(lines[0]) * len(lines[1]) > _MOST_TILES:
@@ -114,7 +114,7 @@ def _near_lines(values: np.ndarray, low: float, size: float) -> np.ndarray:
 def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:
     """In the widest gap between values within `reach` of a position. Not in its middle: there edges of
     regular meshes would cross each other on the line."""
-    near = [each[(each > wanted - reach) & (each < wanted + reach)] for each in values]
+    near = [positions[(positions > wanted - reach) & (positions < wanted + reach)] for positions in values]
     ends = np.unique(np.concatenate([[wanted - reach, wanted + reach], *near]))
     widest = int(np.diff(ends).argmax())
     return float(ends[widest] + (ends[widest + 1] - ends[widest]) * _IN_GAP)
@@ -133,14 +133,14 @@ def triangles_by_tile(mesh: Sheet, grid: TileGrid) -> Iterator[tuple[tuple[int, 
             first.append(low)
             count.append(high - low + 1)
         tiles = count[0] * count[1]
-        own, (column, row) = np.arange(len(corners)), first
+        numbers, (column, row) = np.arange(len(corners)), first
         if int(tiles.sum()) > len(corners):
-            own = np.repeat(own, tiles)
-            column, row = column[own], row[own]
+            numbers = np.repeat(numbers, tiles)
+            column, row = column[numbers], row[numbers]
             nth = ranks_in_runs(tiles)
-            column, row = column + nth // count[1][own], row + nth % count[1][own]
+            column, row = column + nth // count[1][numbers], row + nth % count[1][numbers]
         for tile, which in _grouped(column, row, grid):
-            yield tile, (own[which] + begin).astype(np.int32)
+            yield tile, (numbers[which] + begin).astype(np.int32)
 
 
 def _grouped(
@@ -179,17 +179,17 @@ def clipped_region(region: Sheet, box: Box) -> Sheet:
 
 def _half(polygon: list, axis: int, line: float, sign: int) -> list:
     """The part of a convex polygon where sign * (coordinate - line) is not negative."""
-    kept = []
+    corners = []
     for start, end in zip(polygon, polygon[1:] + polygon[:1], strict=True):
         inside, beyond = sign * (start[axis] - line) >= 0, sign * (end[axis] - line) >= 0
         if inside:
-            kept.append(start)
+            corners.append(start)
         if inside != beyond:
             first, second = sorted((start, end))
             share = (line - first[axis]) / (second[axis] - first[axis])
             other = first[1 - axis] + share * (second[1 - axis] - first[1 - axis])
-            kept.append((line, other) if axis == 0 else (other, line))
-    return kept
+            corners.append((line, other) if axis == 0 else (other, line))
+    return corners
 
 
 def box_triangles(box: Box) -> Sheet:

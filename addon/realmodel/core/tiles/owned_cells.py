@@ -37,8 +37,8 @@ def owners(whole: CellComplex, grid: TileGrid, together: np.ndarray) -> np.ndarr
     np.minimum.at(lowest, np.repeat(np.arange(len(size)), size), rank[whole.face_vertices])
     first = np.full(len(whole.cell_block), len(order), np.int64)
     for side in range(2):
-        there = whole.face_cells[:, side] >= 0
-        np.minimum.at(first, together[whole.face_cells[there, side]], lowest[there])
+        has_cell = whole.face_cells[:, side] >= 0
+        np.minimum.at(first, together[whole.face_cells[has_cell, side]], lowest[has_cell])
     first = first[together]
     places = whole.vertices[order[first]]
     lines = (grid.x, grid.y)
@@ -117,9 +117,9 @@ class Seam:
     def first_difference(self, other: Seam) -> tuple[float, float, float]:
         """A place where they do not match."""
         ours, theirs = set(self.key.tolist()), set(other.key.tolist())
-        for seam, known in ((self, theirs), (other, ours)):
+        for seam, keys in ((self, theirs), (other, ours)):
             for key, place in zip(seam.key.tolist(), seam.place.tolist(), strict=True):
-                if key not in known:
+                if key not in keys:
                     return tuple(place)
         return tuple(self.place[0].tolist())
 

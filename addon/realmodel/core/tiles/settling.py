@@ -59,15 +59,15 @@ def settled(box: Box, tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
     tiles = list(tiles)
     if _are_apart(box, tiles):
         return [_rounded(box, vertices) for vertices in tiles]
-    exact_places = [{number: _words(line) for number, line in each.exact.items()} for each in tiles]
+    exact_places = [{number: _words(line) for number, line in vertices.exact.items()} for vertices in tiles]
     heights: dict[tuple[str, str], dict[str, float]] = {}
     on_sides = []
     for side in sides_of(box):
         axis = side.along
         along = {_text(end): end for end in (box[axis], box[axis + 2])}
-        on_side = [_on_side(*each, side, box) for each in zip(tiles, exact_places, strict=True)]
-        for vertices, places, found in zip(tiles, exact_places, on_side, strict=True):
-            for number in found:
+        on_side = [_on_side(*pair, side, box) for pair in zip(tiles, exact_places, strict=True)]
+        for vertices, places, numbers in zip(tiles, exact_places, on_side, strict=True):
+            for number in numbers:
                 x, y, z = exact = places[number]
                 heights.setdefault((x, y), {})[z] = float(vertices.nearest[number, 2])
                 along[exact[axis]] = float(vertices.nearest[number, axis])
@@ -78,8 +78,8 @@ def settled(box: Box, tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
     positions = [np.full(vertices.nearest.shape, np.nan) for vertices in tiles]
     for side, along, on_side in on_sides:
         axis = side.along
-        for places, found, at in zip(exact_places, on_side, positions, strict=True):
-            for number in found:
+        for places, numbers, at in zip(exact_places, on_side, positions, strict=True):
+            for number in numbers:
                 exact = places[number]
                 at[number, side.axis] = side.line
                 at[number, axis] = along[exact[axis]]

@@ -32,10 +32,10 @@ def read_rock_fields(path: Path) -> list[RockFields]:
     """Raises InputRefused where the file is not what write_rock_fields wrote."""
     try:
         arrays = read_npz(path)
-        found: Any = _STORED.read(arrays[RECORD].tobytes(), arrays)
-        if not isinstance(found, list) or not all(isinstance(rock, RockFields) for rock in found):
+        rocks: Any = _STORED.read(arrays[RECORD].tobytes(), arrays)
+        if not isinstance(rocks, list) or not all(isinstance(rock, RockFields) for rock in rocks):
             raise ValueError("it has no fields")
-        return found
+        return rocks
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=path) from error
     except (KeyError, ValueError) as error:

@@ -123,18 +123,18 @@ class _NumberedError(Exception):
         self.kind, self.surface, self.place = error.kind, error.surface, error.place
         self.items = error.items
         if error.kind in ("vertical_triangle", "double_valued"):
-            self.items = [int(numbers[error.surface][item]) for item in error.items]
+            self.items = [int(numbers[error.surface][triangle]) for triangle in error.items]
 
 
 def _warnings(inputs: list[RockInput], built: BuiltCells, numbers: list[np.ndarray]) -> list[BuildWarning]:
     owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
-    found = []
+    warnings = []
     for kind, surface, items, text in built.warnings:
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
         if kind == "no_area":
-            items = tuple(int(numbers[surface][item]) for item in items)
-        found.append(BuildWarning(text, kind, rock, named, items))
-    return found
+            items = tuple(int(numbers[surface][triangle]) for triangle in items)
+        warnings.append(BuildWarning(text, kind, rock, named, items))
+    return warnings
 
 
 def tile_arrays(model: Model) -> dict[str, np.ndarray]:

@@ -96,7 +96,7 @@ class TiledModel(ShortRepr):
     def surface_names(self) -> list[str]:
         """As of Model: surfaces, faults, bodies."""
         surfaces = [surface.name for rock in self.project.rocks for surface in rock.surfaces]
-        return surfaces + [each.name for each in (*self.project.faults, *self.project.bodies)]
+        return surfaces + [structure.name for structure in (*self.project.faults, *self.project.bodies)]
 
     @keyword_only
     def section(
@@ -104,7 +104,7 @@ class TiledModel(ShortRepr):
     ) -> Section:
         """As Model.section; cells count through the tiles in their order. A plane on a border between tiles
         is moved off it by a rounding."""
-        point, normal = (np.asarray(each, np.float64) for each in (point, normal))
+        point, normal = (np.asarray(vector, np.float64) for vector in (point, normal))
         if point.shape != (3,) or normal.shape != (3,) or not normal.any():
             raise UsageError("a plane is a point and a normal that is not zero, three numbers each")
         if np.count_nonzero(normal) == 1:
@@ -135,12 +135,12 @@ class TiledModel(ShortRepr):
     def borehole(self, x: float, y: float) -> list[Interval]:
         """As Model.borehole."""
         place = self._off_borders(np.array([[x, y]], np.float64))[0]
-        found = []
+        intervals = []
         for number, tile in enumerate(self.tiles):
             low, high = tile.extent[:, :2]
             if (low <= place).all() and (place <= high).all():
-                found += self._model(number).borehole(*place.tolist())
-        return joined_intervals(found)
+                intervals += self._model(number).borehole(*place.tolist())
+        return joined_intervals(intervals)
 
     def field(self, series: str, compartment: str | None = None) -> ScalarField:
         """As Model.field: it is the field of the undivided model. Raises InputRefused where the file of the
@@ -176,9 +176,9 @@ class TiledModel(ShortRepr):
         first_cell = np.cumsum([0, *(tile.cells for tile in self.tiles)])
         sections = []
         for number in numbers or [0]:
-            found = cut(self._model(number))
-            cells = np.where(found.cells >= 0, found.cells + np.int32(first_cell[number]), -1)
-            sections.append(replace(found, cells=cells.astype(np.int32)))
+            tile_section = cut(self._model(number))
+            cells = np.where(tile_section.cells >= 0, tile_section.cells + np.int32(first_cell[number]), -1)
+            sections.append(replace(tile_section, cells=cells.astype(np.int32)))
         return joined_sections(sections)
 
 
@@ -186,30 +186,30 @@ def joined_intervals(found: list[Interval]) -> list[Interval]:
     """Intervals of one borehole in several tiles, from above downward; what one block has in two tiles
     becomes one."""
     joined: list[Interval] = []
-    for each in sorted(found, key=lambda interval: -interval.top):
+    for interval in sorted(found, key=lambda interval: -interval.top):
         last = joined[-1] if joined else None
-        off = _OFF * np.spacing(abs(each.top))
-        if last is not None and abs(last.bottom - each.top) <= off and last.block == each.block:
-            joined[-1] = Interval(each.block, last.top, each.bottom)
+        off = _OFF * np.spacing(abs(interval.top))
+        if last is not None and abs(last.bottom - interval.top) <= off and last.block == interval.block:
+            joined[-1] = Interval(interval.block, last.top, interval.bottom)
         else:
-            joined.append(each)
+            joined.append(interval)
     return joined
 
 
 def joined_sections(sections: list[Section]) -> Section:
     """Sections of parts of a model as one; equal vertices become one."""
-    first = np.cumsum([0, *(len(each.vertices) for each in sections)])
+    first = np.cumsum([0, *(len(section.vertices) for section in sections)])
     vertices, number = np.unique(
-        np.concatenate([each.vertices for each in sections]), axis=0, return_inverse=True
+        np.concatenate([section.vertices for section in sections]), axis=0, return_inverse=True
     )
-    corners = [each.polygon_vertices + start for each, start in zip(sections, first[:-1], strict=True)]
-    starts = np.cumsum([0, *(len(each.polygon_vertices) for each in sections)])
-    offsets = [each.offsets[:-1] + start for each, start in zip(sections, starts[:-1], strict=True)]
+    corners = [section.polygon_vertices + start for section, start in zip(sections, first[:-1], strict=True)]
+    starts = np.cumsum([0, *(len(section.polygon_vertices) for section in sections)])
+    offsets = [section.offsets[:-1] + start for section, start in zip(sections, starts[:-1], strict=True)]
     by_polygon = ["cells", "blocks", "block", "property", "compartment"]
     if isinstance(sections[0], Fence):
         by_polygon.append("panel")
     joined: dict[str, Any] = {  # dataclasses.replace takes fields of any type
-        name: np.concatenate([getattr(each, name) for each in sections]) for name in by_polygon
+        name: np.concatenate([getattr(section, name) for section in sections]) for name in by_polygon
     }
     return replace(
         sections[0],

@@ -63,7 +63,7 @@ class _Plan:
             count[name] += len(numbers)
         self._grid, self._end = grid, count.cumsum().reshape(count.shape)
         self._begin = self._end - count
-        numbers = np.concatenate([np.empty(0, np.int32), *(each for _, each in pieces)])
+        numbers = np.concatenate([np.empty(0, np.int32), *(triangles for _, triangles in pieces)])
         self._of_tiles = keep(numbers)
 
     def meeting(self, box: Box) -> np.ndarray:
@@ -113,12 +113,12 @@ class Windows:
             for entry in inputs
             for c in range(len(entry.divided().sheets))
         ]
-        tops = [own.top for entry in inputs for own in entry.fields]
+        tops = [field.top for entry in inputs for field in entry.fields]
         self._ends = min(low for low, _ in ends), max([*tops, *(high for _, high in ends)])
-        given = structures.native()
-        self._continued = native_module().continued_structures(given, structures.divided_box())
+        arrays = structures.native()
+        self._continued = native_module().continued_structures(arrays, structures.divided_box())
         corners = [triangles.reshape(-1, 3, 3) for triangles, _, _ in self._continued]
-        self._extents = [extents(each) for each in corners]
+        self._extents = [extents(triangles) for triangles in corners]
         self._sides: dict[int, np.ndarray] = {}  # of faults, at the middles of all tiles
 
     def _find_plans(self) -> None:
@@ -139,8 +139,8 @@ class Windows:
 
     def _level_sets(self) -> Iterator[Sheet]:
         for entry in self.inputs:
-            for own in entry.fields:
-                for number in own.numbers:
+            for series_field in entry.fields:
+                for number in series_field.numbers:
                     yield from entry.divided().distinct(number)
 
     def _known_plan(self, sheet: Sheet) -> _Plan:
@@ -161,8 +161,8 @@ class Windows:
 
     def for_workers(self) -> Windows:
         """The same without what windows do not need; to be called after `divide`."""
-        found = copy(self)
-        found.inputs = [
+        windows = copy(self)
+        windows.inputs = [
             RockInput(
                 without_shape(entry.rock),
                 entry.surfaces,
@@ -173,8 +173,8 @@ class Windows:
             )
             for entry in self.inputs
         ]
-        found._keep = as_it_is
-        return found
+        windows._keep = as_it_is
+        return windows
 
     def meets(self, box: Box) -> bool:
         """Whether anything lies over or under a box."""
@@ -191,8 +191,8 @@ class Windows:
             yield corners
             yield is_continuation
         for entry in self.inputs:
-            for own in entry.fields:
-                for field in own.distinct():
+            for series_field in entry.fields:
+                for field in series_field.distinct():
                     yield from (np.array(field.lattice.origin), field.values, field.levels)
                     yield from (field.points, field.point_values)
 
@@ -303,14 +303,14 @@ class Windows:
     def _continued_near(self, number: int, around: Box) -> tuple:
         """The triangles of a structure that are nearest to anything in the window; of a body, or of a fault
         that is far away, all of them."""
-        corners, is_continuation, kept = self._continued[number]
+        corners, is_continuation, end_sides = self._continued[number]
         space = self._space(around)
         away = 2 * norm(space[1] - space[0])
         low, high = self._extents[number]
         near = ((low <= space[1] + away) & (high >= space[0] - away)).all(axis=1)
         if number >= len(self.structures.faults) or not near.any():
             return self._continued[number]
-        return np.ascontiguousarray(corners[near]), np.ascontiguousarray(is_continuation[near]), kept
+        return np.ascontiguousarray(corners[near]), np.ascontiguousarray(is_continuation[near]), end_sides
 
     def _rock(self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, of_plan: dict) -> RockInput:
         entry = self.inputs[rock]
@@ -321,19 +321,19 @@ class Windows:
         def sheet_of(sheet: Sheet) -> Sheet:
             if sheet not in made:
                 box = around if sheet in level_sets else taken
-                own, used, triangles = self._part(self._plan_of[sheet], box, of_plan)
-                made[sheet] = Sheet(np.ascontiguousarray(sheet.vertices[used]), triangles, own)
+                numbers, used, triangles = self._part(self._plan_of[sheet], box, of_plan)
+                made[sheet] = Sheet(np.ascontiguousarray(sheet.vertices[used]), triangles, numbers)
             return made[sheet]
 
         structure = entry.divided()
         at = [n for n, number in enumerate(structure.faults.numbers) if number in present]
         whole = np.array(structure.faults.numbers, np.int64)
         rows = np.flatnonzero(_agree(structure.compartments, at, fixed[whole]))
-        kept = structure.compartments[np.ix_(rows, np.array(at, np.int64))]
-        compartments, first = np.unique(kept, axis=0, return_index=True)
+        sides = structure.compartments[np.ix_(rows, np.array(at, np.int64))]
+        compartments, first = np.unique(sides, axis=0, return_index=True)
         of = rows[first].tolist()
         sheets: list[list[Sheet | None]] = [[*map(sheet_of, structure.of_compartment(c))] for c in of]
-        found = RockStructure(
+        rock_structure = RockStructure(
             _faults(structure.faults, at, present),
             compartments,
             [structure.names[c] for c in of],
@@ -348,7 +348,7 @@ class Windows:
         if plan is not None:
             _, used, triangles = self._part(plan, taken, of_plan)
             region = Sheet(np.ascontiguousarray(plan.vertices[used]), triangles)
-        surfaces = [joined(found.distinct(k)) for k in range(len(entry.surfaces))]
+        surfaces = [joined(rock_structure.distinct(k)) for k in range(len(entry.surfaces))]
         stub = without_shape(entry.rock)
         for surface, (vertices, triangles) in zip(stub.surfaces, surfaces, strict=True):
             surface.vertices, surface.triangles = vertices, triangles
@@ -358,9 +358,9 @@ class Windows:
             region,
             [None] * len(surfaces),
             [None] * len(surfaces),
-            structure=found if self.structures.is_divided else None,
+            structure=rock_structure if self.structures.is_divided else None,
             overlapping=entry.overlapping,
-            fields=[own.within(self._space(around), of) for own in entry.fields],
+            fields=[field.within(self._space(around), of) for field in entry.fields],
         )
 
     def _space(self, around: Box) -> np.ndarray:
@@ -371,9 +371,9 @@ class Windows:
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """For a plan: the numbers of triangles in a box, of their vertices, and these triangles."""
         if plan not in of_plan:
-            own = plan.meeting(taken)
-            used, corners = np.unique(plan.triangles[own], return_inverse=True)
-            of_plan[plan] = own, used, corners.reshape(-1, 3).astype(np.int32)
+            numbers = plan.meeting(taken)
+            used, corners = np.unique(plan.triangles[numbers], return_inverse=True)
+            of_plan[plan] = numbers, used, corners.reshape(-1, 3).astype(np.int32)
         return of_plan[plan]
 
 
@@ -424,7 +424,7 @@ def _joined(
             arrays = work.native(joins.mesh, *mesh.arrays)
             return None if arrays is None else Sheet(keep(arrays[0]), keep(arrays[1]))
 
-        found = []
+        new_inputs = []
         for entry, sheets in zip(inputs, distinct, strict=True):
             meshes = {mesh: new(mesh) for mesh in (*sheets, entry.region) if mesh is not None}
             if None in meshes.values():
@@ -437,13 +437,13 @@ def _joined(
                 entry.surfaces = of[0]
             else:
                 entry.structure = replace(structure, sheets=of)
-            found.append(entry)
-    return found, joins.text
+            new_inputs.append(entry)
+    return new_inputs, joins.text
 
 
-def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:
+def _agree(sides: np.ndarray, free: list[int], fixed: np.ndarray) -> np.ndarray:
     """(N,) bool: which rows (N, S) of sides may lie where the sides of all but some structures are fixed."""
-    rest = np.setdiff1d(np.arange(sides.shape[1]), kept)
+    rest = np.setdiff1d(np.arange(sides.shape[1]), free)
     return ((sides[:, rest] == fixed[rest]) | (sides[:, rest] == 0)).all(axis=1)
 
 

@@ -46,15 +46,15 @@ class Picks:
 def picks_of(holes: Mapping, surface: str) -> list[Pick]:
     """The picks of a surface among those of holes (Picks.holes), whose depths are known where they are
     vertical and have a collar."""
-    found: list[Pick] = []
+    surface_picks: list[Pick] = []
     for hole, (collar, picks) in holes.items():
         is_below = [collar is not None and tuple(collar[:2]) == tuple(place[:2]) for _, place in picks]
-        found += [
+        surface_picks += [
             (Origin(hole, float(collar[2] - place[2]) if below else None), place)
             for (name, place), below in zip(picks, is_below, strict=True)
             if name == surface
         ]
-    return found
+    return surface_picks
 
 
 def read_borehole_tables(
@@ -70,32 +70,32 @@ def read_borehole_tables(
     tables mean. plan_step: as of read_intervals. Raises InputRefused naming file and line.
     """
     holes = Holes(given)
-    found = Picks() if given.picks is None else _picks(holes, units, scale, step)
+    picks = Picks() if given.picks is None else _picks(holes, units, scale, step)
     if given.intervals is not None:
         logged = read_intervals(holes, units, scale, plan_step, step)
-        found.observations.append(logged.observations)
-        found.left_out += logged.left_out
+        picks.observations.append(logged.observations)
+        picks.left_out += logged.left_out
         for name, (collar, tops) in logged.holes.items():
-            found.holes.setdefault(name, (collar, []))[1].extend(tops)
-        found.ends |= logged.ends
-    for _, places in found.holes.values():
+            picks.holes.setdefault(name, (collar, []))[1].extend(tops)
+        picks.ends |= logged.ends
+    for _, places in picks.holes.values():
         places.sort(key=lambda pick: (-pick[1][2], pick[0]))
-    found.of_surfaces = dict(sorted(found.of_surfaces.items()))
-    found.ends = dict(sorted(found.ends.items()))
-    found.holes = dict(sorted(found.holes.items()))
-    found.warnings += holes.warnings()
-    return found
+    picks.of_surfaces = dict(sorted(picks.of_surfaces.items()))
+    picks.ends = dict(sorted(picks.ends.items()))
+    picks.holes = dict(sorted(picks.holes.items()))
+    picks.warnings += holes.warnings()
+    return picks
 
 
 def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Picks:
-    given = holes.given
-    assert given.picks is not None
-    found: dict[str, list[Pick]] = {}
+    boreholes = holes.given
+    assert boreholes.picks is not None
+    points: dict[str, list[Pick]] = {}
     off: dict[str, list[np.ndarray]] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
     missing = 0
-    for row in rows(given, Path(given.picks), COLLARS, ("hole", "surface"), step):
+    for row in rows(boreholes, Path(boreholes.picks), COLLARS, ("hole", "surface"), step):
         name = units.surface(row.text("surface"))
         if not row.text("surface"):
             raise row.refuse("the surface has no name")
@@ -122,16 +122,16 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = holes.hole_of(row)
         source = Origin.of(hole, depth, row.table.file, row.line)
-        found.setdefault(name, []).append((source, place))
+        points.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:
             ends[hole] = holes.place(row, holes.ends[hole], scale)
-    if not (found or off):
-        raise InputRefused("there are no picks in it", file=given.picks)
+    if not (points or off):
+        raise InputRefused("there are no picks in it", file=boreholes.picks)
     switched_off = {name: np.array(places) for name, places in off.items()}
-    picks = Picks(found, met, ends=ends, switched_off=switched_off)
+    picks = Picks(points, met, ends=ends, switched_off=switched_off)
     if missing:
-        picks.warnings.append(f"{given.picks}: left out: {counted(missing, 'pick')} without a depth")
+        picks.warnings.append(f"{boreholes.picks}: left out: {counted(missing, 'pick')} without a depth")
     return picks
 
 

@@ -55,7 +55,7 @@ def read_dips_of_rock(
 ) -> tuple[Dips, list[LeftOut]]:
     """The dips of a table with the surfaces and blocks that they name, in the model's unit, and those that
     are of nothing that the rock mass has. Raises InputRefused naming file and line."""
-    kept, surfaces, blocks = [], [], []
+    chosen_rows, surfaces, blocks = [], [], []
     left_out: list[LeftOut] = []
     every = list(rows(given, Path(given.file), {**DIPS, **NAMED}, ("x", "y"), step))
     for row in every:
@@ -72,11 +72,11 @@ def read_dips_of_rock(
                 continue
         elif units.means_nothing(code):
             continue
-        kept.append(row)
+        chosen_rows.append(row)
         surfaces.append(surface)
         blocks.append(block)
-    found = _dips(given, kept, model_unit, may_be_none=bool(every))
-    return replace(found, surfaces=np.array(surfaces, str), blocks=np.array(blocks, str)), left_out
+    dips = _dips(given, chosen_rows, model_unit, may_be_none=bool(every))
+    return replace(dips, surfaces=np.array(surfaces, str), blocks=np.array(blocks, str)), left_out
 
 
 def names_units(given: DipFile, step: Step = no_step) -> bool:
@@ -85,17 +85,17 @@ def names_units(given: DipFile, step: Step = no_step) -> bool:
     return any(row.has(key) for row in every for key in NAMED)
 
 
-def _dips(given: DipFile, kept: list[Row], model_unit: str, may_be_none: bool = False) -> Dips:
+def _dips(dip_file: DipFile, table_rows: list[Row], model_unit: str, may_be_none: bool = False) -> Dips:
     """The dips of rows of a table."""
-    plan, height = factors(given.units, model_unit)
+    plan, height = factors(dip_file.units, model_unit)
     places, gradients, z, used = [], [], [], []
-    for row in kept:
+    for row in table_rows:
         places.append((plan * row.number("x"), plan * row.number("y")))
         z.append(height * row.number("z") if row.has("z") else math.nan)
         gradients.append(_gradient(row))
         used.append(row.is_used)
     if not (places or may_be_none):
-        raise InputRefused("there are no dips in it", file=given.file)
+        raise InputRefused("there are no dips in it", file=dip_file.file)
     shape = (-1, 2)
     in_use = None if all(used) else np.array(used)
     arrays = np.array(places).reshape(shape), np.array(gradients).reshape(shape), np.array(z)

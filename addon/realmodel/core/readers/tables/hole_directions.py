@@ -44,16 +44,16 @@ class HoleDirections:
         cls, given: Boreholes, hole_of: Callable[[Row], str], step: Step = no_step
     ) -> HoleDirections:
         """The stations of a survey table. hole_of: the hole of a row. Raises InputRefused naming the line."""
-        found = cls(given)
+        directions = cls(given)
         assert given.survey is not None
         for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
             depth = row.number("depth")
             if depth < 0:
                 raise row.refuse(f"depth is {depth:g}", "depths count from the collar along the hole")
-            found.add(row, depth, hole_of(row))
-        if not found._stations:
+            directions.add(row, depth, hole_of(row))
+        if not directions._stations:
             raise InputRefused("there are no directions in it", file=given.survey)
-        return found
+        return directions
 
     def add(self, row: Row, depth: float, hole: str) -> None:
         """A row of a hole, with the columns azimuth, and dip or inclination."""

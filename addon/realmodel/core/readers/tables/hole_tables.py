@@ -193,12 +193,12 @@ def other_units_in(given: Reading, file: Path, known: Columns, model_unit: str) 
     table = _opened(given, file, known)
     names, units = table.layout.names or (), given.units
     units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
-    found = {
+    column_units = {
         names[at]: units.get("xy" if meaning in ("x", "y") else "z")
         for meaning, at in _columns(given, table, known, ()).items()
         if meaning in _LENGTHS and at < len(names)
     }
-    return other_units(file, found, model_unit)
+    return other_units(file, column_units, model_unit)
 
 
 def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
@@ -206,14 +206,14 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
     Raises InputRefused if it is not a table."""
     table = _opened(given, file, known)
     names = [plain_name(name) for name in table.layout.names or ()]
-    found = _columns(given, table, known, ())
-    return {meaning: names[at] if at < len(names) else "" for meaning, at in found.items()}
+    columns = _columns(given, table, known, ())
+    return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(given: Reading, file: Path, known: Columns) -> TextTable:
-    names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
-    names.update(alias for aliases in known.values() for alias in aliases)
-    return open_table(file, Expected(given.separator, (), names, 1, 2))
+def _opened(reading: Reading, file: Path, meanings: Columns) -> TextTable:
+    names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
+    names.update(alias for aliases in meanings.values() for alias in aliases)
+    return open_table(file, Expected(reading.separator, (), names, 1, 2))
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:
@@ -228,14 +228,14 @@ def joined(name: str) -> str:
     return re.sub(r"[\s_-]+", "_", name.strip().lower())
 
 
-def _columns(given: Reading, table: TextTable, known: Columns, needed: Sequence[str]) -> dict[str, int]:
+def _columns(reading: Reading, table: TextTable, meanings: Columns, needed: Sequence[str]) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
     written = table.layout.names or ()
     names = [joined(plain_name(name)) for name in written]
     as_written = [name.strip().lower() for name in written]
     columns: dict[str, int] = {}
-    for column, called in given.columns.items():  # first, so that no other column takes what they name
-        if column not in known:
+    for column, called in reading.columns.items():  # first, so that no other column takes what they name
+        if column not in meanings:
             continue
         if isinstance(called, int):
             columns[column] = called - 1
@@ -243,16 +243,16 @@ def _columns(given: Reading, table: TextTable, known: Columns, needed: Sequence[
             columns[column] = table.column(called)
         elif joined(called) in names:
             columns[column] = names.index(joined(called))
-    for column, aliases in known.items():
+    for column, aliases in meanings.items():
         # depths of picks are often called otherwise than a survey's
-        if column in columns or (given.columns.get(column) is not None and known is not SURVEY):
+        if column in columns or (reading.columns.get(column) is not None and meanings is not SURVEY):
             continue
         at = next((names.index(joined(alias)) for alias in aliases if joined(alias) in names), None)
         if at is not None and at not in columns.values():
             columns[column] = at
     for column in needed:
         if column not in columns:
-            called = given.columns.get(column)
+            called = reading.columns.get(column)
             what = f"the header has no column {called or column}"
             advice = f'name it: columns = {{ {column} = "..." }}'
             raise InputRefused(what, file=table.file, line=table.layout.name_line or 1, advice=advice)

@@ -54,7 +54,7 @@ class Holes:
                 self._incomplete[hole] = f"line {row.line} of {self.given.collars} has no {lacking[0]}"
                 continue
             place = (row.number("x"), row.number("y"), row.number("z"))
-            known = hole in collars
+            is_repeated = hole in collars
             end = next((name for name in ("end", "depth") if row.has(name)), None)
             if end is not None:
                 self.ends[hole] = row.number(end)
@@ -62,7 +62,7 @@ class Holes:
                 raise row.refuse(f"hole '{hole}' has two collars", "give each hole one")
             if row.has("azimuth") and (row.has("dip") or row.has("inclination")):
                 directions.add(row, 0.0, hole)
-            elif is_inclined(row) and not known:
+            elif is_inclined(row) and not is_repeated:
                 self._inclined[hole] = None
         if not collars:
             what = next(iter(self._incomplete.values()), "there are no holes in it")
@@ -77,7 +77,7 @@ class Holes:
         if self._collars is None or hole in self._collars:
             return hole
         alike = list(self._written.get(joined(hole), ()))
-        if len({self._collars[each] for each in alike}) != 1:
+        if len({self._collars[name] for name in alike}) != 1:
             return hole
         self._taken[str(row.table.file), hole, alike[0]] = None
         return alike[0]
@@ -152,7 +152,7 @@ class Holes:
     def warnings(self) -> list[str]:
         warnings = list(self._warnings)
         for file in dict.fromkeys(file for file, _, _ in self._taken):
-            taken = [f"'{name}' for '{hole}'" for own, name, hole in self._taken if own == file]
+            taken = [f"'{name}' for '{hole}'" for path, name, hole in self._taken if path == file]
             warnings.append(f"{file}: holes are taken for those with collars: {number_list(taken)}")
         if incomplete := [hole for hole in self._incomplete if hole not in (self._collars or ())]:
             names = number_list(incomplete)

@@ -53,12 +53,12 @@ class IntervalValues:
 
 
 def _joined(name: str, parts: Sequence[IntervalValues]) -> np.ndarray:
-    found = [part.columns.get(name) for part in parts]
-    are_numbers = all(array is None or array.dtype.kind == "f" for array in found)
+    columns = [part.columns.get(name) for part in parts]
+    are_numbers = all(array is None or array.dtype.kind == "f" for array in columns)
     lacking = np.nan if are_numbers else ""
     arrays = [
         np.full(len(part.holes), lacking) if array is None else array if are_numbers else _texts(array)
-        for part, array in zip(parts, found, strict=True)
+        for part, array in zip(parts, columns, strict=True)
     ]
     return np.concatenate(arrays)
 

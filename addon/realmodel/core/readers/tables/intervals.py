@@ -56,12 +56,12 @@ def read_intervals(
     intervals are apart in plan at most, model units; None: by the area of the holes. Depths that differ by
     rounding are one; intervals of one block that meet are one. Raises InputRefused naming file and line.
     """
-    given = holes.given
-    assert given.intervals is not None
-    found: dict[str, _Hole] = {}
+    boreholes = holes.given
+    assert boreholes.intervals is not None
+    logs: dict[str, _Hole] = {}
     left_out: list[LeftOut] = []
     refused: InputRefused | None = None
-    for row in rows(given, Path(given.intervals), INTERVALS, ("hole", "from", "to", "block"), step):
+    for row in rows(boreholes, Path(boreholes.intervals), INTERVALS, ("hole", "from", "to", "block"), step):
         name, code = holes.hole_of(row), row.text("block")
         if not name:
             raise row.refuse("the hole has no name")
@@ -70,19 +70,19 @@ def read_intervals(
             refused = refused or holes.refuse_all(row)
             left_out += [] if units.says_nothing(code) else [lost]
             continue
-        hole = found.get(name)
+        hole = logs.get(name)
         if hole is None:
-            hole = found[name] = _Hole(row, holes.begin_of(row))
+            hole = logs[name] = _Hole(row, holes.begin_of(row))
         interval = _interval(row, name, code, units, left_out)
         if interval is not None:
             (hole.intervals if row.is_used else hole.switched_off).append(interval)
-    if not found:
-        raise refused or InputRefused("there are no intervals in it", file=given.intervals)
+    if not logs:
+        raise refused or InputRefused("there are no intervals in it", file=boreholes.intervals)
     if plan_step is None:
-        plan = np.array([hole.begin[:2] for hole in found.values()]) * scale[:2]
+        plan = np.array([hole.begin[:2] for hole in logs.values()]) * scale[:2]
         plan_step = plan_step_of(plan)
     parts, tops, ends = [], {}, {}
-    for name, hole in found.items():
+    for name, hole in logs.items():
 
         def place(depth: float, hole: _Hole = hole) -> np.ndarray:
             return holes.place(hole.row, depth, scale)
@@ -196,37 +196,40 @@ def _divided(
 ) -> list[tuple[float, float, str, bool]]:
     """Intervals (from, to, block, whether it is used) that do not overlap, downward; what several blocks
     claim is left out, or the first of them where they are switched off."""
-    given = [*((*each, True) for each in intervals), *((*each, False) for each in switched_off)]
-    alike = _alike([depth for begin, end, *_ in given for depth in (begin, end)])
-    given = [(alike[begin], alike[end], block, is_used) for begin, end, block, is_used in given]
-    found: list[tuple[float, float, str, bool]] = []
+    claims = [
+        *((*interval, True) for interval in intervals),
+        *((*interval, False) for interval in switched_off),
+    ]
+    alike = _alike([depth for begin, end, *_ in claims for depth in (begin, end)])
+    claims = [(alike[begin], alike[end], block, is_used) for begin, end, block, is_used in claims]
+    divided: list[tuple[float, float, str, bool]] = []
     for begin, end in pairwise(sorted(set(alike.values()))):
-        there = [(block, is_used) for low, high, block, is_used in given if low <= begin and end <= high]
-        is_used = any(used for _, used in there)
-        claimed = sorted({block for block, used in there if used == is_used})
+        present = [(block, is_used) for low, high, block, is_used in claims if low <= begin and end <= high]
+        is_used = any(used for _, used in present)
+        claimed = sorted({block for block, used in present if used == is_used})
         if len(claimed) > 1 and is_used:
             names = " and ".join(f"'{block}'" for block in claimed)
             text = f"hole '{hole}' from {begin:.9g} to {end:.9g}: intervals of {names} overlap"
             left_out.append(LeftOut("overlap", text, claimed[0], hole, begin))
             continue
         for block in claimed[:1]:
-            if found and found[-1][1:] == (begin, block, is_used):
-                found[-1] = (found[-1][0], end, block, is_used)
+            if divided and divided[-1][1:] == (begin, block, is_used):
+                divided[-1] = (divided[-1][0], end, block, is_used)
             else:
-                found.append((begin, end, block, is_used))
-    return found
+                divided.append((begin, end, block, is_used))
+    return divided
 
 
 def _alike(depths: list[float]) -> dict[float, float]:
     """For each depth the one that it counts as: the least of those that only rounding parts."""
     near = _ALIKE * max(map(abs, depths), default=0.0)
-    found: dict[float, float] = {}
+    alike: dict[float, float] = {}
     last = -np.inf
     for depth in sorted(set(depths)):
         if depth - last > near:
             last = depth
-        found[depth] = last
-    return found
+        alike[depth] = last
+    return alike
 
 
 def tops_of(observations: Observations) -> list[tuple[str, np.ndarray]]:

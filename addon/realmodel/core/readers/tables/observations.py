@@ -62,7 +62,7 @@ class Observations(ShortRepr):
                 f"not an array of numbers: {error}", item="observations", advice="places are x, y, z"
             ) from error
         count = len(places)
-        blocks, holes = (np.asarray(each, str).reshape(-1) for each in (self.blocks, self.holes))
+        blocks, holes = (np.asarray(texts, str).reshape(-1) for texts in (self.blocks, self.holes))
         holes = holes if len(holes) else np.full(count, "")
         depths = depths if len(depths) else np.full(count, np.nan)
         if not np.isfinite(places).all():
@@ -78,9 +78,9 @@ class Observations(ShortRepr):
         rows = np.asarray(self.rows, np.int64).reshape(-1)
         optional = {"numbers of intervals": intervals, "of 'used'": used, "of 'on'": on, "errors": errors}
         optional["numbers of rows"] = rows
-        for what, given in optional.items():
-            if len(given) not in (0, count):
-                text = f"{count} places have {len(given)} {what}"
+        for what, values in optional.items():
+            if len(values) not in (0, count):
+                text = f"{count} places have {len(values)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
         if not (np.isfinite(errors) & (errors >= 0)).all():
             raise InputRefused("an error of a height is negative, or not finite", item="observations")
@@ -93,8 +93,8 @@ class Observations(ShortRepr):
 
     def some(self, chosen: np.ndarray) -> Observations:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
-        kept = (getattr(self, name) for name in _ARRAYS)
-        return Observations(*(array[chosen] if len(array) else array for array in kept))
+        arrays = (getattr(self, name) for name in _ARRAYS)
+        return Observations(*(array[chosen] if len(array) else array for array in arrays))
 
     @property
     def in_use(self) -> np.ndarray:
@@ -121,8 +121,8 @@ class Observations(ShortRepr):
         has_hole = self.holes != ""
         columns = np.where(has_hole, along, 0.0), *self.places.T, self.blocks
         order = ascending(number, *columns, self.seen_on, self.errors, ~self.in_use)
-        found = replace(self, rows=self.rows if len(self.rows) else np.arange(len(self))).some(order)
-        return found.some(found._continued())
+        ordered = replace(self, rows=self.rows if len(self.rows) else np.arange(len(self))).some(order)
+        return ordered.some(ordered._continued())
 
     def _continued(self) -> np.ndarray:
         """(N,) the rows; of two at one depth of a hole, where blocks meet, that of the block above first."""
@@ -152,11 +152,13 @@ class Observations(ShortRepr):
 
     def logs(self) -> dict[str, Observations]:
         """The places of intervals of each hole that has some, downward along it."""
-        found = self.along_holes()
-        in_interval = found.goes_on
+        ordered = self.along_holes()
+        in_interval = ordered.goes_on
         in_interval[:-1] |= in_interval[1:]
-        found = found.some(in_interval)
-        return {str(hole): found.some(found.holes == hole) for hole in dict.fromkeys(found.holes.tolist())}
+        ordered = ordered.some(in_interval)
+        return {
+            str(hole): ordered.some(ordered.holes == hole) for hole in dict.fromkeys(ordered.holes.tolist())
+        }
 
     def row(self, number: int) -> int:
         """The number that one of them had before they were put in order."""
@@ -176,8 +178,8 @@ class Observations(ShortRepr):
         )
         if any(map(len, intervals)):
             intervals = [np.cumsum(~part.goes_on) for part in parts]
-            firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
-            intervals = [own + first for own, first in zip(intervals, firsts.tolist(), strict=True)]
+            firsts = np.cumsum([0, *(int(numbers.max(initial=0)) for numbers in intervals[:-1])])
+            intervals = [numbers + first for numbers, first in zip(intervals, firsts.tolist(), strict=True)]
         if any(map(len, used)):
             used = [part.in_use for part in parts]
         if any(map(len, on)):
@@ -352,13 +354,13 @@ def along_bounds(bounds: Bounds) -> np.ndarray:
         nearest = low if sign > 0 else high
         for key in side:
             nearest[key] = nearest[key] + np.array([0.0, 0.0, sign * margin])
-    found = []
+    points = []
     for key in sorted(low.keys() | high.keys()):
         lower, upper = low.get(key, high.get(key)), high.get(key, low.get(key))
         assert lower is not None and upper is not None
         is_between = lower[2] <= upper[2] or bool((lower[:2] == upper[:2]).all())
-        found += [0.5 * (lower + upper)] if is_between else [lower, upper]
-    return np.unique(found, axis=0)
+        points += [0.5 * (lower + upper)] if is_between else [lower, upper]
+    return np.unique(points, axis=0)
 
 
 def _nearest(bounds: Bounds, group: np.ndarray, is_lower: bool) -> dict[int, np.ndarray]:

@@ -118,12 +118,12 @@ def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> lis
     if columns is not None:
         return [table.column(column) for column in columns]
     names = [plain_name(name) for name in table.layout.names or ()]
-    found = {
+    headings = {
         axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in AXES.items()
     }
-    if not any(found.values()):
+    if not any(headings.values()):
         return [0, 1, 2]
-    for axis, alias in found.items():
+    for axis, alias in headings.items():
         count = names.count(alias) if alias else 0
         if count != 1:
             said = f"{count} columns named {alias}" if count else f"no column {axis}"
@@ -131,7 +131,7 @@ def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> lis
             raise InputRefused(
                 f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
-    return [names.index(alias) for alias in found.values() if alias]
+    return [names.index(alias) for alias in headings.values() if alias]
 
 
 def _guessed_names(table: TextTable) -> tuple[str, ...]:
@@ -153,16 +153,17 @@ def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
 
 
 def _read_rows(
-    table: TextTable, given: PointFile, columns: Sequence[int], step: Step, gather: JoinPieces
+    table: TextTable, point_file: PointFile, columns: Sequence[int], step: Step, gather: JoinPieces
 ) -> PointRows:
     """The points of a table. columns: of x, y and z."""
     native = native_module()
     filters = [
-        (table.column(name), _values(list_of(value), table.encoding)) for name, value in given.where.items()
+        (table.column(name), _values(list_of(value), table.encoding))
+        for name, value in point_file.where.items()
     ]
-    missing = _values(given.nodata_values, table.encoding)
-    mark = given.decimal or "."
-    if given.decimal is None and table.layout.separator != ",":
+    missing = _values(point_file.nodata_values, table.encoding)
+    mark = point_file.decimal or "."
+    if point_file.decimal is None and table.layout.separator != ",":
         numeric = [column for column, (numbers, _) in filters if numbers]
         if decimal_comma(_head_entries(table, [*columns, *numeric])):
             mark = ","
@@ -170,7 +171,7 @@ def _read_rows(
         try:
             return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
-            undecided = given.decimal is None and mark == "." and table.layout.separator != ","
+            undecided = point_file.decimal is None and mark == "." and table.layout.separator != ","
             if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
                 mark = ","
                 continue
@@ -193,8 +194,8 @@ def _pieces(
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts
-        for end, found in _in_order(pool, read, pieces_of(table.raw, begin), 2 * threads):
-            values, lines, filtered, without = found.result()
+        for end, future in _in_order(pool, read, pieces_of(table.raw, begin), 2 * threads):
+            values, lines, filtered, without = future.result()
             counts += filtered, without
             begin, line = end, line + lines
             yield values
@@ -294,10 +295,10 @@ def _refused(table: TextTable, columns: Sequence[int], decimal: str, error: Nati
 def _nothing_matches(table: TextTable, where: Mapping) -> InputRefused:
     """The error that no row matches `where`; it lists the values that there are."""
     conditions = ", ".join(f"{name} = {value!r}" for name, value in where.items())
-    there = []
+    contents = []
     for name in where:
         seen = dict.fromkeys(_head_entries(table, [table.column(name)], 100_000))
-        there.append(f"{name} has {names_shown(list(seen))}")
+        contents.append(f"{name} has {names_shown(list(seen))}")
     return InputRefused(
-        f"no row has {conditions}", file=table.file, advice=f"among the first rows {number_list(there)}"
+        f"no row has {conditions}", file=table.file, advice=f"among the first rows {number_list(contents)}"
     )

@@ -36,13 +36,13 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
     Raises InputRefused where it may be none of them.
     """
     file = Path(file)
-    given = Boreholes(columns=columns or {})
+    reading = Boreholes(columns=columns or {})
     hole, logged, survey, seen, dips = (
-        columns_in(given, file, known) for known in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
+        columns_in(reading, file, meanings) for meanings in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
     )
     are_picks = {"hole", "surface"} <= hole.keys() and not {"depth", "elevation", "z"}.isdisjoint(hole)
     are_seen = {"x", "y", "z", "block"} <= seen.keys()
-    named = set(given.columns)
+    named = set(reading.columns)
     if are_picks and "surface" in named:
         return "picks"
     if {"hole", "from", "to", "block"} <= logged.keys():
@@ -71,9 +71,9 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
 
 
 def _are_dips(columns: Mapping[str, str]) -> bool:
-    found = columns.keys()
-    has_angles = "dip" in found and not {"dip_direction", "strike"}.isdisjoint(found)
-    return {"x", "y"} <= found and ({"slope_x", "slope_y"} <= found or has_angles)
+    meanings = columns.keys()
+    has_angles = "dip" in meanings and not {"dip_direction", "strike"}.isdisjoint(meanings)
+    return {"x", "y"} <= meanings and ({"slope_x", "slope_y"} <= meanings or has_angles)
 
 
 def _by_azimuth(columns: Mapping[str, str]) -> bool:
@@ -87,9 +87,9 @@ def table_contents(
 ) -> tuple[dict[str, str], list[str]]:
     """What is read of a table: its columns, by meaning, as columns_in, and the codes of surfaces or blocks in
     its first 2,000 rows, sorted. columns: as for table_kind. Raises InputRefused."""
-    given, kind = Boreholes(columns=columns or {}), table_kind(file, columns)
-    found = columns_in(given, Path(file), _KNOWN[kind])
-    coded = [key for key in ("surface", "block") if key in found and kind != "collars"]
-    first = islice(rows(given, Path(file), _KNOWN[kind], (), no_step), _LOOKED_AT) if coded else ()
+    reading, kind = Boreholes(columns=columns or {}), table_kind(file, columns)
+    by_meaning = columns_in(reading, Path(file), _KNOWN[kind])
+    coded = [key for key in ("surface", "block") if key in by_meaning and kind != "collars"]
+    first = islice(rows(reading, Path(file), _KNOWN[kind], (), no_step), _LOOKED_AT) if coded else ()
     codes = {row.text(key) for row in first for key in coded if row.has(key)}
-    return found, sorted(codes)
+    return by_meaning, sorted(codes)

@@ -40,9 +40,9 @@ class TableLayout:
 def fields(line: str, separator: str) -> list[str]:
     """The entries of a line, without blanks and quotes around them."""
     if '"' in line:
-        given = re.sub(r"\s+", " ", line.strip()) if separator == " " else line
+        text = re.sub(r"\s+", " ", line.strip()) if separator == " " else line
         try:
-            return [entry.strip() for entry in next(csv.reader([given], delimiter=separator))]
+            return [entry.strip() for entry in next(csv.reader([text], delimiter=separator))]
         except csv.Error:  # quotes that do not fit together in a long line: they are no quotes
             pass
     if separator == " ":
@@ -77,7 +77,7 @@ class Expected:
 def table_layout(file: Path, raw: Content, start: int, encoding: str, expected: Expected) -> TableLayout:
     """The layout of a table that begins at byte `start` of its file. Raises InputRefused where there are no
     rows."""
-    separator, known = expected.separator, expected.known
+    separator, known_names = expected.separator, expected.known
     head = raw[start : start + HEAD_BYTES]
     if start + HEAD_BYTES < len(raw):
         head = head[: head.rfind(b"\n") + 1] or head
@@ -92,7 +92,7 @@ def table_layout(file: Path, raw: Content, start: int, encoding: str, expected: 
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
         count = sum(is_any_number(entry, separator) for entry in entries)
-        named = bool(known) and not {plain_name(entry) for entry in entries}.isdisjoint(known)
+        named = bool(known_names) and not {plain_name(entry) for entry in entries}.isdisjoint(known_names)
         if count and not (named and count < expected.numbers):
             first = n
             break
@@ -103,7 +103,7 @@ def table_layout(file: Path, raw: Content, start: int, encoding: str, expected: 
         (n, fields(texts[n].lstrip("#!%/ \t"), separator)) for n in range(first) if _is_comment(texts[n])
     ]
     wanted = [name for name in expected.wanted if isinstance(name, str)]
-    name_line, names = _header(headings, commented, wanted, known)
+    name_line, names = _header(headings, commented, wanted, known_names)
     body = start + sum(len(line) + 1 for line in lines[:first])
     return TableLayout(
         separator, names, min(body, len(raw)), first + 1, None if name_line is None else name_line + 1
@@ -133,7 +133,7 @@ def _header(
     headings: list[tuple[int, list[str]]],
     commented: list[tuple[int, list[str]]],
     wanted: Iterable[str],
-    known: Collection[str],
+    known_names: Collection[str],
 ) -> tuple[int | None, tuple[str, ...] | None]:
     """The line with the names of the columns: the one that has the requested names, if any; a comment counts
     only if it has all of them."""
@@ -142,7 +142,7 @@ def _header(
         if asked and set(asked) <= {entry.lower() for entry in entries}:
             return n, tuple(entries)
     for n, entries in headings:
-        if {plain_name(entry) for entry in entries}.intersection(known):
+        if {plain_name(entry) for entry in entries}.intersection(known_names):
             return n, tuple(entries)
     for n, entries in commented:
         if {"x", "y", "z"} <= {plain_name(entry) for entry in entries}:
@@ -166,11 +166,11 @@ def column_number(file: Path, layout: TableLayout, column: str | int) -> int:
         advice = "use column numbers, from 1: columns = [1, 2, 3]"
         raise InputRefused(f"there is no header that names a column '{column}'", file=file, advice=advice)
     for same in (str.strip, lambda name: name.strip().lower()):
-        found = [n for n, name in enumerate(names) if same(name) == same(column)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            what = f"the header has {len(found)} columns named {column}"
+        matches = [n for n, name in enumerate(names) if same(name) == same(column)]
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
+            what = f"the header has {len(matches)} columns named {column}"
             raise InputRefused(what, file=file, line=layout.name_line, advice="give their numbers, from 1")
     if column.strip().isdecimal() and 1 <= int(column) <= len(names):
         return int(column) - 1

@@ -46,12 +46,12 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
     names = list(table.layout.names or ())
     names = [name or str(n + 1) for n, name in enumerate(names)] if len(names) == count else []
     names = names or [str(n + 1) for n in range(count)]
-    found = TablePreview(file, names, head_rows(table, _ROWS))
+    preview = TablePreview(file, names, head_rows(table, _ROWS))
     try:
         used = wanted_columns(table, columns)
-        found.xyz = tuple(names[n] for n in used if n < count)
+        preview.xyz = tuple(names[n] for n in used if n < count)
     except InputRefused as error:
-        found.problem, used = error.what, []
+        preview.problem, used = error.what, []
     splits = []
     for column in range(count):
         if column in used or names.count(names[column]) > 1:
@@ -62,9 +62,9 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
         if _LEAST <= len(values) <= _MOST and (is_text or named or len(values) * 10 <= len(rows)):
             splits.append((not named, not is_text, column, names[column], values))
     splits.sort(key=lambda entry: entry[:3])
-    found.splits = {name: values for *_, name, values in splits}
-    found.is_plain = bool(splits) and not splits[0][0]
-    return found
+    preview.splits = {name: values for *_, name, values in splits}
+    preview.is_plain = bool(splits) and not splits[0][0]
+    return preview
 
 
 def _sampled_rows(table: TextTable) -> list[list[str]]:

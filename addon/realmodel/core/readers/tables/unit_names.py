@@ -45,8 +45,8 @@ class UnitNames:
 
     def meaning(self, code: str) -> str:
         """What a name means; the name itself where nothing is called so."""
-        found = self._found(code)
-        return code if found is None else found
+        name = self._found(code)
+        return code if name is None else name
 
     def block(self, code: str) -> str | None:
         """The surface over the block that a name means, or the body, by its name; None for an unknown name,
@@ -54,7 +54,7 @@ class UnitNames:
         name = self.meaning(code)
         over = [
             surface for surface, block in zip(self.surfaces, self.blocks, strict=True) if block == name
-        ] or [each for each in (*self.surfaces, *self.bodies) if each == name]
+        ] or [unit for unit in (*self.surfaces, *self.bodies) if unit == name]
         return over[0] if len(over) == 1 else None
 
     def surface(self, code: str) -> str:
@@ -76,22 +76,22 @@ class UnitNames:
     @cached_property
     def _alike(self) -> dict[str, str | None]:
         """What names mean that are written otherwise; None where it is not clear."""
-        known = {name: name for name in (*self.bodies, *self.blocks, *self.surfaces)} | dict(self.names)
-        found: dict[str, str | None] = {}
-        for name, meant in known.items():
-            if found.setdefault(joined(name), meant) != meant:
-                found[joined(name)] = None
-        return found
+        meanings = {name: name for name in (*self.bodies, *self.blocks, *self.surfaces)} | dict(self.names)
+        spellings: dict[str, str | None] = {}
+        for name, meant in meanings.items():
+            if spellings.setdefault(joined(name), meant) != meant:
+                spellings[joined(name)] = None
+        return spellings
 
     def _found(self, code: str) -> str | None:
         """A name as `names` or the rock mass has it, None where neither does; numbers also as programs write
         them that know no whole ones (51.0)."""
         whole = _WHOLE.fullmatch(code)
-        for given in (code, *([whole.group(1)] if whole else [])):
-            if given in self.names:
-                return self.names[given]
-            if self._is_known(given):
-                return given
+        for spelling in (code, *([whole.group(1)] if whole else [])):
+            if spelling in self.names:
+                return self.names[spelling]
+            if self._is_known(spelling):
+                return spelling
         return None if _is_empty(code) else self._alike.get(joined(code))
 
 
