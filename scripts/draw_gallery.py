@@ -119,7 +119,7 @@ def basin(folder):
     """A section through a rift basin: half of the model, its faults drawn and named."""
     import numpy as np
     from realmodel.core.display import polygon_mesh
-    from realmodel.core.results.sections.section_faults import traces_on_plane
+    from realmodel.core.results.sections.section_data import traces_on_plane
 
     model, picture = sample("rift_basin", folder)
     section = 1500.0
@@ -190,7 +190,7 @@ def dome(folder):
     """A dome that leans, displaced by a fault, its two sides moved apart."""
     import numpy as np
     from realmodel.core.display import polygon_mesh
-    from realmodel.core.results.sections.section_faults import traces_on_plane
+    from realmodel.core.results.sections.section_data import traces_on_plane
 
     model, picture = sample("faulted_dome", folder)
     half = model.cut_by_plane((0.0, 480.0, 0.0), (0.0, 1.0, 0.0)).above

@@ -235,7 +235,7 @@ def add_scale(drawing, ends, text):
 
 def add_label(drawing, place, offset, text):
     """A text on a white plate at an offset from a place, and a line to it."""
-    from realmodel.core.drawing.glyphs import text_width
+    from realmodel.core.drawing.drawing import text_width
 
     lines = text.split("\n")
     width = max(text_width(line, LABEL) for line in lines) + 12
@@ -265,9 +265,8 @@ def legend_band(names, width):
     """(height, width, 4): the properties and their colors in a row. names: of the properties: their colors.
     width: in pixels."""
     import numpy as np
-    from realmodel.core.drawing.drawing import Drawing
-    from realmodel.core.drawing.glyphs import text_width
-    from realmodel.core.drawing.raster import over, rasterize
+    from realmodel.core.drawing.drawing import Drawing, text_width
+    from realmodel.core.drawing.png import over, rasterize
 
     drawing = Drawing(POINTS * width / SIZE[0], 3.0 * LABEL)
     taken = sum(text_width(name, LABEL) + 24.0 for name in names)
@@ -295,8 +294,7 @@ def write_title(file, title, subtitle, color=None):
 
 def put_over(file, drawing):
     """Puts a drawing over a picture."""
-    from realmodel.core.drawing.png import write_pixels
-    from realmodel.core.drawing.raster import over, rasterize
+    from realmodel.core.drawing.png import over, rasterize, write_pixels
 
     pixels = read_pixels(file)
     over(pixels, rasterize(drawing, pixels.shape[1] / drawing.width, None), 0, 0)

@@ -205,9 +205,8 @@ def labeled(picture, text, labels=()):
     """A picture of the window with a text at its upper left, and labels: (text, position (x, y), offset)."""
     import numpy as np
     from gallery_picture import INK, LABEL, WHITE, add_label
-    from realmodel.core.drawing.drawing import Drawing
-    from realmodel.core.drawing.glyphs import text_width
-    from realmodel.core.drawing.raster import over, rasterize
+    from realmodel.core.drawing.drawing import Drawing, text_width
+    from realmodel.core.drawing.png import over, rasterize
 
     height, width = picture.shape[:2]
     scale = 28.0 / LABEL

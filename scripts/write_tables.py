@@ -182,7 +182,7 @@ def written(text):
     from realmodel.core.project.project import PROJECT, ROCK, SURFACE
     from realmodel.core.project.series import SERIES
     from realmodel.core.project.structure_entries import BODY, FAULT
-    from realmodel.core.settings.point_file import READING
+    from realmodel.core.settings.data_files import READING
 
     tables = {
         "rules": _rules,

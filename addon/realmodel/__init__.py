@@ -28,7 +28,7 @@ def register():
             f"{sys.version_info.major}.{sys.version_info.minor}: use Blender 4.1 or newer"
         )
     if __name__ == "realmodel" and (Path(__file__).parent / "wheels").is_dir():
-        from .core.base.missing_native import explanation
+        from .core.base.packages import explanation
 
         raise RuntimeError(explanation(ImportError()))
     from . import handlers, operators, preferences, props, ui

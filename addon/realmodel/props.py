@@ -19,17 +19,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import (
-    preferences,
-    props_ensemble,
-    props_planned,
-    props_rock,
-    props_series,
-    props_stage,
-    props_structure,
-    props_surface,
-    props_view,
-)
+from . import preferences, props_planned, props_rock, props_view
 from .bl import changes, display
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import library_rows, results, units
@@ -182,8 +172,8 @@ class RealModelSettings(bpy.types.PropertyGroup):
     active_rock: IntProperty(
         name="Active Rock Mass", description="The rock mass whose surfaces are shown", options=set()
     )
-    faults: CollectionProperty(type=props_structure.RealModelFault)
-    bodies: CollectionProperty(type=props_structure.RealModelBody)
+    faults: CollectionProperty(type=props_rock.RealModelFault)
+    bodies: CollectionProperty(type=props_rock.RealModelBody)
     structure_kind: EnumProperty(
         name="Kind",
         description="Which of them the list shows",
@@ -229,7 +219,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         update=changes.stage,
     )
     known_last: IntProperty(default=-1, options={"HIDDEN"})  # settings.last_stage; -1: not known yet
-    stage_slider: PointerProperty(type=props_stage.RealModelStage)
+    stage_slider: PointerProperty(type=props_view.RealModelStage)
     display: EnumProperty(
         name="Display",
         description="How the model is displayed",
@@ -315,12 +305,12 @@ class RealModelSettings(bpy.types.PropertyGroup):
     is_coarse: BoolProperty(options={"HIDDEN"})  # the blocks are of coarse fields: see bl/scene/live.py
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
-    ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)
+    ensemble: PointerProperty(type=props_planned.RealModelEnsemble)
     planned_holes: CollectionProperty(type=props_planned.RealModelPlannedHole)
     active_planned_hole: IntProperty(
         name="Active Planned Hole", description="The planned hole whose table is shown", options=set()
     )
-    realization_slider: PointerProperty(type=props_ensemble.RealModelRealization)
+    realization_slider: PointerProperty(type=props_planned.RealModelRealization)
 
 
 class RealModelActivity(bpy.types.PropertyGroup):
@@ -353,7 +343,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
 
 
 _MODULES = (
-    *(props_surface, props_series, props_rock, props_structure, props_view, props_stage, props_ensemble),
+    *(props_rock, props_rock, props_rock, props_rock, props_view, props_view, props_planned),
     props_planned,
     sys.modules[__name__],
 )

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A planned hole: a row of `scene.realmodel.planned_holes`."""
+"""Planned holes and the ensemble of a model: `scene.realmodel.planned_holes`, `scene.realmodel.ensemble`."""
 
 import bpy
-from bpy.props import FloatProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
+from . import props_view
 from .bl import changes
+from .bl.display import ensembles
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.scene import planned_holes
-from .props_coordinates import coordinate_field
+from .props_view import coordinate_field
 
 
 def _collar_field(name, axis):
@@ -59,3 +61,67 @@ class RealModelPlannedHole(bpy.types.PropertyGroup):
     exact = ArraysProperty()
     result: StringProperty(options={"HIDDEN"})  # JSON: what it meets, as bl/scene/planned_holes.py keeps it
     shares = ArraysProperty()  # the probability of each block along it
+
+
+MOST = 1000  # realizations; of more than 100 the panel has no slider
+_MOST_OF_SLIDER = 100
+
+
+class RealModelEnsemble(bpy.types.PropertyGroup):
+    """Settings of an ensemble, and of its display."""
+
+    realizations: IntProperty(
+        name="Realizations",
+        description="Number of builds of the model, each with other elevations between the points",
+        default=40,
+        min=2,
+        max=MOST,
+        soft_max=100,
+        options=set(),
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="Seed of the random numbers: another one gives other realizations",
+        min=0,
+        options=set(),
+    )
+    color_by: EnumProperty(
+        name="Color By",
+        description="What the colors of the section show",
+        items=ensembles.COLORS,
+        update=changes.ensemble,
+        options=set(),
+    )
+    block: StringProperty(
+        name="Block",
+        description="The block whose probability is shown",
+        update=changes.ensemble,
+        options=set(),
+    )
+    realization: IntProperty(
+        name="Realization",
+        description="The realization that is shown",
+        default=1,
+        min=1,
+        max=MOST,
+        update=changes.ensemble,
+        options=set(),
+    )
+    object: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
+    table: StringProperty(options={"HIDDEN"})  # JSON: what display.ensembles.table gives
+
+
+def slider_of(count):
+    """The slider of an ensemble of so many realizations; None where there is none."""
+    return props_view.slider_name(count) if 2 <= count <= _MOST_OF_SLIDER else None
+
+
+RealModelRealization = props_view.slider_group(
+    "RealModelRealization",
+    lambda group: group.ensemble,
+    "realization",
+    range(2, _MOST_OF_SLIDER + 1),
+    name="Realization",
+    description="The realization that is shown",
+    min=1,
+)

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings of the view beside `display`, `stage`, `explode` and `color_by`: `scene.realmodel.view`."""
+"""The slider of the stage, from 0 to the number of the youngest surface: another way to set
+`scene.realmodel.stage`.
+"""
 
 import bpy
+import numpy as np
 from bpy.props import (
     BoolProperty,
     EnumProperty,
@@ -17,7 +20,81 @@ from .bl.display import cuts, fields
 from .bl.field import boreholes
 from .bl.objects.stored_arrays import ArraysProperty
 from .core.proof.misfits import DIP_TOLERANCE
-from .props_coordinates import coordinate_field
+
+
+def slider_name(most):
+    """The slider that ends at `most`."""
+    return f"of_{most}"
+
+
+def slider_group(class_name, holder, key, ends, **shown):
+    """A PropertyGroup with a slider for each of some ends. holder: gives, of scene.realmodel, the group with
+    the property `key`, which they set. shown: name, description and min."""
+
+    def slider(most):
+        return IntProperty(
+            max=most,
+            get=lambda self: min(getattr(holder(self.id_data.realmodel), key), most),
+            set=lambda self, value: setattr(holder(self.id_data.realmodel), key, value),
+            options={"SKIP_SAVE"},  # and not ANIMATABLE: the keyframes are those of the property itself
+            **shown,
+        )
+
+    return type(
+        class_name,
+        (bpy.types.PropertyGroup,),
+        {
+            "__doc__": f"`{key}` as a slider.",
+            "__module__": __name__,
+            "__annotations__": {slider_name(most): slider(most) for most in ends},
+        },
+    )
+
+
+MOST = 100  # a model with more surfaces has the number field alone
+
+DESCRIPTION = (
+    "Replay deposition and erosion: 0 shows only the oldest surface, the last stage the whole model. "
+    "The number beside the slider can be animated"
+)
+
+
+def stage_slider_name(last):
+    """The slider of models whose youngest surface has the number `last`; None where there is none."""
+    return slider_name(last) if 1 <= last <= MOST else None
+
+
+RealModelStage = slider_group(
+    "RealModelStage",
+    lambda group: group,
+    "stage",
+    range(1, MOST + 1),
+    name="Stage",
+    description=DESCRIPTION,
+    min=0,
+)
+
+
+def coordinate_field(name, axis, description, place, move):
+    """A property with one coordinate of a place in the model. place(row): (3,), or None where there is none
+    yet; move(row, place) takes another. Text that is not a number leaves the place as it is."""
+
+    def get_text(row):
+        at = place(row)
+        return "" if at is None else f"{at[axis]:.3f}"
+
+    def set_text(row, text):
+        try:
+            value = float(text.replace(",", ""))
+        except ValueError:
+            return
+        at = place(row)
+        if at is None or not np.isfinite(value):
+            return
+        at[axis] = value
+        move(row, at)
+
+    return StringProperty(name=name, description=description, options=set(), get=get_text, set=set_text)
 
 
 def _plane_field(name, axis):

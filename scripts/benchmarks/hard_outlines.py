@@ -40,14 +40,14 @@ def _comb(teeth: int) -> np.ndarray:
 
 def _lakes() -> list[list[np.ndarray]]:
     from realmodel.core.readers import read_shapes
-    from realmodel.core.settings.map_layer import MapLayer
+    from realmodel.core.settings.data_files import MapLayer
 
     return [lake.rings for lake in read_shapes(MapLayer(_file("pleasant/all_lakes.shp"))).polygons]
 
 
 def _formation() -> list[np.ndarray]:
     from realmodel.core.readers import read_shapes
-    from realmodel.core.settings.map_layer import MapLayer
+    from realmodel.core.settings.data_files import MapLayer
 
     shapes = read_shapes(MapLayer(_file("hamersley/geology.geojson")))
     return max((polygon.rings for polygon in shapes.polygons), key=lambda rings: len(rings[0]))

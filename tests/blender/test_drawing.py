@@ -12,7 +12,7 @@ from realmodel.bl.display import ensembles
 from realmodel.bl.project import samples, settings
 from realmodel.bl.scene import quality
 from realmodel.core.settings.methods import METHODS
-from realmodel.core.settings.series import FIELD
+from realmodel.core.settings.series_kinds import FIELD
 from recording_layout import Drawing, Layout, Refused, draw, draw_tab
 
 _opened = None  # files that are opened while a panel is drawn; None: none is

@@ -9,7 +9,7 @@ from realmodel.bl.objects import materials
 from realmodel.bl.pictures import batch
 from realmodel.bl.project import project_settings
 from realmodel.core import build, load_project
-from realmodel.core.project.colors import hex_color
+from realmodel.core.project.looks import hex_color
 from realmodel.core.results.automatic_library import PALETTE
 
 PROJECT = """

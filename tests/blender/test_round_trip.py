@@ -9,7 +9,7 @@ from realmodel.core import load_project
 from realmodel.core.base.work import run
 from realmodel.core.project.project import ROCK, SURFACE
 from realmodel.core.project.structure_entries import BODY, FAULT
-from realmodel.core.settings.point_file import READING
+from realmodel.core.settings.data_files import READING
 from realmodel.core.structures.shapes.reading import read_structures
 from realmodel.core.surfaces.prepare import read_rocks
 

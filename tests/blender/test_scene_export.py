@@ -16,7 +16,7 @@ from realmodel.bl.objects.materials import linear_color
 from realmodel.bl.scene import scene_export
 from realmodel.bl.shading import looks
 from realmodel.core import InputRefused
-from realmodel.core.project.colors import hex_color
+from realmodel.core.project.looks import hex_color
 
 FOLDER = Path(__file__).resolve().parent
 READER = FOLDER.parents[1] / "build" / "venv" / "bin" / "python"

@@ -17,7 +17,7 @@ from realmodel.bl.objects.stored_arrays import StoredArrays
 from realmodel.bl.project import borehole_picks, method_settings, observed_blocks, settings, surface_dips
 from realmodel.bl.scene import planned_holes
 from realmodel.core import Dips, InputRefused, Observations
-from realmodel.core.readers.tables.interval_values import IntervalValues
+from realmodel.core.readers.tables.intervals import IntervalValues
 from recording_layout import draw_tab
 
 GIVEN = {

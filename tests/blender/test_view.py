@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import realmodel
 from made_projects import LIBRARY
-from realmodel import props_stage
+from realmodel import props_view
 from realmodel.bl.display import cuts, preparing, replacing
 from realmodel.core import build
 from view_case import Case
@@ -187,7 +187,7 @@ class Stages(Case):
         self.assertEqual(self.settings.stage, 4)
 
     def test_the_slider_of_the_panel_ends_at_the_youngest_surface(self):
-        slider, name = self.settings.stage_slider, props_stage.name_of(4)
+        slider, name = self.settings.stage_slider, props_view.stage_slider_name(4)
         bounds = slider.bl_rna.properties[name]
         self.assertEqual((bounds.soft_min, bounds.soft_max), (0, 4))
         setattr(slider, name, 2)
@@ -195,10 +195,10 @@ class Stages(Case):
         self.assert_shows(self.model.stage(2))
         self.settings.stage = 3
         self.assertEqual(getattr(slider, name), 3)
-        setattr(slider, props_stage.name_of(2), 2)  # another model's, drawn before rows were added
+        setattr(slider, props_view.stage_slider_name(2), 2)  # another model's, drawn before rows were added
         self.assertEqual(self.settings.stage, 2)
-        self.assertIsNone(props_stage.name_of(0), "there is nothing to slide through")
-        self.assertIsNone(props_stage.name_of(props_stage.MOST + 1))
+        self.assertIsNone(props_view.stage_slider_name(0), "there is nothing to slide through")
+        self.assertIsNone(props_view.stage_slider_name(props_view.MOST + 1))
         self.assertFalse(bounds.is_animatable, "keyframes belong to the stage itself")
 
     def test_blocks_that_are_not_there_are_out_of_sight(self):

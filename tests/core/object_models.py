@@ -4,7 +4,7 @@
 import numpy as np
 from conftest import grid_surface
 from realmodel.core import Boreholes, Library, Project, Property, Rock, Surface, build
-from realmodel.core.exporters.shapes.parts import FaceTriangles
+from realmodel.core.exporters.shapes.shape_parts import FaceTriangles
 
 SHIFT = np.array([400_000.25, 5_300_000.5, 0.0])
 COLLARS = "hole,x,y,z,azimuth,dip\nB1,400000.75,5300001,9,,\nB2,400000.5,5300000.75,9,90,-80\n"

@@ -3,7 +3,7 @@
 
 import numpy as np
 from realmodel.core.base.mapped_arrays import as_it_is
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.proof.closed_form import ClosedForm
 from realmodel.core.structures.setup import make_structures, mesh_inputs, read_inputs

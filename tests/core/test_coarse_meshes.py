@@ -4,8 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build
-from realmodel.core.display.coarse_meshes import coarsened, joined
-from realmodel.core.display.polygon_mesh import of_blocks
+from realmodel.core.display.polygon_mesh import coarsened, joined, of_blocks
 
 
 def layers(n=40):

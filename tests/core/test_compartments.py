@@ -4,14 +4,14 @@
 import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.cells.joining import blocks_divided
 from realmodel.core.cells.reach import Reach
 from realmodel.core.proof.closed_form import BodyOfRock
 from realmodel.core.structures.parts.parts import divide, structures_of
-from realmodel.core.structures.shapes.branches import require_meeting
-from realmodel.core.surfaces.sides import fault_sides
+from realmodel.core.structures.shapes.reading import require_meeting
+from realmodel.core.surfaces.rock_structure import fault_sides
 from structure_cases import ball, plane_fault, prepared
 
 BOX = np.array([[0.0, 0.0, -4.0], [10.0, 10.0, 4.0]])

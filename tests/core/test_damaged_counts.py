@@ -10,7 +10,7 @@ import pytest
 from damages import damaged_bytes, wrong_counts
 from realmodel.core import Boreholes, InputRefused, PointFile
 from realmodel.core.readers import read_boreholes, read_mesh, read_point_file
-from realmodel.core.readers.fault_sticks import read_fault_points
+from realmodel.core.readers.fault_input import read_fault_points
 from test_damaged_files import MSH, READERS
 from test_rasters import PLACE, needs_tifffile, tifffile
 

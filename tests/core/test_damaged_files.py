@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from realmodel.core import BuildFailed, InputRefused, PointFile, load_library, load_project
 from realmodel.core.readers import read_mesh, read_point_file, read_points, read_region
-from realmodel.core.readers.fault_sticks import read_fault_points
+from realmodel.core.readers.fault_input import read_fault_points
 
 PROJECT = b"""format = 1
 name = "x"

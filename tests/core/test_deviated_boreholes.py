@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, build, load_project
 from realmodel.core.readers import read_boreholes
-from realmodel.core.readers.tables.well_trajectory import WellTrajectory, direction, dogleg_angles
+from realmodel.core.readers.tables.holes import WellTrajectory, direction, dogleg_angles
 
 NEAR = {"rtol": 0, "atol": 1e-9}
 

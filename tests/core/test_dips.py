@@ -24,7 +24,7 @@ from realmodel.core import (
 )
 from realmodel.core.base.work import Work, native_module
 from realmodel.core.ensembles.realization import Realizer
-from realmodel.core.heights.from_neighbours import dip_use, structure
+from realmodel.core.heights.from_neighbors import dip_use, structure
 from realmodel.core.heights.interpolation import Task
 from realmodel.core.heights.realizations.draws import Draw
 from realmodel.core.heights.realizations.turning_bands import FieldArea, Noise

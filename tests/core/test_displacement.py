@@ -22,8 +22,8 @@ from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.displacements import displacements
-from realmodel.core.structures.sheets.lips import Lip, beyond_lips
-from realmodel.core.surfaces.sides import FaultShape
+from realmodel.core.structures.sheets.tips import Lip, beyond_lips
+from realmodel.core.surfaces.rock_structure import FaultShape
 from structure_cases import SQUARE, plane_fault
 
 

@@ -9,10 +9,8 @@ import pytest
 from realmodel.core import UsageError
 from realmodel.core.drawing import DRAWINGS, Drawing, save_drawing
 from realmodel.core.drawing.charts import Axes, color_bar, legend, round_length, tick_texts, ticks
-from realmodel.core.drawing.drawing import Text
-from realmodel.core.drawing.glyphs import text_width
-from realmodel.core.drawing.png import write_pixels
-from realmodel.core.drawing.raster import over, rasterize
+from realmodel.core.drawing.drawing import Text, text_width
+from realmodel.core.drawing.png import over, rasterize, write_pixels
 
 RED, BLUE = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 

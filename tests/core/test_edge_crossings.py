@@ -3,8 +3,8 @@
 
 import numpy as np
 from realmodel.core import Observations, Project, Rock, Surface, build
-from realmodel.core.base.sheet import Sheet
-from realmodel.core.results.residuals import heights_of_points
+from realmodel.core.base.triangles import Sheet
+from realmodel.core.results.surface_quality import heights_of_points
 from realmodel.core.surfaces.observed.edge_crossings import with_crossings
 
 SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]

@@ -9,7 +9,7 @@ import pytest
 from conftest import ROOT
 from realmodel.core.base.work import Work
 from realmodel.core.heights import Task
-from realmodel.core.heights.realizations.likely_variograms import LikelyVariograms
+from realmodel.core.heights.realizations.draws import LikelyVariograms
 from realmodel.core.heights.realizations.turning_bands import Noise
 from realmodel.core.settings.methods import checked_options
 from realmodel.core.settings.variogram import Structure, Variogram

@@ -17,8 +17,8 @@ from realmodel.core.ensembles import (
     sample_writer,
     section_samples,
 )
-from realmodel.core.ensembles.samples import MOST_PLACES
-from realmodel.core.results.planned_holes import HoleAxis
+from realmodel.core.ensembles.sampled_blocks import MOST_PLACES
+from realmodel.core.results.model_holes import HoleAxis
 from realmodel.core.results.sections.section_drawing import flat_of, flattened, is_vertical
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 80.0], [0.0, 80.0]])

@@ -11,7 +11,7 @@ import pytest
 from conftest import grid_surface
 from realmodel.core import Fault, OutputFailed, Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters import MODEL
-from realmodel.core.exporters.npz import model_arrays
+from realmodel.core.exporters.model_arrays import model_arrays
 from realmodel.core.exporters.report import SCHEMA, model_report
 from stacks import places
 from structure_cases import plane_fault

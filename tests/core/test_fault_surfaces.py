@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, PointFile, Project, Rock, Surface, build
 from realmodel.core.base.work import run
-from realmodel.core.readers.fault_sticks import read_fault_points
+from realmodel.core.readers.fault_input import read_fault_points
 from realmodel.core.structures.shapes.fitted import convex_hull, fit_points, fit_sticks
 
 

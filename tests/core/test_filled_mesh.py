@@ -18,9 +18,9 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.exporters import save_mesh
-from realmodel.core.simulation.element_faces import ElementFaces
-from realmodel.core.simulation.filled import smallest_dihedral_angle
+from realmodel.core.simulation.elements import ElementFaces
 from realmodel.core.simulation.patches import boundary_patches
+from realmodel.core.simulation.simulation_mesh import smallest_dihedral_angle
 from solver_meshes import block_volumes, check_solver_mesh, outside_volume
 from solvers import foam_program, run_foam
 

@@ -21,9 +21,9 @@ from realmodel.core import (
     UsageError,
     build,
 )
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module
-from realmodel.core.exporters.fields import write_fields
+from realmodel.core.exporters.surface_files import write_fields
 from realmodel.core.fields import are_on
 from realmodel.core.project.project_writer import save_project
 

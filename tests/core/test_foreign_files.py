@@ -10,8 +10,8 @@ import pytest
 from conftest import grid_surface
 from realmodel.core import build, load_project
 from realmodel.core.readers import read_mesh, read_shapes
-from realmodel.core.results.regular_cells import plan_grids
-from realmodel.core.settings.map_layer import MapLayer
+from realmodel.core.results.samples import plan_grids
+from realmodel.core.settings.data_files import MapLayer
 
 WHY = "not installed: scripts/test.sh installs it"
 

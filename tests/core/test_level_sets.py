@@ -6,7 +6,7 @@ import pytest
 from conftest import ROOT
 from folded_rocks import contacts, recumbent
 from realmodel.core import Lattice, ScalarField, build, load_project
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import run
 from realmodel.core.fields import HeldData, SharedCorners, are_on, fields_with_contacts, level_solids
 

@@ -11,7 +11,7 @@ from realmodel.core import InputRefused, Observations, Series, SpaceDips, Surfac
 from realmodel.core.base.work import run
 from realmodel.core.ensembles import Realizer
 from realmodel.core.heights import Task, heights
-from realmodel.core.heights.from_neighbours import thinned
+from realmodel.core.heights.from_neighbors import thinned
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.settings.methods import checked_options
 from realmodel.core.surfaces.field_data import read_field_data

@@ -19,8 +19,8 @@ from realmodel.core.readers import read_region, read_shapes
 from realmodel.core.readers.maps.geojson import read_geojson
 from realmodel.core.results.contours import checked_interval, contours
 from realmodel.core.results.geological_map import geological_map
-from realmodel.core.settings.map_layer import MapLayer
-from realmodel.core.surfaces.surface_arrays import SurfaceArrays
+from realmodel.core.settings.data_files import MapLayer
+from realmodel.core.surfaces.surface_input import SurfaceArrays
 from stacks.generate import random_stack
 from stacks.model_view import built
 from stacks.rock_masses import random_rock_masses

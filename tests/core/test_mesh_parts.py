@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from realmodel.core import intersect
-from realmodel.core.display.mesh_parts import Operand, interpolated, mesh_of_parts
+from realmodel.core.display.polygon_mesh import Operand, interpolated, mesh_of_parts
 
 _QUADS = np.array([(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)])
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from realmodel.core.base import missing_native
+from realmodel.core.base import packages
 
 MINOR = sys.version_info.minor
 VERSION = f"3.{MINOR}"
@@ -23,7 +23,7 @@ def copy(tmp_path, monkeypatch):
     about it on another."""
 
     def explained(*minors, of="linux-x86_64", on="linux-x86_64", checkout=False):
-        monkeypatch.setattr(missing_native.sysconfig, "get_platform", lambda: on)
+        monkeypatch.setattr(packages.sysconfig, "get_platform", lambda: on)
         package = tmp_path / "addon" / "realmodel"
         package.mkdir(parents=True)
         for minor in minors:
@@ -31,7 +31,7 @@ def copy(tmp_path, monkeypatch):
         if checkout:
             (tmp_path / "scripts").mkdir()
             (tmp_path / "scripts" / "build.sh").touch()
-        return missing_native.explanation(ImportError("GLIBC_9.9 not found"), package)
+        return packages.explanation(ImportError("GLIBC_9.9 not found"), package)
 
     return explained
 
@@ -93,14 +93,14 @@ def test_core_can_be_imported_without_it(tmp_path):
         "sys.exit('it was there')\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", program], env={"PYTHONPATH": str(missing_native.PACKAGE.parent)}, check=False
+        [sys.executable, "-c", program], env={"PYTHONPATH": str(packages.PACKAGE.parent)}, check=False
     )
     assert done.returncode == 0
 
 
 def test_the_zip_of_extensions_as_an_add_on_names_the_other_one(tmp_path):
     """Both where Blender enables it and where a script builds."""
-    addon, source = tmp_path / "realmodel", missing_native.PACKAGE
+    addon, source = tmp_path / "realmodel", packages.PACKAGE
     (addon / "wheels").mkdir(parents=True)
     for name in ("__init__.py", "core"):
         (addon / name).symlink_to(source / name)

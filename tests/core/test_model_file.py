@@ -24,11 +24,11 @@ from realmodel.core import (
 from realmodel.core.cells.model_record import record_arrays
 from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.exporters import MODEL
-from realmodel.core.exporters.npz import write_arrays
+from realmodel.core.exporters.model_arrays import write_arrays
 from realmodel.core.exporters.report import model_report
 from realmodel.core.readers import read_mesh
-from realmodel.core.results.residuals import residuals
 from realmodel.core.results.sections.section_holes import hole_places
+from realmodel.core.results.surface_quality import residuals
 from structure_cases import plane_fault
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 from realmodel.core import build, load_project
-from realmodel.core.cells.near_positions import apart, near_positions
-from realmodel.core.exporters.shapes.parts import FaceTriangles, _once_each, model_parts
+from realmodel.core.cells.joining import apart, near_positions
+from realmodel.core.exporters.shapes.shape_parts import FaceTriangles, _once_each, model_parts
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -9,7 +9,7 @@ import pytest
 from object_models import assert_closed, assert_shared, crossing_model, logged_model, volume
 from realmodel.core import Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters import MODEL
-from realmodel.core.results.regular_cells import regular_cells
+from realmodel.core.results.samples import regular_cells
 
 WHY = "not installed: scripts/test.sh installs it"
 BLOCKS = ["base block", "Grès à Voltzia", "Clay", "Clay (2)", "Cover"]

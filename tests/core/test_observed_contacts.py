@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused, Project, Rock, Series, SpaceDips, Surface, build
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import run
 from realmodel.core.surfaces.wrong_sides import heights_at
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core.drawing.drawing import FilledRings, Text
 from realmodel.core.drawing.overlay import ColorKey, Eye, Shown, draw_overlay
-from realmodel.core.drawing.raster import rasterize
+from realmodel.core.drawing.png import rasterize
 from realmodel.core.results import layer_values
 
 SIZE = (900.0, 600.0)

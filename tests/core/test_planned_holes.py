@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, build, load_project
 from realmodel.core.ensembles import Realizer, ensemble
-from realmodel.core.results import model_boreholes
+from realmodel.core.results import model_holes
 from realmodel.core.results.layer_values import at_places
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
@@ -44,9 +44,9 @@ def test_an_upright_hole_is_what_a_borehole_meets(model):
 
 
 def test_a_borehole_looks_at_the_faces_near_it_alone(model, monkeypatch):
-    asked, outlines = [], model_boreholes._outlines
+    asked, outlines = [], model_holes._outlines
     monkeypatch.setattr(
-        model_boreholes, "_outlines", lambda model, faces: asked.append(len(faces)) or outlines(model, faces)
+        model_holes, "_outlines", lambda model, faces: asked.append(len(faces)) or outlines(model, faces)
     )
     assert len(model.borehole(3.3, 4.4)) == 3
     assert 0 < max(asked) < len(model.face_surface) // 10

@@ -8,7 +8,7 @@ from realmodel.core import Project, Rock, Surface, Variogram, build, cross_valid
 from realmodel.core.drawing.drawing import Dots, FilledRings, Line, Text
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.surface_quality import surface_quality
-from realmodel.core.results.volume_uncertainty import volume_deviations
+from realmodel.core.results.volumes import volume_deviations
 from realmodel.core.settings.methods import DEFAULT_METHOD, DEFAULT_OPTIONS
 
 RNG = np.random.default_rng(3)

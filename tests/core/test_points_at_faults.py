@@ -9,7 +9,7 @@ from displaced_surfaces import built as built_with
 from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.results.displacements import displacements
-from realmodel.core.results.residuals import residuals
+from realmodel.core.results.surface_quality import residuals
 from realmodel.core.structures.sheets.points_at_faults import point_sides
 from structure_cases import plane_fault
 

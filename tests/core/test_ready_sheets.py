@@ -6,7 +6,7 @@ import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
 from realmodel.core.project.project_checks import check_project
 from realmodel.core.structures.sheets.tips import on_fault
-from realmodel.core.surfaces.sides import FaultShape
+from realmodel.core.surfaces.rock_structure import FaultShape
 from structure_cases import compartments_of, heights_at, plane_fault, prepared
 
 

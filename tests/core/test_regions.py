@@ -19,8 +19,7 @@ from realmodel.core import (
     mesh_region,
 )
 from realmodel.core.base.packages import vendored
-from realmodel.core.project.plan_input import read_rings
-from realmodel.core.project.region_rings import region_rings
+from realmodel.core.project.plan_input import read_rings, region_rings
 from realmodel.core.readers import read_region, read_shapes
 from realmodel.core.readers.maps.wkt import parse_wkt
 from realmodel.core.surfaces.planar_mesh import triangulate_rings

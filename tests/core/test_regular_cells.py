@@ -22,7 +22,7 @@ from realmodel.core import (
 from realmodel.core.base.packages import vendored
 from realmodel.core.exporters import MODEL
 from realmodel.core.readers import read_point_file
-from realmodel.core.results.regular_cells import plan_grids, regular_cells
+from realmodel.core.results.samples import plan_grids, regular_cells
 
 WHY = "is not installed: scripts/test.sh installs it"
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import Fault, Library, Project, Property, Rock, Surface, UsageError, build
-from realmodel.core.drawing.drawing import FilledRings, Line, Text
-from realmodel.core.drawing.glyphs import text_width
+from realmodel.core.drawing.drawing import FilledRings, Line, Text, text_width
 from realmodel.core.results.sections.section_drawing import block_outlines, draw_section, flattened
 from structure_cases import plane_fault
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture

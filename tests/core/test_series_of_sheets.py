@@ -22,7 +22,7 @@ from realmodel.core.base.work import Work, native_module
 from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.heights.companions import Companions, SheetModel
 from realmodel.core.heights.cross_validation import validate
-from realmodel.core.heights.from_neighbours import DipUse, KrigingStructure, structure
+from realmodel.core.heights.from_neighbors import DipUse, KrigingStructure, structure
 from realmodel.core.heights.interpolation import Task
 from realmodel.core.heights.realizations.sheet_draws import SeriesDraw
 from realmodel.core.heights.realizations.turning_bands import FieldArea, GaussianField, Noise

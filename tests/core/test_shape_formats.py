@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from object_models import assert_closed, crossing_surfaces, volume
 from realmodel.core import Library, Project, Property, Rock, build, build_surfaces
-from realmodel.core.exporters.shapes.parts import model_parts
+from realmodel.core.exporters.shapes.shape_parts import model_parts
 from realmodel.core.readers import read_mesh
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -130,7 +130,7 @@ def test_tsurf_has_an_object_for_each_block(model, folder):
 
 
 def test_every_triangle_of_a_block_has_an_area(model):
-    from realmodel.core.exporters.shapes.parts import model_parts
+    from realmodel.core.exporters.shapes.shape_parts import model_parts
 
     for part in model_parts(model):
         a, b, c = part.vertices[part.triangles].transpose(1, 0, 2)

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
 from realmodel.core.base.work import run
-from realmodel.core.surfaces.rock_structure import joined
-from realmodel.core.surfaces.sides import FaultShape, fault_sides
+from realmodel.core.surfaces.rock_structure import FaultShape, fault_sides, joined
 from structure_cases import (
     SQUARE,
     blocks_at,

@@ -20,7 +20,7 @@ from realmodel.core import (
     build,
     load_project,
 )
-from realmodel.core.simulation.element_faces import ElementFaces
+from realmodel.core.simulation.elements import ElementFaces
 from solver_meshes import block_volumes, check_solver_mesh, least_angles, outside_volume
 from stacks import places, real_data
 from stacks.generate import random_stack

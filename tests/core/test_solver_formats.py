@@ -14,7 +14,7 @@ from realmodel.core import BuildFailed, UsageError, build, load_project
 from realmodel.core.exporters import MESH, save_mesh
 from realmodel.core.exporters.solvers.modflow import element_volumes
 from realmodel.core.simulation import PolyhedralMesh, VolumeMesh
-from realmodel.core.simulation.element_faces import ElementFaces
+from realmodel.core.simulation.elements import ElementFaces
 from solvers import run_modflow, write_modflow_simulation
 
 WHY = "not installed: scripts/test.sh installs it"

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build, load_project
 from realmodel.core.exporters import save_mesh
-from realmodel.core.simulation.element_faces import ElementFaces
+from realmodel.core.simulation.elements import ElementFaces
 from solver_meshes import check_solver_mesh, least_angles
 from solvers import (
     foam_program,

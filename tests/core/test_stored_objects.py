@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import BuildWarning, Fault, InputRefused, Surface
-from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.stored_objects import NamedArrays, StoredClasses, fits
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.cells.model_record import RECORDED
-from realmodel.core.surfaces.sides import FaultShape
+from realmodel.core.surfaces.rock_structure import FaultShape
 
 STORED = StoredClasses(RECORDED)
 

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import run
 from realmodel.core.proof import closed_form as form
 from realmodel.core.settings.rules import RULES
-from realmodel.core.surfaces.sides import FaultShape, RockFaults, fault_sides
+from realmodel.core.surfaces.rock_structure import FaultShape, RockFaults, fault_sides
 from structure_cases import blocks_at
 
 BOX_TRIANGLES = np.array(

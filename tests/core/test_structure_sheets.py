@@ -10,12 +10,10 @@ from realmodel.core.base.triangles import overlapping_pairs
 from realmodel.core.base.work import Work, run
 from realmodel.core.structures.sheets import interpolated_sheets
 from realmodel.core.structures.sheets.between_sheets import common_lines, places_between
-from realmodel.core.structures.sheets.families import around_tips, families, parting
+from realmodel.core.structures.sheets.families import around_tips, families, parting, parts_of_lines
 from realmodel.core.structures.sheets.interpolated_sheets import InterpolatedSurface
 from realmodel.core.structures.sheets.tips import _Drawn, _meet_within, _near, _places_of, blended
-from realmodel.core.structures.sheets.within import parts_of_lines
-from realmodel.core.surfaces.rock_structure import RockStructure
-from realmodel.core.surfaces.sides import RockFaults, sides_of
+from realmodel.core.surfaces.rock_structure import RockFaults, RockStructure, sides_of
 from structure_cases import SQUARE, plane_fault, prepared
 
 

@@ -24,8 +24,8 @@ from realmodel.core import (
 )
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.displacements import displacements
-from realmodel.core.results.residuals import residuals
-from realmodel.core.results.volume_uncertainty import volume_deviations
+from realmodel.core.results.surface_quality import residuals
+from realmodel.core.results.volumes import volume_deviations
 from realmodel.core.settings.rules import RULES
 from realmodel.core.structures import setup
 from structure_cases import SQUARE, ball, box_body, cells_at, plane_fault

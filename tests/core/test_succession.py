@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from realmodel.core import Rock, Surface
 from realmodel.core.readers.tables.observations import Observations
 from realmodel.core.settings.rules import RULES
+from realmodel.core.surfaces.observed.columns import Succession
 from realmodel.core.surfaces.observed.derived import Situation, derive
-from realmodel.core.surfaces.observed.succession import Succession
 
 HISTORIES = st.lists(st.tuples(st.sampled_from(list(RULES)), st.integers(0, 12)), min_size=1, max_size=8)
 

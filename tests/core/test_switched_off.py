@@ -7,8 +7,8 @@ from realmodel.core import Dips, InputRefused, Observations, Project, Rock, Surf
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_dips, read_observed_places
 from realmodel.core.readers.tables.unit_names import UnitNames
+from realmodel.core.settings.data_files import ObservationFile
 from realmodel.core.settings.dips import DipFile
-from realmodel.core.settings.observation_file import ObservationFile
 
 SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
 LOW = np.array([[1.0, 1, 2], [9, 1, 2], [9, 9, 2], [1, 9, 2], [5, 5, 4]])

@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from realmodel.core import Fault, Observations, Project, Rock, Surface, build, load_project
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import run
 from realmodel.core.heights.ties import tie_data
 from realmodel.core.results.layer_values import at_places
-from realmodel.core.results.residuals import residuals
+from realmodel.core.results.surface_quality import residuals
 from realmodel.core.settings.meshers import MESHERS
 from realmodel.core.settings.methods import METHODS
 from realmodel.core.surfaces.observed.surface_data import SurfaceData

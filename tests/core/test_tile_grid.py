@@ -9,7 +9,7 @@ import pytest
 from realmodel.core import (
     UsageError,
 )
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.tiles import grid as tile_grids
 from realmodel.core.tiles.grid import checked_size, clipped_region, tile_grid, triangles_by_tile
 from realmodel.distributed import build as build_tiles

@@ -6,7 +6,7 @@ import tomllib
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from realmodel.core.base.toml_lines import key_lines
+from realmodel.core.base.toml_table import key_lines
 
 
 def lines_of(text):

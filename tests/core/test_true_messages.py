@@ -19,7 +19,7 @@ from realmodel.core import (
 from realmodel.core.base.work import run
 from realmodel.core.fields.solve import LevelSetData, _against_order
 from realmodel.core.readers.tables.dips import gradient_of, normal_of
-from realmodel.core.results.planned_holes import HoleAxis
+from realmodel.core.results.model_holes import HoleAxis
 from realmodel.core.surfaces.prepare import read_rocks
 
 _SQUARE = [[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]]

@@ -13,7 +13,7 @@ from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.cells.cell_complex import ARRAYS
 from realmodel.core.exporters.report import model_report
 from realmodel.core.proof.validation import ValidationReport
-from realmodel.core.surfaces.surface_arrays import SurfaceArrays
+from realmodel.core.surfaces.surface_input import SurfaceArrays
 from stacks import places
 from stacks.generate import FAMILIES, random_stack
 from stacks.rock_masses import random_rock_masses

@@ -5,11 +5,11 @@ import io
 
 import numpy as np
 from realmodel.core import Block, Model, Project, Rock, Surface
-from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.triangles import Sheet
 from realmodel.core.cells.cell_complex import CellComplex
-from realmodel.core.exporters.npz import write_npz
+from realmodel.core.exporters.model_arrays import write_npz
 from realmodel.core.surfaces.rock_input import RockInput
-from realmodel.core.surfaces.surface_arrays import SurfaceArrays
+from realmodel.core.surfaces.surface_input import SurfaceArrays
 from stacks import places
 from stacks.model_view import built, exported_arrays, rocks_of
 

@@ -9,8 +9,8 @@ import traceback
 from typing import NoReturn
 
 from . import DONE, IN_BLENDER, INTERRUPTED, REFUSED, USAGE, say
-from .interruption import terminate
 from .options import parse
+from .terminal import terminate
 
 
 def command() -> NoReturn:

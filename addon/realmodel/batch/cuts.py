@@ -14,12 +14,11 @@ from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
 from ..core.exporters import BOREHOLE, MODEL, PLANNED_HOLE, SECTION, Exporter
 from ..core.exporters.mesh_request import cleaned_line
-from ..core.model.section import Section
+from ..core.model.cutting import Section
 from ..core.readers import read_mesh
 from ..core.readers.formats import MESH, endings
-from ..core.results.model_boreholes import Interval
-from ..core.results.planned_holes import HoleAxis, HoleInterval
-from ..core.settings.point_file import MeshFile
+from ..core.results.model_holes import HoleAxis, HoleInterval, Interval
+from ..core.settings.data_files import MeshFile
 from .sources import ENDINGS, OpenedFile
 
 

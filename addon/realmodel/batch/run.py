@@ -21,15 +21,20 @@ from ..core.base.atomic import Outputs, make_folder, writable_target
 from ..core.exporters import FIELDS, MODEL, SURFACES
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import hole_entries, model_report, write_report
-from ..core.exporters.surfaces import write_surfaces_report
+from ..core.exporters.surface_files import write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from ..core.surfaces.prepare import with_arrays
 from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
-from .interruption import Interruptible, ignore_interruption
-from .probabilities import ProbabilityRequests
 from .sources import OpenedFile
-from .table import ensemble_table, left_out_table, surface_table, tiles_table, volume_table
-from .terminal import TerminalProgress
+from .table import (
+    ProbabilityRequests,
+    ensemble_table,
+    left_out_table,
+    surface_table,
+    tiles_table,
+    volume_table,
+)
+from .terminal import Interruptible, TerminalProgress, ignore_interruption
 
 
 def run(options: argparse.Namespace) -> None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RealModel without Blender: builds a model of polyhedral cells from a project, and writes it to files."""
 
-from .base.build_warning import BuildWarning
 from .base.errors import (
     BuildFailed,
+    BuildWarning,
     Cancelled,
     InputRefused,
     NotEnoughMemory,
@@ -11,7 +11,7 @@ from .base.errors import (
     RealModelError,
     UsageError,
 )
-from .base.sheet import Triangulation
+from .base.triangles import Triangulation
 from .cells.blocks import Block, BlockBoundary
 from .exporters import save_mesh
 from .exporters.report import Report
@@ -21,11 +21,10 @@ from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
 from .model.build import build
-from .model.cutting import Cut
+from .model.cutting import Cut, Fence, Section
 from .model.estimate import Estimate, estimate
 from .model.model import Model
 from .model.planned_hole import PlannedHole
-from .model.section import Fence, Section
 from .model.surface_set import SurfaceSet, build_surfaces
 from .project.library import Library, Property
 from .project.project import Project, Rock, Surface
@@ -39,16 +38,11 @@ from .proof.validation import ValidationReport
 from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
 from .results.contours import Contour
-from .results.erosion import Erosion
 from .results.geological_map import MapArea
-from .results.model_boreholes import Interval
-from .results.planned_holes import HoleAxis, HoleContact, HoleInterval
-from .settings.boreholes import Boreholes
+from .results.model_holes import HoleAxis, HoleContact, HoleInterval, Interval
+from .results.volumes import Erosion
+from .settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, ObservationFile, PointFile
 from .settings.dips import DipFile, Dips, SpaceDips
-from .settings.map_file import MapFile
-from .settings.map_layer import MapLayer
-from .settings.observation_file import ObservationFile
-from .settings.point_file import MeshFile, PointFile
 from .settings.variogram import Structure, Variogram
 from .simulation import CleanedCells, SimulationMesh
 from .surfaces.planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon

@@ -22,7 +22,7 @@ from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.work import Work, wait_for_stopped
 from ..core.cells.blocks import Block
 from ..core.exporters.encodings.vtk_xml import write_pieces
-from ..core.exporters.npz import write_arrays
+from ..core.exporters.model_arrays import write_arrays
 from ..core.exporters.solvers.vtu import write_vtu
 from ..core.model.model import Model
 from ..core.proof.validation import PLACES_OF_REPORT

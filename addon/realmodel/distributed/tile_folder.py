@@ -16,10 +16,9 @@ from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import read_mapped, write_mapped
 from ..core.base.work import Cancel, Progress, Reporter, progress_bar, report_nothing, run
-from ..core.project.build_options import check_cells
 from ..core.project.project import Project
-from ..core.project.project_checks import check_project
-from ..core.results.model_fields import rock_fields
+from ..core.project.project_checks import check_cells, check_project
+from ..core.results.layer_values import rock_fields
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
     OPPOSITE,

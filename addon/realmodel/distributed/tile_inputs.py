@@ -16,7 +16,7 @@ import numpy as np
 
 from ..core import BuildWarning, Project
 from ..core.base.mapped_arrays import MappedArrays
-from ..core.base.sheet import Sheet
+from ..core.base.triangles import Sheet
 from ..core.base.work import Work, native_module
 from ..core.cells.assembly import are_joined, list_blocks
 from ..core.cells.cell_complex import CellComplex

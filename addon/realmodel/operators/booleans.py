@@ -7,8 +7,7 @@ from bpy.props import BoolProperty, EnumProperty
 from ..bl.objects.boolean_job import DIVIDE, OPERATIONS, BooleanJob
 from ..core import InputRefused
 from ..core.base.errors import counted, number_list
-from .background import InBackground
-from .reporting import not_building
+from .reporting import InBackground, not_building
 
 
 def _object_mode(context):

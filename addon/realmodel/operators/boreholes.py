@@ -31,8 +31,8 @@ from ..core.readers import (
 )
 from ..core.readers.formats import OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.object_input import is_object_file
-from ..core.settings.point_file import READING
-from ..core.settings.series import FIELD
+from ..core.settings.data_files import READING
+from ..core.settings.series_kinds import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
 from ..ui.panel import wrapped

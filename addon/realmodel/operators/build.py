@@ -6,11 +6,11 @@ import bpy
 from ..bl.host import notices
 from ..bl.jobs.estimate_job import EstimateJob
 from ..bl.objects import viewports
+from ..bl.project import results
 from ..bl.scene import build_job, built_scene, live, problems
 from ..core.base.errors import counted
-from .background import InBackground, running
 from .pictures import by_hand, set_up_first
-from .reporting import Reporting, a_model, any_surface, building, not_building
+from .reporting import InBackground, Reporting, a_model, any_surface, building, not_building, running
 
 
 class REALMODEL_OT_build(InBackground, bpy.types.Operator):
@@ -130,3 +130,15 @@ class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
             problems.forget()
         else:
             context.scene.realmodel.warnings = ""
+
+
+class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
+    """Copy the table of blocks to the clipboard, to be pasted into a spreadsheet"""
+
+    bl_label = "Copy Table"
+    bl_options = {"REGISTER"}
+    needs = (a_model,)
+
+    def act(self, context):
+        context.window_manager.clipboard = results.as_text(context.scene, "\t")
+        self.report({"INFO"}, f"Copied {counted(len(context.scene.realmodel.results), 'row')}")

@@ -11,9 +11,8 @@ from ..bl.objects import visible
 from ..bl.scene import live
 from ..core import InputRefused
 from ..core.base.errors import counted
-from ..props_ensemble import MOST
-from .background import InBackground
-from .reporting import Reporting, a_model, an_outline_object, not_building
+from ..props_planned import MOST
+from .reporting import InBackground, Reporting, a_model, an_outline_object, not_building
 
 
 class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):

@@ -10,7 +10,7 @@ from ..bl.pictures import capture
 from ..bl.project import project_settings
 from ..bl.scene import data_objects, live
 from ..core import InputRefused
-from .in_viewport import Pointing
+from .drawing import Pointing
 from .reporting import Reporting, place_property
 
 _NEAR = 24  # pixels between the mouse and a datum, at most

@@ -20,12 +20,11 @@ from ..bl.jobs.mesh_job import MeshJob
 from ..bl.project import results, settings
 from ..bl.scene import live, scene_export
 from ..core import BuildFailed, InputRefused, UsageError
-from ..core.base.build_warning import BuildWarning
+from ..core.base.errors import BuildWarning
 from ..core.exporters import MESH, MODEL, REPORT
 from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.report import model_report
-from .background import InBackground
-from .reporting import Reporting, a_model, chosen_path, file_filter, not_building, object_mode
+from .reporting import InBackground, Reporting, a_model, chosen_path, file_filter, not_building, object_mode
 from .start import invoke
 
 _OUTDATED = "The model is out of date: what it is made from was changed since it was built"

@@ -17,9 +17,8 @@ from ..core import RealModelError, Strata
 from ..core.base.errors import counted
 from ..core.filling import PALETTES
 from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, RECUMBENT, STEEPEST, UPRIGHT
-from .background import InBackground
 from .pictures import by_hand, set_up_first
-from .reporting import not_building, object_mode
+from .reporting import InBackground, not_building, object_mode
 
 _PICTURE_SIZE = 3.0  # in heights of a button
 _WIDTH = 360  # of the dialog, in units of the interface

@@ -12,9 +12,8 @@ from ..bl.scene import planned_holes
 from ..core import InputRefused
 from ..core.base.errors import counted
 from ..core.exporters import PLANNED_HOLE
-from .background import InBackground
 from .files import Exporting, format_filter, format_menu
-from .reporting import Reporting, a_model, not_building
+from .reporting import InBackground, Reporting, a_model, not_building
 
 _LONGER = 1.1  # a new hole goes so far below the model
 

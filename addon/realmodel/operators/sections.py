@@ -14,8 +14,8 @@ from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
 from ..core.exporters import SECTION
 from ..core.results.sections.section_drawing import MOST_EXAGGERATION
+from .drawing import InViewport
 from .files import Exporting, format_filter, format_menu
-from .in_viewport import InViewport
 from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property
 
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}

@@ -2,12 +2,14 @@
 """The list of surfaces of the active rock mass."""
 
 import bpy
-from bpy.props import EnumProperty
+from bpy.props import BoolProperty, EnumProperty
 
+from ..bl import changes
 from ..bl.project import borehole_picks, library_rows, settings
 from ..bl.scene import built_scene, data_objects, live
+from ..core import InputRefused
 from ..core.surfaces.age_order import age_order
-from .reporting import Reporting, a_surface
+from .reporting import Reporting, a_fault, a_surface, remove_row, row_number
 
 
 class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
@@ -139,3 +141,85 @@ class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
 
     def act(self, context):
         settings.active_surface(context.scene).property_id = int(self.property_id)
+
+
+class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
+    """Add a structure to the variogram of the active surface: structures of several ranges make it nested"""
+
+    bl_label = "Add Structure"
+    needs = (a_surface,)
+
+    def act(self, context):
+        surface = settings.active_surface(context.scene)
+        with settings.filling():
+            surface.fit_variogram = False
+            if not len(surface.structures):
+                _take_single(surface)
+            else:
+                last = surface.structures[-1]
+                values = last.model, 2.0 * last.range, last.sill
+                part = surface.structures.add()
+                part.model, part.range, part.sill = values
+        live.touch(context.scene)
+
+
+def _take_single(surface):
+    """The variogram that was there is the first part; its sill includes the nugget, a part's does not."""
+    part = surface.structures.add()
+    part.model, part.range = surface.variogram_model, surface.variogram_range
+    part.sill = max(surface.variogram_sill - surface.variogram_nugget, 0.0)
+
+
+class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
+    """Remove a structure from the variogram of the active surface"""
+
+    bl_label = "Remove Structure"
+    needs = (a_surface,)
+
+    index: row_number()
+
+    def act(self, context):
+        remove_row(settings.active_surface(context.scene).structures, self.index, "structure")
+        live.touch(context.scene)
+
+
+_OF_FAULT = BoolProperty(name="Of Fault", description="Of the active fault", options={"SKIP_SAVE"})
+
+
+def _a_file(context):
+    return a_surface(context) and a_fault(context)
+
+
+def _filtered(context, of_fault):
+    """The row whose file the filters are of. Raises InputRefused where there is none."""
+    reason = (a_fault if of_fault else a_surface)(context)
+    if reason:
+        raise InputRefused(reason)
+    return (settings.active_structure if of_fault else settings.active_surface)(context.scene)
+
+
+class REALMODEL_OT_filter_add(Reporting, bpy.types.Operator):
+    """Read only the rows of the file that have a value in a column; values of one column are alternatives"""
+
+    bl_label = "Add Filter"
+    needs = (_a_file,)
+
+    of_fault: _OF_FAULT
+
+    def act(self, context):
+        _filtered(context, self.of_fault).filters.add()
+
+
+class REALMODEL_OT_filter_remove(Reporting, bpy.types.Operator):
+    """Remove a filter from the active surface, or fault"""
+
+    bl_label = "Remove Filter"
+    needs = (_a_file,)
+
+    index: row_number()
+    of_fault: _OF_FAULT
+
+    def act(self, context):
+        surface = _filtered(context, self.of_fault)
+        remove_row(surface.filters, self.index, "filter")
+        changes.reading(surface, context)

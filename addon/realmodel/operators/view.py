@@ -2,16 +2,20 @@
 """Operators of the view: standard views, capture, coordinates, hiding blocks by their property."""
 
 import bpy
+import numpy as np
 from bpy.props import EnumProperty, IntProperty
 from bpy_extras.io_utils import ExportHelper
+from mathutils import Matrix, Vector
 
 from ..bl import display
 from ..bl.display import coordinates, modes, viewpoints
-from ..bl.objects import viewports, visible
+from ..bl.objects import exaggeration, shapes, viewports, visible
+from ..bl.objects.origin import KEY, choose_origin
 from ..bl.pictures import capture
 from ..bl.project import project_settings, series_settings, settings, units
+from ..bl.scene import built_scene, data_objects
 from ..core import InputRefused, UsageError
-from .in_viewport import Pointing
+from .drawing import Pointing
 from .reporting import (
     Reporting,
     a_model,
@@ -19,10 +23,13 @@ from .reporting import (
     a_viewport,
     an_edit,
     an_interface,
+    any_surface,
     chosen_path,
     file_filter,
+    not_building,
     place_property,
 )
+from .start import invoke
 
 _LOOKING = {
     "FRONT": ("Front", "From the south"),
@@ -305,3 +312,55 @@ class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
             if place is None:
                 raise InputRefused("no coordinates were asked for yet", advice="use Coordinates first")
             coordinates.set_zero(scene, (place.x, place.y, place.z))
+
+
+class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
+    """Choose another origin so that a model far from the zero of the scene stands near it. Your objects that
+    it is made from move with it; all model coordinates stay. A built model is built again"""
+
+    bl_label = "Move Model to Scene's Zero"
+    needs = (any_surface, not_building)
+
+    def act(self, context):
+        scene = context.scene
+        context.view_layer.update()
+        mine = list(dict.fromkeys(project_settings.user_objects(scene)))
+        made = [row.object for row in scene.realmodel.results if row.object is not None]
+        rows = [row for _, row in settings.interface_rows(scene)]
+        interfaces = [row for row in rows if row.interface is not None and row.interface not in mine]
+        made += [row.interface for row in interfaces]
+        items = [*mine, *made, *data_objects.objects(scene)]
+        corners = [obj.matrix_world @ Vector(corner) for obj in items for corner in obj.bound_box]
+        old = project_settings.model_origin(scene)
+        if not corners:
+            raise InputRefused("there is nothing to move yet", advice="import surfaces first")
+        moved = old - (new := choose_origin(np.array(corners, float) + old))
+        if not moved.any():
+            raise InputRefused("the model stands near the zero of the scene")
+        scene[KEY] = [float(value) for value in new]
+        for obj in {_top(obj) for obj in mine}:
+            obj.matrix_basis = Matrix.Translation(moved) @ obj.matrix_basis
+        unchanged = [row for row in interfaces if _digest(context, row) == row.interface_digest]
+        for mesh in {obj.data for obj in made}:
+            mesh.transform(Matrix.Translation(moved))
+            mesh.update()
+        with settings.filling():
+            for row in unchanged:
+                row.interface_digest = _digest(context, row)
+        built_scene.move_helpers(scene, moved)
+        context.view_layer.update()
+        viewports.frame_items(items, viewports.spaces(context))
+        self.report({"INFO"}, "Moved by " + ", ".join(f"{value:,.0f}" for value in moved))
+        if len(scene.realmodel.results):
+            invoke(bpy.ops.realmodel.build, self)
+
+
+def _digest(context, row):
+    return shapes.digest(*shapes.triangulation(row.interface, context.evaluated_depsgraph_get()))
+
+
+def _top(obj):
+    """The object that carries another along, or itself."""
+    while obj.parent is not None and exaggeration.KEY not in obj.parent:
+        obj = obj.parent
+    return obj

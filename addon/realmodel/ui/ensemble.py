@@ -8,7 +8,7 @@ import bpy
 from ..bl.display import ensembles
 from ..bl.project import units
 from ..core.base.errors import counted
-from ..props_ensemble import slider_of
+from ..props_planned import slider_of
 from .panel import FoldedPanel, OfABuiltModel, hint, right_label
 
 _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")

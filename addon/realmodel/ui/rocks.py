@@ -6,8 +6,8 @@ import bpy
 from ..bl.project import method_settings, plan_mesh, region_size, settings
 from ..core.base.errors import counted
 from ..core.project.project import ROCK
-from ..core.settings.mesh_sizes import SIZE
-from . import setting_rows
+from ..core.settings.meshers import SIZE
+from . import panel
 from .panel import FoldedPanel, OfAModel, file_field, hint
 
 
@@ -35,7 +35,7 @@ class REALMODEL_PT_rocks(OfAModel, FoldedPanel, bpy.types.Panel):
         layout.operator("realmodel.region_around", icon="SHADING_BBOX")
         if method_settings.interpolates(rock):
             _draw_density(layout, rock)
-        setting_rows.draw(layout, rock, "base_elevation", ROCK)
+        panel.draw(layout, rock, "base_elevation", ROCK)
 
 
 def _draw_density(layout, rock):
@@ -49,7 +49,7 @@ def _draw_density(layout, rock):
     elif rock.edges_by == "TRIANGLES":
         column.prop(rock, "triangles")
     else:
-        setting_rows.draw(column, rock, "triangles", ROCK)
+        panel.draw(column, rock, "triangles", ROCK)
     layout.prop(rock, "mesher")
 
 
@@ -73,7 +73,7 @@ class REALMODEL_PT_rock_mesh(FoldedPanel, bpy.types.Panel):
             if entry.at == "OBJECT":
                 box.prop(entry, "object")
             for key in SIZE:
-                setting_rows.draw(box, entry, key, SIZE)
+                panel.draw(box, entry, key, SIZE)
         layout.operator("realmodel.size_add", icon="ADD")
         hint(layout, "Constraints: lines and points that the mesh contains")
         for number, entry in enumerate(rock.constraints):

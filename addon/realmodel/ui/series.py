@@ -10,8 +10,8 @@ from ..core import RealModelError
 from ..core.base.errors import counted
 from ..core.project.project import ROCK
 from ..core.project.series import SERIES
-from ..core.settings.series import FIELD, KINDS
-from . import setting_rows
+from ..core.settings.series_kinds import FIELD, KINDS
+from . import panel
 from .lists import OfRows
 from .panel import FoldedPanel, hint, right_label, wrapped
 
@@ -60,10 +60,10 @@ def _draw_series(layout, rock, row):
     column.prop(row, "youngest")
     column.prop(row, "oldest")
     if row.kind == FIELD:
-        setting_rows.draw(layout, row, "resolution", SERIES)
+        panel.draw(layout, row, "resolution", SERIES)
         if not row.resolution:
             hint(layout, "0: by the size of the rock mass")
-        setting_rows.draw(layout, row, "thickness", SERIES)
+        panel.draw(layout, row, "thickness", SERIES)
     _draw_dips(layout, row)
     if not (row.kind == FIELD and _draw_needs(layout, rock)):
         _draw_refusal(layout, rock, row)
@@ -90,7 +90,7 @@ def _draw_needs(layout, rock):
     is_lacking = lacks_region or not rock.use_base
     if is_lacking:
         hint(layout, "The field ends where the rock mass does: give that a base and a region.")
-    setting_rows.draw(layout, rock, "base_elevation", ROCK)
+    panel.draw(layout, rock, "base_elevation", ROCK)
     if lacks_region:
         layout.operator("realmodel.region_around", icon="SHADING_BBOX")
     return is_lacking

@@ -5,8 +5,8 @@ import bpy
 
 from ..bl.project import library_rows, project_settings, settings
 from ..core.project.structure_entries import BODY, FAULT, OF_TRACES
-from ..core.settings.point_file import MESH_READING, READING
-from . import setting_rows
+from ..core.settings.data_files import MESH_READING, READING
+from . import panel
 from .lists import OfRows, draw_swatch
 from .panel import FoldedPanel, OfAModel, file_field, hint, right_label
 from .surfaces import draw_drawing, draw_figures, draw_filters, draw_property
@@ -72,10 +72,10 @@ def _draw_fault(layout, context, fault):
     if fault.source in settings.TRACES:
         for key, setting in FAULT.items():
             if setting.shapes == OF_TRACES:
-                setting_rows.draw(layout, fault, key, FAULT)
-    setting_rows.draw(layout, fault, "youngest", FAULT)
-    setting_rows.draw(layout, fault, "dies_out", FAULT)
-    setting_rows.draw(layout, fault, "extend", FAULT)
+                panel.draw(layout, fault, key, FAULT)
+    panel.draw(layout, fault, "youngest", FAULT)
+    panel.draw(layout, fault, "dies_out", FAULT)
+    panel.draw(layout, fault, "extend", FAULT)
     _draw_names(layout, fault, "ends_at")
     _draw_names(layout, fault, "rocks")
 
@@ -93,11 +93,11 @@ def _draw_names(layout, fault, key):
 
 
 def _draw_body(layout, context, body):
-    setting_rows.draw(layout, body, "after", BODY)
-    setting_rows.draw(layout, body, "void", BODY)
+    panel.draw(layout, body, "after", BODY)
+    panel.draw(layout, body, "void", BODY)
     if not body.void:
         draw_property(layout, context, body, "realmodel.body_property")
-    setting_rows.draw(layout, body, "rock", BODY)
+    panel.draw(layout, body, "rock", BODY)
 
 
 class REALMODEL_PT_structure_reading(FoldedPanel, bpy.types.Panel):
@@ -114,18 +114,18 @@ class REALMODEL_PT_structure_reading(FoldedPanel, bpy.types.Panel):
         hint(layout, "Most files need no options.")
         if entry.source == "MESH_FILE":
             for key in MESH_READING:
-                setting_rows.draw(layout, entry, key, READING)
+                panel.draw(layout, entry, key, READING)
             return
         is_trace = entry.source == "TRACE_FILE"
         if not is_trace:
-            setting_rows.draw(layout, entry, "stick", FAULT)
+            panel.draw(layout, entry, "stick", FAULT)
         for key in READING:
             if is_trace and key in ("columns", "separator", "decimal"):
                 continue
             if key == "where":
                 draw_filters(layout, entry, of_fault=True)
             else:
-                setting_rows.draw(layout, entry, key, READING)
+                panel.draw(layout, entry, key, READING)
 
 
 class REALMODEL_UL_structures(OfRows, bpy.types.UIList):

@@ -14,10 +14,10 @@ from ..bl.project import (
     units,
 )
 from ..core.project.project import SURFACE
+from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
-from ..core.settings.point_file import MESH_READING, READING
 from ..core.settings.variogram import VARIOGRAMS
-from . import setting_rows
+from . import panel
 from .panel import FoldedPanel, OfAModel, TabPanel, file_field, hint, right_label, wrapped
 
 
@@ -93,13 +93,13 @@ def _draw_surface(layout, context, surface):
             layout.operator("realmodel.series_take_dips", icon="FORWARD")
     elif surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
-        setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
+        panel.draw(layout, surface, "minimum_thickness", SURFACE)
         if surface.method == "parallel" or surface.use_minimum_thickness:
-            setting_rows.draw(layout, surface, "true_thickness", SURFACE)
-        setting_rows.draw(layout, surface, "tie", SURFACE)
+            panel.draw(layout, surface, "true_thickness", SURFACE)
+        panel.draw(layout, surface, "tie", SURFACE)
         if not surface.series:
-            setting_rows.draw(layout, surface, "observed", SURFACE)
-        setting_rows.draw(layout, surface, "correlation", SURFACE)
+            panel.draw(layout, surface, "observed", SURFACE)
+        panel.draw(layout, surface, "correlation", SURFACE)
         if surface.dips:
             _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
         _draw_dips_unused(layout, surface)
@@ -205,7 +205,7 @@ class _OfTheMethod(_OfASurface):
             if key == "variogram":
                 _draw_variogram(layout, context.scene, surface)
             else:
-                setting_rows.draw(layout, surface, key, OPTIONS)
+                panel.draw(layout, surface, key, OPTIONS)
 
 
 class REALMODEL_PT_surface_method(_OfTheMethod, FoldedPanel, bpy.types.Panel):
@@ -229,14 +229,14 @@ def _draw_variogram(layout, scene, surface):
     if len(surface.structures):
         layout.prop(surface, "variogram_nugget")
     else:
-        setting_rows.draw(layout, surface, "variogram", OPTIONS)
+        panel.draw(layout, surface, "variogram", OPTIONS)
     for number, part in enumerate(surface.structures):
         box = layout.box().column(align=True)
         row = box.row(align=True)
         row.prop(part, "model")
         row.operator("realmodel.structure_remove", text="", icon="X").index = number
         for key in ("range", "sill", "anisotropy"):
-            setting_rows.draw(box, part, key, STRUCTURE)
+            panel.draw(box, part, key, STRUCTURE)
     text = "Add Structure" if len(surface.structures) else "Nested Structures"
     layout.operator("realmodel.structure_add", text=text, icon="ADD")
 
@@ -267,7 +267,7 @@ class REALMODEL_PT_surface_reading(_OfASurface, FoldedPanel, bpy.types.Panel):
             if key == "where":
                 draw_filters(layout, surface)
             else:
-                setting_rows.draw(layout, surface, key, READING)
+                panel.draw(layout, surface, key, READING)
 
 
 def draw_filters(layout, surface, of_fault=False):

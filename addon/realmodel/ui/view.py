@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import props_stage
+from .. import props_view
 from ..bl.display import coordinates, cuts, fields, modes, preparing, residuals, viewpoints
 from ..bl.project import compartments, library_rows, project_settings, settings, units
 from ..core.base.errors import counted
@@ -70,7 +70,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
 def _stage(layout, scene):
     """The slider of the stage, the number that can be keyframed beside it, and what the number means."""
     group, last = scene.realmodel, settings.last_stage(scene)
-    slider = props_stage.name_of(last)
+    slider = props_view.stage_slider_name(last)
     if slider is None:
         layout.prop(group, "stage")
     else:

@@ -89,7 +89,7 @@ def _is_torn(case, error):
 
 
 def model_bytes(model):
-    from realmodel.core.exporters.npz import model_arrays
+    from realmodel.core.exporters.model_arrays import model_arrays
 
     buffer = io.BytesIO()
     np.savez(buffer, **model_arrays(model))

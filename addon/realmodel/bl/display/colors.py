@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from ...core.drawing.overlay import ColorKey
-from ...core.project.colors import encoded, hex_color, rgb
+from ...core.project.looks import encoded, hex_color, rgb
 from ...core.results import layer_values
 from ..objects import materials, viewports
 from ..project import compartments, library_rows, settings

@@ -10,7 +10,7 @@ import numpy as np
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.ensembles import PERCENTILES, Probabilities
-from ...core.project.colors import hex_color
+from ...core.project.looks import hex_color
 from ...core.results import layer_values
 from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import offsets_from

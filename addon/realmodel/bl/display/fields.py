@@ -12,7 +12,7 @@ from ...core.base import work
 from ...core.display.field_shapes import field_levels, field_range, field_section, field_surfaces
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
-from ...core.project.colors import hex_color
+from ...core.project.looks import hex_color
 from ...core.results import layer_values
 from ..host.debounce import DebouncedJob
 from ..host.threads import threads

@@ -6,9 +6,9 @@ import json
 import numpy as np
 
 from ...core.drawing.overlay import ColorKey
-from ...core.project.colors import hex_color
+from ...core.project.looks import hex_color
 from ...core.results import layer_values
-from ...core.results.residuals import residuals
+from ...core.results.surface_quality import residuals
 from ..host import caches
 from ..objects import exaggeration, marks, meshes
 from ..project import project_settings

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...core.drawing.overlay import ColorKey
-from ...core.project.colors import hex_color, rgb
+from ...core.project.looks import hex_color, rgb
 from ...core.results import layer_values
 from ...core.results.sections.section_holes import near_plane
 from ..display import bodies, colors, cuts

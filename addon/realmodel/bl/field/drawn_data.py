@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.project.structure_entries import FAULT
-from ...core.readers.fault_sticks import read_fault_points
+from ...core.readers.fault_input import read_fault_points
 from ..display import cuts
 from ..objects import exaggeration, shapes
 from ..project import method_settings, project_settings, settings

@@ -18,13 +18,12 @@ from ...core.readers import (
 from ...core.readers.formats import SHAPES, endings
 from ...core.readers.object_input import is_object_file
 from ...core.readers.tables.hole_tables import OBSERVED, joined
-from ...core.readers.tables.interval_values import read_interval_values
+from ...core.readers.tables.intervals import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
-from ...core.settings.boreholes import COLUMNS as OF_HOLES
-from ...core.settings.boreholes import Boreholes, check_column_names
+from ...core.settings.data_files import HOLE_COLUMNS as OF_HOLES
+from ...core.settings.data_files import OBSERVATION_COLUMNS as OF_PLACES
+from ...core.settings.data_files import Boreholes, MapFile, check_column_names
 from ...core.settings.dips import COLUMNS as OF_DIPS
-from ...core.settings.map_file import MapFile
-from ...core.settings.observation_file import COLUMNS as OF_PLACES
 from ..project import observed_blocks
 from . import map_settings
 

@@ -5,7 +5,7 @@ be looked at; a build does not use it."""
 import numpy as np
 
 from ...core import RealModelError
-from ...core.readers.tables.interval_values import IntervalValues
+from ...core.readers.tables.intervals import IntervalValues
 from ..host import caches
 
 _known = caches.new(most=8)  # by digest

@@ -5,7 +5,7 @@ thread."""
 import bpy
 
 from ...core import BuildFailed, InputRefused
-from ...core.ensembles.along_holes import hole_of_realizations
+from ...core.ensembles.sampled_blocks import hole_of_realizations
 from ..display import ensembles, shown_models
 from ..host.thread_job import ThreadJob
 from ..project import settings

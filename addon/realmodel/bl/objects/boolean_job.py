@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from ...core import BuildFailed, InputRefused
-from ...core.display.mesh_parts import MeshParts, Operand, mesh_of_parts
+from ...core.display.polygon_mesh import MeshParts, Operand, mesh_of_parts
 from ...core.results.booleans import SURFACES, intersect_within
 from ..host import versions
 from ..host.thread_job import ThreadJob

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...core.project.colors import linear, rgb
+from ...core.project.looks import linear, rgb
 from ..host import versions
 
 KEY = "realmodel_property"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ...core.display.mesh_parts import interpolated
+from ...core.display.polygon_mesh import interpolated
 from ..host import versions
 
 # Of each type of attribute: the name of the value, its number of components, and their type.

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.base.units import length_text
-from ...core.display import coarse_meshes, polygon_mesh
+from ...core.display import polygon_mesh
 from . import materials, meshes, model_tree
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin, far_from
@@ -31,10 +31,10 @@ def add_whole(scene, tiled, size, step):
     for number, tile in enumerate(tiled.tiles):
         step(number / len(tiled.tiles))
         for coarse_parts, shape in zip(parts, polygon_mesh.of_blocks(tile.model(), origin), strict=True):
-            coarse = None if shape is None else coarse_meshes.coarsened(shape, size)
+            coarse = None if shape is None else polygon_mesh.coarsened(shape, size)
             if coarse is not None:
                 coarse_parts.append(coarse)
-    shapes = [coarse_meshes.joined(coarse_parts) if coarse_parts else None for coarse_parts in parts]
+    shapes = [polygon_mesh.joined(coarse_parts) if coarse_parts else None for coarse_parts in parts]
     return _put(scene, tiled, origin, [("", shapes)])
 
 

@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from ...core.drawing.raster import rasterize
+from ...core.drawing.png import rasterize
 from ..host import versions
 from ..objects import exaggeration, meshes
 from . import WIDTH, View, drawing_for

@@ -10,7 +10,7 @@ from mathutils import Matrix
 from mathutils.geometry import tessellate_polygon
 
 from ...core.drawing.drawing import ANCHORS, Text
-from ...core.drawing.raster import item_shapes
+from ...core.drawing.png import item_shapes
 from ..host import caches, versions
 from ..host.draw_handler import DrawHandler
 from . import View, drawing_for

@@ -4,8 +4,8 @@
 import bpy
 
 from ...core import Library, Property
-from ...core.project.colors import hex_color
 from ...core.project.library import PROPERTY
+from ...core.project.looks import hex_color
 from ...core.results.automatic_library import palette
 from ..objects import materials, model_tree
 from . import method_settings, settings

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.base.errors import naming
-from ...core.settings.mesh_sizes import AUTO, SIZE
+from ...core.settings.meshers import AUTO, SIZE
 from ..objects import shapes
 from . import method_settings, settings
 

@@ -4,7 +4,7 @@
 import re
 
 from ...core import InputRefused
-from ...core.settings.point_file import list_of
+from ...core.settings.data_files import list_of
 
 _SEPARATORS = {"tab": "\t", "blank": " "}
 _ENTRY = re.compile(r'\s*("[^"]*"|[^,"]+?)\s*(?:,|$)')  # of a list with commas

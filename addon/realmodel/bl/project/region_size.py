@@ -6,7 +6,7 @@ import math
 import bpy
 
 from ...core import RealModelError
-from ...core.project.region_rings import region_rings
+from ...core.project.plan_input import region_rings
 from ...core.readers import read_region
 from ...core.surfaces.planar_mesh import triangulate_rings
 from ..host import versions

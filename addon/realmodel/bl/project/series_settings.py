@@ -6,8 +6,8 @@ import numpy as np
 from ...core import InputRefused, Rock, Series, Surface
 from ...core.base.errors import naming
 from ...core.project.project import ROCK
-from ...core.project.series_checks import check_level_set, check_series
-from ...core.settings.series import FIELD
+from ...core.project.project_checks import check_level_set, check_series
+from ...core.settings.series_kinds import FIELD
 from . import method_settings, settings, surface_dips
 
 _STANDS_FOR = np.zeros((3, 2))  # any region, where only whether there is one counts

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from ...core.results.volume_uncertainty import plan_areas
+from ...core.results.volumes import plan_areas
 
 
 def of_model(model):

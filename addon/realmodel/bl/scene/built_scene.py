@@ -13,8 +13,7 @@ import bpy
 import numpy as np
 
 from ...core import BuildFailed
-from ...core.base.build_warning import BuildWarning
-from ...core.base.errors import place_text
+from ...core.base.errors import BuildWarning, place_text
 from ...core.base.units import length_text
 from ...core.cells.assembly import build_stage
 from ...core.display import polygon_mesh

@@ -13,8 +13,7 @@ import numpy as np
 from ...core import InputRefused, MeshFile, PointFile, RealModelError, Surface
 from ...core.project.structure_entries import FAULT
 from ...core.readers import is_mesh_file, read_mesh, read_point_file, read_region
-from ...core.readers.fault_sticks import read_fault_points
-from ...core.readers.fault_trace import read_fault_trace
+from ...core.readers.fault_input import read_fault_points, read_fault_trace
 from .. import display
 from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import KEY as ORIGIN_KEY

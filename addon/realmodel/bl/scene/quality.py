@@ -8,10 +8,10 @@ import numpy as np
 
 from ...core import Cancelled, InputRefused, RealModelError, plots
 from ...core.base.work import Job
-from ...core.drawing.glyphs import text_width
-from ...core.drawing.raster import rasterize
+from ...core.drawing.drawing import text_width
+from ...core.drawing.png import rasterize
 from ...core.results.surface_quality import surface_quality
-from ...core.results.volume_uncertainty import volume_deviations
+from ...core.results.volumes import volume_deviations
 from ..display import shown_models
 from ..host import caches, notices
 from ..host.threads import threads

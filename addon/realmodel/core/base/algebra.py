@@ -1,19 +1,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Products, lengths and axes of vectors for what reaches a model: the same bytes on every system; and whether
-numbers are finite.
-
-`@`, `np.dot`, `np.linalg.svd` and `np.linalg.norm` without an axis are of a library that takes other
-instructions on other processors, and differ in the last digit.
+"""Elementary functions, and products, lengths and axes of vectors, for what reaches a model: the same
+bytes on every system.
 """
 
 from __future__ import annotations
 
 import math
-from typing import SupportsFloat
+from typing import Any, SupportsFloat
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .elementary import hypot
+from .work import native_module
+
+
+def sin(x: ArrayLike) -> Any:
+    return native_module().sin(x)
+
+
+def cos(x: ArrayLike) -> Any:
+    return native_module().cos(x)
+
+
+def exp(x: ArrayLike) -> Any:
+    return native_module().exp(x)
+
+
+def atan2(y: ArrayLike, x: ArrayLike) -> Any:
+    return native_module().atan2(y, x)
+
+
+def hypot(x: ArrayLike, y: ArrayLike) -> Any:
+    return native_module().hypot(x, y)
+
+
+def cube_root(value: float) -> float:
+    """Of a number above 0, by Newton's method."""
+    root = math.ldexp(1.0, math.frexp(value)[1] // 3)
+    for _ in range(20):
+        root = (2.0 * root + value / (root * root)) / 3.0
+    return root
+
 
 _ROUNDING = 2.0**-50  # of the lengths of two columns: so small a product, or one of them, is rounding only
 _SWEEPS = 60  # over all pairs of columns; six are enough for nearly all points

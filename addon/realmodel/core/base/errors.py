@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The types of errors. Every message is one line: where, what is wrong, what to do."""
+"""The types of errors and the warnings of a build. Every message is one line: where, what is wrong, what
+to do.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 _LONGEST = 500
@@ -138,3 +141,23 @@ def counted(count: int, noun: str) -> str:
 def place_text(place: Iterable[float]) -> str:
     """A point in model units, with as many digits as it takes to find it."""
     return "(" + ", ".join(f"{value:.9g}" for value in place) + ")"
+
+
+@dataclass(frozen=True)
+class BuildWarning:
+    """Something that was left out, changed, or is probably a mistake.
+
+    text: what, in words. kind: a word for programs, "" where there is none. rock, surface: names of the rock
+    mass and the surface that it is about, None for none. items: numbers of triangles, from 0.
+    """
+
+    text: str
+    kind: str = ""
+    rock: str | None = None
+    surface: str | None = None
+    items: tuple[int, ...] = ()
+
+    def __str__(self) -> str:
+        where = [f"rock '{self.rock}'"] if self.rock else []
+        where += [f"surface '{self.surface}'"] if self.surface else []
+        return f"{', '.join(where)}: {self.text}" if where else self.text

@@ -18,7 +18,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, ParamSpec, Protocol, TypeVar, cast
 
-from . import missing_native
+from . import packages
 from .errors import BuildFailed, Cancelled
 from .packages import extra
 
@@ -414,5 +414,5 @@ def native_module() -> Native:
             with _waiting_threads_sleep():
                 from ... import _native as loaded
         except ImportError as error:
-            raise BuildFailed(missing_native.explanation(error)) from error
+            raise BuildFailed(packages.explanation(error)) from error
     return cast("Native", loaded)

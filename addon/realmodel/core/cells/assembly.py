@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
+from ..base.errors import BuildWarning
 from ..base.work import Cancel, Progress, Work, refused_as, run
-from ..project.build_options import check_cells, check_stage
 from ..project.project import Project
+from ..project.project_checks import check_cells, check_stage
 from ..structures.parts.part_models import LID
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.surface_arrays import SurfaceArrays
+from ..surfaces.surface_input import SurfaceArrays
 from .blocks import Block, named_blocks
 from .built_cells import BuiltCells
 from .cell_complex import CellComplex

@@ -6,12 +6,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from ..base.errors import BuildFailed, InputRefused
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import NativeError, Work, refused_as
 from ..fields import LevelSolid, ScalarField, level_solids
 from ..structures.parts.part_models import (
@@ -27,8 +28,7 @@ from ..structures.parts.part_models import (
     inside_body,
     plain_stack,
 )
-from ..structures.parts.parts import Structures, compartment_of
-from ..structures.parts.refusals import refused_structure
+from ..structures.parts.parts import Structures, compartment_of, refused_structure
 from ..surfaces.rock_input import RockInput
 from .built_cells import BuiltCells, CellParts, NativeWarning
 from .cell_complex import CellComplex
@@ -357,3 +357,51 @@ def blocks_divided(inputs: list[RockInput], structures: Structures) -> np.ndarra
                 if rock in others and (others[rock], other) <= (after, body):
                     divided[count + body, body_block(structures, first[-1], rock, other)] = 1
     return divided
+
+
+_ROUNDINGS = 64  # positions nearer than so many units in the last place are one
+_MIXED = np.array([0x2545F4914F6CDD1D, 0x1B873593CC9E2D51, 0x3C6EF372FE94F82B])  # odd; of cells that differ
+
+
+def apart(positions: np.ndarray) -> float:
+    """How near positions (N, D) are one, along each axis."""
+    return _ROUNDINGS * float(np.spacing(np.abs(positions).max(initial=1.0)))
+
+
+def near_positions(positions: np.ndarray) -> np.ndarray:
+    """(N,) int64: of each of positions (N, D) in 1 to 3 dimensions the first that it is one with. Those that
+    are nearer than `apart` along all axes are one, those farther than twice that are not unless others
+    between join them."""
+    size, count = 2.0 * apart(positions), len(positions)
+    cells, members, numbers = [np.empty(0, np.int64)], [np.empty(0, np.int64)], 0
+    # near ones share a cell of one of these grids
+    for shift in product((0.0, 0.5), repeat=positions.shape[1]):
+        indices = np.floor((positions - positions[:1]) / size + shift).astype(np.int64)
+        mixed = (indices * _MIXED[: indices.shape[1]]).sum(axis=1)
+        _, key, sharing = np.unique(mixed, return_inverse=True, return_counts=True)
+        shared = np.flatnonzero(sharing[key.ravel()] > 1)  # few; and some that are not, by chance
+        _, cell = np.unique(indices[shared], axis=0, return_inverse=True)
+        cells.append(cell.ravel() + numbers)
+        members.append(shared)
+        numbers += len(shared)
+    cell, member = np.concatenate(cells), np.concatenate(members)
+    first = np.arange(count)
+    first[member] = _joined(cell, member)
+    return first
+
+
+def _joined(group: np.ndarray, member: np.ndarray) -> np.ndarray:
+    """For each (group, member) the least member of all that such groups connect."""
+    _, group = np.unique(group, return_inverse=True)
+    named, member = np.unique(member, return_inverse=True)
+    group, member = group.ravel(), member.ravel()
+    label = np.arange(len(named))
+    while True:
+        least = np.full(int(group.max(initial=-1)) + 1, len(label))
+        np.minimum.at(least, group, label[member])
+        lower = label.copy()
+        np.minimum.at(lower, member, least[group])
+        lower = lower[lower]
+        if (lower == label).all():
+            return named[label[member]]
+        label = lower

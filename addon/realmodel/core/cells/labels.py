@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
+from ..base.errors import BuildWarning
 from ..structures.parts.parts import Structures, compartment_names, compartment_of
 from .built_cells import BuiltCells, CellParts
 

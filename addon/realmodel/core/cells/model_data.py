@@ -11,15 +11,14 @@ from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, UsageError
+from ..base.errors import BuildWarning, InputRefused, UsageError
 from ..base.named import NamedList, number_of
-from ..base.sheet import Triangulation
+from ..base.triangles import Triangulation
 from ..heights import Interpolation
 from ..project.project import Project
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.surface_arrays import SurfaceArrays, sheet_sizes, triangle_sheets, vertex_attributes
+from ..surfaces.surface_input import SurfaceArrays, sheet_sizes, triangle_sheets, vertex_attributes
 from .blocks import Block, BlockBoundary
 from .cell_complex import CellComplex
 

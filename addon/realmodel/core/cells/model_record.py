@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
-from ..base.sheet import Sheet
+from ..base.errors import BuildWarning, InputRefused
 from ..base.stored_objects import NamedArrays, StoredClasses, fits, hints_of
+from ..base.triangles import Sheet
 from ..fields import Anisotropy, Lattice, ScalarField, SolvedField
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
@@ -24,16 +23,14 @@ from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_entries import Body, Fault
 from ..readers.tables.observations import Bounds, LeftOut, Observations, Origin
+from ..settings.data_files import MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, Dips, SpaceDips
-from ..settings.map_layer import MapLayer
-from ..settings.point_file import MeshFile, PointFile
 from ..settings.variogram import Structure, Variogram
 from ..structures.parts.parts import Structures
 from ..surfaces.observed.surface_data import SurfaceData
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import RockStructure
-from ..surfaces.sides import FaultShape, RockFaults
-from ..surfaces.surface_arrays import SurfaceArrays
+from ..surfaces.rock_structure import FaultShape, RockFaults, RockStructure
+from ..surfaces.surface_input import SurfaceArrays
 from .blocks import blocks_of_arrays
 from .model_data import ModelData
 

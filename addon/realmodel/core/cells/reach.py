@@ -8,12 +8,11 @@ import itertools
 
 import numpy as np
 
-from ..base.sheet import Sheet
-from ..base.triangles import border_loops, extents
+from ..base.triangles import Sheet, border_loops, extents
 from ..base.work import Work, native_module
 from ..structures.parts.parts import Structures
 from ..surfaces.planar_mesh import triangulate_rings
-from ..surfaces.sides import FaultShape, fault_sides
+from ..surfaces.rock_structure import FaultShape, fault_sides
 
 _CELLS = (64, 64, 16)  # of the grid, at most
 _MARGIN = 0.125  # of a cell: so far a model reaches beyond its part at least

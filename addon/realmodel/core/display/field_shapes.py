@@ -16,7 +16,7 @@ from ..cells.model_data import ModelData
 from ..fields import level_solids
 from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
-from ..results.model_fields import local_compartments
+from ..results.layer_values import local_compartments
 from ..results.sections.section_data import SectionData
 from ..surfaces.rock_input import RockInput
 

@@ -12,7 +12,7 @@ from ..base.atomic import Outputs
 from ..base.formats import Format, by_ending
 from ..base.text import no_step
 from .drawing import Drawing
-from .dxf import write_dxf
+from .dxf_file import write_dxf
 from .png import write_png
 from .svg import write_svg
 

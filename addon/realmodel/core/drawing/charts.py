@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .drawing import BLACK, GRAY, Color, Drawing
-from .glyphs import text_width
+from .drawing import BLACK, GRAY, Color, Drawing, text_width
 
 TITLE = 1.8  # height of the title of a legend, in sizes of the text
 LINE = 1.5  # from baseline to baseline, in sizes of the text

@@ -1,13 +1,53 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A drawing: polygons, lines, dots, and texts in points, before it is known what file it goes to."""
+"""A drawing: polygons, lines, dots, and texts in points, before it is known what file it becomes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+_FILE = Path(__file__).with_name("dejavu_sans.npz")  # by scripts/write_glyphs.py
+_UNKNOWN = "\ufffd"  # a sign in place of a letter that the file does not have
+
+
+def text_width(text: str, size: float) -> float:
+    """The width of a line of text in points."""
+    return size * sum(_glyph(letter)[0] for letter in text)
+
+
+def text_rings(text: str, size: float) -> list[np.ndarray]:
+    """Closed polygons (N, 2) of a line of text that begins at 0, 0; holes turn the other way."""
+    rings, x = [], 0.0
+    for letter in text:
+        advance, outline = _glyph(letter)
+        rings += [size * (ring + np.array([x, 0.0])) for ring in outline]
+        x += advance
+    return rings
+
+
+@cache
+def _glyph(letter: str) -> tuple[float, list[np.ndarray]]:
+    """Advance and outline of a letter of size 1."""
+    font = _font()
+    number = font["number"].get(ord(letter), font["number"][ord(_UNKNOWN)])
+    first, last = font["glyph_rings"][number : number + 2]
+    ends = font["ring_points"]
+    outline = [font["points"][ends[k] : ends[k + 1]] / font["em"] for k in range(first, last)]
+    return float(font["advances"][number] / font["em"]), outline
+
+
+@cache
+def _font() -> dict:
+    with np.load(_FILE) as file:
+        font = {name: file[name] for name in file.files}
+    font["number"] = {int(code): number for number, code in enumerate(font["codes"])}
+    return font
+
 
 Color = tuple[float, ...]  # red, green, blue, and where it is not opaque alpha: sRGB from 0 to 1
 BLACK, GRAY, WHITE = (0.0, 0.0, 0.0), (0.55, 0.55, 0.55), (1.0, 1.0, 1.0)

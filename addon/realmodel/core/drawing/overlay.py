@@ -20,8 +20,7 @@ from .charts import (
     tick_texts,
     ticks,
 )
-from .drawing import BLACK, WHITE, Color, Drawing
-from .glyphs import text_width
+from .drawing import BLACK, WHITE, Color, Drawing, text_width
 
 SIZE = 9.0  # of texts, points
 _MARGIN = 12.0

@@ -5,11 +5,11 @@ Comes in: a `Model`, a number of realizations and a seed. Goes out: volumes of e
 heights, probabilities of blocks at samples, and their files.
 """
 
-from ..exporters.samples import draw_probabilities
+from ..exporters.section_files import draw_probabilities
 from ..results.samples import Probabilities
 from .ensemble import PERCENTILES, Ensemble, ensemble
 from .realization import Realizer
-from .samples import borehole_samples, grid_samples, hole_samples, sample_writer, section_samples
+from .sampled_blocks import borehole_samples, grid_samples, hole_samples, sample_writer, section_samples
 
 __all__ = [
     "PERCENTILES",

@@ -18,10 +18,9 @@ from ..model.model import Model
 from ..model.planned_hole import PlannedHole
 from ..project.project import Project
 from ..results.samples import Probabilities
-from ..results.volume_uncertainty import missing_deviations, without_deviation
-from .along_holes import hole_of_realizations
-from .realization import Realizer
-from .surface_heights import differences, heights
+from ..results.volumes import missing_deviations, without_deviation
+from .realization import Realizer, differences, heights
+from .sampled_blocks import hole_of_realizations
 
 BATCH = (
     8  # realizations that are summed before others are added: so sums do not depend on the number of workers

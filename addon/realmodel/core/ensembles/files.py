@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.atomic import Outputs
-from ..exporters.npz import texts, write_arrays
+from ..exporters.model_arrays import texts, write_arrays
 from ..exporters.report import versions
 from .ensemble import PERCENTILES, Ensemble
 

@@ -27,11 +27,11 @@ from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
 from ..simulation.cleaned_cells import cleaned_cells
-from ..simulation.element_faces import ElementFaces
+from ..simulation.elements import ElementFaces
 from ..simulation.patches import solver_names
 from .formats import FORMATS
-from .samples import draw_probabilities
-from .shapes.parts import Part, model_parts, section_parts, surface_parts
+from .section_files import draw_probabilities
+from .shapes.shape_parts import Part, model_parts, section_parts, surface_parts
 
 _EACH_PART = "{block}"  # in a file's name: a file for each
 

@@ -6,17 +6,25 @@ from __future__ import annotations
 
 from ..base.formats import Format
 from ..drawing import DRAWINGS
-from .boreholes import write_borehole, write_planned_hole
-from .fields import write_fields
 from .map_files import write_geojson, write_geopackage
-from .npz import write_npz
+from .model_arrays import write_npz
 from .objects.geoh5 import write_geoh5
 from .objects.ifc import write_ifc
 from .objects.omf import write_omf
 from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
 from .report import write_report
-from .samples import write_samples_csv, write_samples_npz, write_samples_vti, write_samples_vtu
-from .sections import write_section_csv, write_section_npz, write_section_obj, write_section_vtu
+from .section_files import (
+    write_borehole,
+    write_planned_hole,
+    write_samples_csv,
+    write_samples_npz,
+    write_samples_vti,
+    write_samples_vtu,
+    write_section_csv,
+    write_section_npz,
+    write_section_obj,
+    write_section_vtu,
+)
 from .shapes.dxf import write_dxf_faces
 from .shapes.gltf import write_glb
 from .shapes.obj import write_obj
@@ -30,9 +38,8 @@ from .solvers.gmsh import write_msh
 from .solvers.inp import write_inp
 from .solvers.modflow import write_disu, write_disv
 from .solvers.openfoam import POLY_MESH, write_openfoam
-from .solvers.vtu import write_vtu
-from .solvers.vtu_elements import write_vtu_elements
-from .surfaces import write_surfaces_npz, write_surfaces_vtu
+from .solvers.vtu import write_vtu, write_vtu_elements
+from .surface_files import write_fields, write_surfaces_npz, write_surfaces_vtu
 
 _ANY_SAMPLES = ("section samples", "hole samples", "grid samples")
 _CLEANED = ("tolerance", "cells")  # cells that are cleaned already

@@ -14,12 +14,12 @@ from ..base.atomic import Outputs
 from ..base.packages import vendored
 from ..base.text import Step
 from ..cells.model_data import ModelData
-from ..results.regular_cells import CellSize, plan_grids, regular_cells
+from ..results.samples import CellSize, plan_grids, regular_cells
 from ..settings.crs import epsg_code
 from ..simulation.patches import solver_names
 from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_image
-from .shapes.parts import distinct_names
+from .shapes.shape_parts import distinct_names
 
 _NO_HEIGHT = -9999.0
 _LARGEST_CODE = 32766  # of systems in GeoTIFF

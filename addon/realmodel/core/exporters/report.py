@@ -21,9 +21,8 @@ from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
 from ..results.displacements import displacements
-from ..results.erosion import Erosion
 from ..results.tables import block_entry
-from ..results.volume_uncertainty import volume_deviations
+from ..results.volumes import Erosion, volume_deviations
 from ..simulation import cleaned_entry, mesh_entry
 from ..simulation.cleaned_cells import CleanedCells
 from ..simulation.simulation_mesh import SimulationMesh

@@ -5,7 +5,6 @@ Comes in: a `Lattice` and data of surfaces: contacts, dips, bounds. Goes out: a 
 tetrahedron of the lattice, and the level of each surface.
 """
 
-from .draws import FieldDraws
 from .lattice import Lattice, ScalarField, rises
 from .level_sets import (
     HeldData,
@@ -15,7 +14,7 @@ from .level_sets import (
     fields_with_contacts,
     level_solids,
 )
-from .solve import Anisotropy, LevelSetData, SlitData, SolvedField, solve_field
+from .solve import Anisotropy, FieldDraws, LevelSetData, SlitData, SolvedField, solve_field
 
 __all__ = [
     "Anisotropy",

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..base.algebra import are_among, norm
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import Work, native_module
 from .lattice import ScalarField
 

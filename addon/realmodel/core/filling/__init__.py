@@ -6,10 +6,8 @@ and a `Model` whose blocks are the beds and together are the mesh.
 """
 
 from .beds import Beds, lay_beds
-from .fill import fill_with_strata, fill_within
-from .palettes import PALETTES, rocks_of_beds
-from .solid import ITEM, closed_mesh
-from .strata import Strata
+from .fill import ITEM, closed_mesh, fill_with_strata, fill_within
+from .strata import PALETTES, Strata, rocks_of_beds
 
 __all__ = [
     "ITEM",

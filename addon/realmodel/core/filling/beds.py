@@ -17,8 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.algebra import dot
-from ..base.elementary import cos, exp, sin
+from ..base.algebra import cos, dot, exp, sin
 from ..base.errors import InputRefused
 from .strata import Strata
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.algebra import principal_axes
 from ..base.work import native_module
 from ..settings.methods import METHODS, checked_options
-from . import bounded, from_neighbours
+from . import bounded, from_neighbors
 from .interpolation import Result, Task
 from .left_out_places import in_turn, places_of
 from .methods import run_method
@@ -51,12 +51,12 @@ class Trial:
 
     candidate: Candidate
     settings: dict
-    known: from_neighbours.KrigingStructure | None
+    known: from_neighbors.KrigingStructure | None
 
     def run(self, task: Task, points: np.ndarray, nodes: np.ndarray) -> Result:
         task = replace(task, points=points, nodes=nodes, settings=self.settings, bounds=None)
         if self.known is not None:
-            return from_neighbours.krige(task, self.known)
+            return from_neighbors.krige(task, self.known)
         return run_method(self.candidate.method, task)
 
     def error(self, task: Task, points: np.ndarray, left_out: list[np.ndarray]) -> float:
@@ -135,5 +135,5 @@ def _trial(task: Task, candidate: Candidate) -> Trial:
     settings = checked_options(candidate.method, candidate.options)
     structure = None
     if "kriging" in candidate.method:
-        structure = from_neighbours.structure(replace(task, settings=settings))
+        structure = from_neighbors.structure(replace(task, settings=settings))
     return Trial(candidate, settings, structure)

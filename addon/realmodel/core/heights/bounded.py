@@ -20,7 +20,7 @@ from ..base.errors import InputRefused, place_text
 from ..base.work import Work, native_module
 from ..readers.tables.observations import Bounds
 from ..settings.methods import METHODS
-from . import from_neighbours
+from . import from_neighbors
 from .interpolation import Result, Task
 from .methods import run_method
 
@@ -108,11 +108,11 @@ def holds_bounds(method: str) -> bool:
 def runner(method: str, task: Task) -> Callable[[Task], Result]:
     """The method with what it finds from the points alone, and from whether there are bounds."""
     if "variogram" in task.settings:
-        structure = from_neighbours.structure(task)
-        return lambda other_task: from_neighbours.krige(other_task, structure)
+        structure = from_neighbors.structure(task)
+        return lambda other_task: from_neighbors.krige(other_task, structure)
     if method == "spline":
         spacing = native_module().mean_spacing(task.points)
-        return lambda other_task: from_neighbours.thin_plate(other_task, spacing)
+        return lambda other_task: from_neighbors.thin_plate(other_task, spacing)
     return lambda other_task: run_method(method, other_task)
 
 

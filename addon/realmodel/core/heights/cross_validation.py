@@ -20,7 +20,7 @@ from ..settings.method_options import check_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 from . import Task, left_out_heights
-from .from_neighbours import krige, structure
+from .from_neighbors import krige, structure
 from .interpolate import checked_nodes, checked_points, checked_triangles, method_settings
 from .interpolation import Result
 from .left_out_places import in_turn, places_of

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .from_neighbours import inverse_distance, krige, thin_plate
-from .from_triangulation import linear, natural_neighbour
+from .from_neighbors import inverse_distance, krige, thin_plate
 from .interpolation import Result, Task
 from .on_mesh import dsi
-from .plain import constant, parallel, plane
+from .plain import constant, linear, natural_neighbour, parallel, plane
 from .regular_grid import bilinear
 
 

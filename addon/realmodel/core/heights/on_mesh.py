@@ -12,9 +12,8 @@ from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import checked_options
 from .companions import Companions, pooled
-from .from_neighbours import mean_offsets, structure
-from .interpolation import Result, Task
-from .surface_reference import Reference, heights_of
+from .from_neighbors import mean_offsets, structure
+from .interpolation import Reference, Result, Task, heights_of
 
 _ARGUMENTS = {"border": "equal", "above": "least", "below": "most"}  # of native code, by options
 BOUNDS = tuple(_ARGUMENTS)

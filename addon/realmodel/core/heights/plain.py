@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Simple methods for few points: a constant, a plane, a surface parallel to another. Calculated without
-NumPy's linear algebra, whose last digits differ between processors."""
+"""Methods for few points and on the triangulation of the points: a constant, a plane, a parallel surface,
+linear, natural neighbors.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +12,13 @@ from itertools import chain
 
 import numpy as np
 
-from ..base.elementary import atan2, cos, sin
+from ..base.algebra import atan2, cos, sin
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
+from ..base.work import native_module
 from ..settings.methods import checked_options
-from .interpolation import Result, Task
-from .surface_reference import heights_of
+from .from_neighbors import nearest_heights
+from .interpolation import Result, Task, heights_of
 from .true_thickness import lifted, measured, stretched
 
 # Of the greatest spread of the points: below this they lie in one line, and show no slope across it.
@@ -186,3 +188,57 @@ def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     if task.true_thickness and variance is not None:
         variance = variance * np.square(stretched(below, z, shown.z))
     return Result(z, variance, shown.variogram, warnings)
+
+
+def outside_hull(task: Task) -> np.ndarray:
+    """(N,) bool: the nodes outside the convex hull of the points; its border is inside. Exact."""
+    if not len(task.points):
+        return np.zeros(len(task.nodes), bool)
+    return task.run(native_module().outside_hull, task.points, task.nodes)
+
+
+def replace_extrapolated(task: Task, result: Result, outside: np.ndarray) -> Result:
+    """Replaces the heights of nodes outside the hull by the option `extrapolate`: those of the method, of the
+    nearest point, or none (NaN)."""
+    wanted = task.settings.get("extrapolate", "method")
+    if wanted == "method" or not outside.any():
+        return result
+    z = result.z.copy()
+    variance = None if result.variance is None else result.variance.copy()
+    if wanted == "none":
+        z[outside] = np.nan
+        if variance is not None:
+            variance[outside] = np.nan
+        return replace(result, z=z, variance=variance)
+    nodes = np.ascontiguousarray(task.nodes[outside])
+    if result.variogram is not None:
+        # Kriging from one point gives its height, with twice the semivariance as variance of the error.
+        variogram = result.variogram.native(task.settings["anisotropy"])
+        krige = native_module().krige
+        z[outside], deviation, _ = task.run(krige, task.points, nodes, variogram, (1, 0, 0.0))
+        if variance is not None:
+            variance[outside] = deviation
+    else:
+        z[outside] = nearest_heights(task, nodes)
+        if variance is not None:
+            variance[outside] = np.nan
+    return replace(result, z=z, variance=variance)
+
+
+def linear(task: Task) -> Result:
+    return _inside_hull(task, native_module().tin)
+
+
+def natural_neighbour(task: Task) -> Result:
+    return _inside_hull(task, native_module().natural_neighbour)
+
+
+def _inside_hull(task: Task, function: Callable) -> Result:
+    """Heights of all nodes; only if the method is to extrapolate also outside the hull of the points."""
+    if task.settings.get("extrapolate", "method") == "method":
+        return Result(task.run(function, task.points, task.nodes))
+    outside = outside_hull(task)
+    z = np.full(len(task.nodes), np.nan)
+    if not outside.all():
+        z[~outside] = task.run(function, task.points, np.ascontiguousarray(task.nodes[~outside]))
+    return Result(z, outside=outside)

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.elementary import hypot
+from ..base.algebra import hypot
 from ..base.errors import InputRefused, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
-from .from_neighbours import nearest_heights
+from .from_neighbors import nearest_heights
 from .interpolation import Result, Task
 
 # Of a cell: how far a point may lie from its place in the grid (coordinates are written with few digits).

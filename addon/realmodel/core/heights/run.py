@@ -12,10 +12,10 @@ from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import NativeError, refused_as
 from ..settings.methods import METHODS, SURFACE_OPTIONS, check_uses_dips, checked_options
-from . import automatic, bounded, from_neighbours
-from .from_triangulation import outside_hull, replace_extrapolated
+from . import automatic, bounded, from_neighbors
 from .interpolation import Interpolation, Result, Task
 from .mis_ties import without_mis_ties
+from .plain import outside_hull, replace_extrapolated
 
 _SAME_HEIGHT = 1e-9  # of a height
 
@@ -29,7 +29,7 @@ def heights(method: str, task: Task) -> Interpolation:
     task, of_dips = with_dips(method, replace(task, points=points))
     reason = ""
     with refused_as(refused_points):
-        few = replace(task, points=from_neighbours.thinned(method, task, points))
+        few = replace(task, points=from_neighbors.thinned(method, task, points))
         if method == "auto":
             method, reason, result = automatic.automatic(few)
             settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}

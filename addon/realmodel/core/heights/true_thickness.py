@@ -13,11 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.sheet import Sheet
-from ..base.triangles import border_loops, welded
+from ..base.triangles import Sheet, border_loops, welded
 from ..base.work import Work, native_module
-from .interpolation import Task
-from .surface_reference import sheet_of
+from .interpolation import Task, sheet_of
 
 _BEYOND = 1.1  # of the thickness: so far a surface goes on beyond its border, also across corners
 _HALVINGS = 5  # of that, where the surface itself is beyond its border

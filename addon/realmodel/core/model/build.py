@@ -13,12 +13,10 @@ import numpy as np
 from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.assembly import assemble, intersect
-from ..project.build_options import CELL_KINDS, check_cells, check_memory, check_stage
 from ..project.project import Project
-from ..project.project_checks import check_project
+from ..project.project_checks import CELL_KINDS, check_cells, check_memory, check_project, check_stage
 from ..proof.closed_form import surface_forms
-from ..proof.cut_bases import check_bases
-from ..proof.eroded_contacts import warn_of_eroded_contacts
+from ..proof.cut_bases import check_bases, warn_of_eroded_contacts
 from ..settings.method_options import check_threads
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput

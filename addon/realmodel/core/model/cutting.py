@@ -7,6 +7,8 @@ import itertools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from io import BytesIO
+from pathlib import Path
 from typing import Generic
 
 import numpy as np
@@ -19,12 +21,38 @@ from ..base.work import Cancel, NativeError, Progress, Work, native_module, refu
 from ..cells.blocks import named_blocks
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
+from ..drawing.svg import write_svg
+from ..exporters import SECTION
 from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
-from ..results.sections.section_faults import traces_on_fence, traces_on_plane
+from ..results.sections.section_data import FenceData, SectionData, traces_on_fence, traces_on_plane
+from ..results.sections.section_drawing import draw_section
 from ..results.sections.section_holes import hole_lines, hole_places, line_through
 from ..settings.method_options import check_threads
-from .section import Fence, Section
+
+
+class Section(SectionData):
+    """Convex polygons on a cutter."""
+
+    def save(self, path: str | Path, exaggeration: float = 1.0, hole_width: float = 0.0) -> None:
+        """Writes the polygons, with block and property, to a file in the format of its ending, or a drawing
+        of them to a .svg, .dxf or .png. exaggeration: of heights in drawings. hole_width: drawings have the
+        boreholes within this distance of the section, model units. The file appears whole or not at all.
+        Raises UsageError, OutputFailed."""
+        SECTION.save(self, path, exaggeration=exaggeration, hole_width=hole_width)
+
+    def _repr_svg_(self) -> str | None:
+        """The drawing that `save` writes; None where there is none, as of the section by a surface."""
+        if not len(self) or not (self.plane or isinstance(self, FenceData)):
+            return None
+        file = BytesIO()
+        write_svg(draw_section(self), file)
+        return file.getvalue().decode()
+
+
+class Fence(Section, FenceData):
+    """Vertical sections along a polyline in plan."""
+
 
 _CUT_SHARE = 0.97
 

@@ -7,15 +7,14 @@ import math
 import time
 from dataclasses import dataclass
 
-from ..base.elementary import cube_root
+from ..base.algebra import cube_root
 from ..base.errors import NotEnoughMemory
 from ..base.named import keyword_only
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..fields.solve import MOST_CENTERS
-from ..project.build_options import check_cells, check_stage
 from ..project.project import Project
-from ..project.project_checks import check_project
+from ..project.project_checks import check_cells, check_project, check_stage
 from ..settings.method_options import check_threads
 from ..structures.fields import MOST_TOGETHER, lattices
 from ..structures.setup import mesh_inputs

@@ -21,11 +21,11 @@ from ..proof.misfits import misfits
 from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
-from ..results.erosion import Erosion, eroded
 from ..results.geological_map import geological_map
-from ..results.model_boreholes import borehole
-from ..results.model_fields import field_of, rock_fields
+from ..results.layer_values import field_of, rock_fields
+from ..results.model_holes import borehole
 from ..results.tables import block_table, borehole_table, map_dataset
+from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
 from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
 from . import cutting, notebook_view

@@ -9,15 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
+from ..base.errors import BuildWarning, InputRefused
 from ..base.work import Work
 from ..cells.blocks import blocks_of_arrays
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData
 from ..cells.model_record import RECORD, read_record, without_record
 from ..readers.npz import read_npz
-from ..surfaces.surface_arrays import SurfaceArrays
+from ..surfaces.surface_input import SurfaceArrays
 
 _READ = 0.9  # of the time
 # Rows, type and columns (0: one-dimensional) of each array: rows as another array has them, or plus one.

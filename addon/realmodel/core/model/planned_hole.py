@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..cells.model_data import ModelData
 from ..exporters import PLANNED_HOLE
-from ..results.planned_holes import (
+from ..results.model_holes import (
     HoleAxis,
     PlannedHoleData,
     contacts_between,

@@ -9,22 +9,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import UsageError
+from ..base.errors import BuildWarning, UsageError
 from ..base.named import NamedList, keyword_only, number_of
-from ..base.sheet import Triangulation
+from ..base.triangles import Triangulation
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..exporters import SURFACES
 from ..heights import Interpolation
 from ..notebook import ShortRepr
-from ..project.build_options import check_stage
 from ..project.project import Project
-from ..project.project_checks import check_project
+from ..project.project_checks import check_project, check_stage
 from ..settings.method_options import check_threads
 from ..structures.parts.parts import Structures
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
-from ..surfaces.surface_arrays import triangle_sheets, vertex_attributes
+from ..surfaces.surface_input import triangle_sheets, vertex_attributes
 from .notebook_view import surfaces_to_pyvista
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..readers.tables.observations import Observations
 from ..settings.dips import SpaceDips
-from ..settings.mesh_sizes import AUTO
-from ..settings.series import FIELD
+from ..settings.meshers import AUTO
+from ..settings.series_kinds import FIELD
 from .project import Project, Rock
 
 CELLS = 1000  # of all lattices, about: they are solved and cut within about a third of a second

@@ -13,8 +13,7 @@ from typing import Any
 from ..base.errors import InputRefused, UsageError
 from ..settings.method_options import OptionRefused, check_fields, without
 from ..settings.setting import declared, settings_of
-from .colors import RGB, rgb
-from .looks import LOOKS
+from .looks import LOOKS, RGB, rgb
 
 _COLOR = re.compile(r"#[0-9a-fA-F]{6}")
 AUTO_LOOK = "auto"  # the look that suits the rock by its name

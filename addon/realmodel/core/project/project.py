@@ -14,15 +14,12 @@ import numpy as np
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
-from ..readers.point_input import companions
+from ..readers.any_format import companions
 from ..readers.tables.observations import Observations
-from ..settings.boreholes import Boreholes
 from ..settings.crs import checked_crs
+from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, ObservationFile, PointFile
 from ..settings.dips import DIPS, DipFile, Dips, dip_file_of
-from ..settings.map_file import MapFile
-from ..settings.map_layer import MapLayer
-from ..settings.mesh_sizes import edge_length_fault, triangles_fault
-from ..settings.meshers import DEFAULT_MESHER, MESHERS
+from ..settings.meshers import DEFAULT_MESHER, MESHERS, edge_length_fault, triangles_fault
 from ..settings.method_options import OptionRefused, without
 from ..settings.methods import (
     CONTINUATION,
@@ -33,15 +30,12 @@ from ..settings.methods import (
     OPTIONS,
     checked_options,
 )
-from ..settings.observation_file import ObservationFile
-from ..settings.point_file import MeshFile, PointFile
 from ..settings.rules import DEFAULT_RULE, RULES
-from ..settings.series import FIELD
+from ..settings.series_kinds import FIELD
 from ..settings.setting import declared, described, settings_of
 from .entry import Compared, Entry
 from .library import Library
-from .plan_input import files_of_sizes, layer_files, map_layer
-from .region_rings import is_several
+from .plan_input import files_of_sizes, is_several, layer_files, map_layer
 from .series import Series
 from .structure_entries import MESH, POINTS, Body, Fault, Shaped, library_id
 

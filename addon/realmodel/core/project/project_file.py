@@ -14,9 +14,8 @@ from ..base.algebra import is_number
 from ..base.errors import InputRefused
 from ..base.toml_table import Source, Table, TomlDocument
 from ..readers import is_mesh_file
-from ..settings.map_layer import MapLayer, is_wkt
+from ..settings.data_files import MESH_READING, READING, MapLayer, MeshFile, PointFile, is_wkt
 from ..settings.method_options import checked
-from ..settings.point_file import MESH_READING, READING, MeshFile, PointFile
 from ..settings.setting import Setting, declarations, settings_of
 from .entry import check_file, is_file, refused_by
 from .library import PROPERTY, Library, Property, check_property

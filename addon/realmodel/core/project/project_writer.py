@@ -24,10 +24,9 @@ from ..readers import UnitNames
 from ..settings.dips import Dips, SpaceDips, as_given
 from .entry import changed_values
 from .library import Library
-from .plan_input import map_layer
+from .plan_input import is_several, map_layer
 from .project import Project, Rock, Surface
 from .project_checks import check_project
-from .region_rings import is_several
 from .structure_entries import Body, Fault
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")

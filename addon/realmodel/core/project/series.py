@@ -10,7 +10,7 @@ from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.dips import DIPS, DipFile, Dips, SpaceDips, dip_file_of
 from ..settings.method_options import without
-from ..settings.series import AUTO, FIELD, KINDS, PARALLEL, THICKNESSES, resolution_fault
+from ..settings.series_kinds import BY_DATA, FIELD, KINDS, PARALLEL, THICKNESSES, resolution_fault
 from ..settings.setting import declared, described, settings_of
 from .entry import Entry
 
@@ -31,7 +31,7 @@ class Series(Entry):
     kind: str = declared(FIELD, kind="word", label="Kind", tip="How its surfaces are made", words=KINDS)
     dips: SpaceDips | Dips | DipFile | str | Path | None = described(DIPS)
     resolution: float | str = declared(
-        AUTO,
+        BY_DATA,
         kind="length",
         label="Resolution",
         tip="Edge length of the lattice of the field",
@@ -43,7 +43,7 @@ class Series(Entry):
         more='`"auto"` (default): by the spacing of the contacts and the size of the rock mass',
     )
     thickness: str = declared(
-        AUTO,
+        BY_DATA,
         kind="word",
         label="Thickness",
         tip="How thick the beds of a field are away from the data",
@@ -59,7 +59,7 @@ class Series(Entry):
     @property
     def keeps_thickness(self) -> bool | None:
         """Whether the beds of a field keep their thickness away from the data; None: as the data say."""
-        return None if self.thickness == AUTO else self.thickness == PARALLEL
+        return None if self.thickness == BY_DATA else self.thickness == PARALLEL
 
     @property
     def dip_file(self) -> DipFile | None:

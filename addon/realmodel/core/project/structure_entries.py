@@ -12,10 +12,9 @@ import numpy as np
 
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
+from ..settings.data_files import MeshFile, PointFile, is_wkt
 from ..settings.directions import checked_direction
-from ..settings.map_layer import is_wkt
 from ..settings.method_options import OptionRefused, surface
-from ..settings.point_file import MeshFile, PointFile
 from ..settings.setting import Setting, declared, described, settings_of
 from .entry import Entry
 

@@ -20,7 +20,7 @@ from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.observed.derived import BlockNumbers
 from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm, surface_forms
-from .seen_places import PLACES, places_along
+from .observed import PLACES, places_along
 
 DEFAULT_FOLDS = 20  # holes are left out in so many groups, where they are more
 

@@ -9,19 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.algebra import norm
-from ..base.elementary import atan2
+from ..base.algebra import atan2, norm
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..fields.series_field import SeriesField
 from ..project.project import Rock
 from ..readers.tables.observations import SWITCHED_OFF, Origin
-from ..results.residuals import heights_of_points
+from ..results.surface_quality import heights_of_points
 from ..settings.dips import Dips
 from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm, closed_forms
-from .observed import violated_bounds
-from .seen_places import NEAR, look
+from .observed import NEAR, look, violated_bounds
 
 MISFIT_KINDS = ("point", "bound", "block", "dip", "left_out")
 DIP_TOLERANCE = 5.0  # degrees

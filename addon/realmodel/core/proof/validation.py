@@ -10,10 +10,10 @@ import numpy as np
 
 from ..base.errors import UsageError, place_text
 from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.built_cells import native_rocks
 from ..cells.model_data import ModelData
-from ..cells.native_rocks import native_rocks
 from ..settings.method_options import check_threads
-from .random_points import check_points
+from .closed_form import check_points
 
 _DTYPES = {
     "vertices": np.float64,

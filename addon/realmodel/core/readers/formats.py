@@ -31,8 +31,7 @@ from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, re
 from .rasters.geotiff import is_tiff, read_geotiff
 from .rasters.irap_grid import is_irap_grid, read_irap_grid
 from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
-from .tables.point_array import begins_as_array, read_point_array
-from .tables.points import read_point_rows
+from .tables.points import begins_as_array, read_point_array, read_point_rows
 from .tables.sticks import begins_as_sticks, read_sticks
 
 _HEAD = 4096  # bytes; comments may come before the first line

@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects by their names in files."""
+"""Objects by their names in files, and the picks and logged intervals of boreholes among them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..base.errors import InputRefused, RealModelError
+import numpy as np
+
+from ..base.algebra import norm
+from ..base.errors import InputRefused, RealModelError, counted
+from ..settings.data_files import Boreholes
 from .formats import OBJECTS, FileFormat, format_of
-from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile
-from .tables.table_layout import names_shown
+from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values
+from .tables.boreholes import Pick, Picks
+from .tables.hole_tables import INTERVALS, PICKS
+from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
+from .tables.observations import Observations, Origin
+from .tables.table_layout import names_shown, plain_name
+from .tables.unit_names import UnitNames
 
 _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE: "boreholes"}
 
@@ -84,3 +94,178 @@ def _opened(file: Path, file_format: FileFormat) -> Iterator[OpenFile]:
     except Exception as error:
         what = f"not a file of {file_format.label} that can be read: {error or type(error).__name__}"
         raise InputRefused(what, file=file) from error
+
+
+_KINDS = (HOLE, LINES, POINTS)
+
+
+def read_hole_objects(
+    given: Boreholes, scale: np.ndarray, units: UnitNames, plan_step: float | None
+) -> Picks:
+    """What the boreholes of a file say, or the object `layer`. scale (3,): the factors to the model's unit.
+    units: what the names in it mean. plan_step: as of read_intervals.
+
+    Picks are points whose data name a surface, and tops of intervals that name one where the interval above
+    has another name. `hole` among the data names the hole, else the object's name does.
+    Raises InputRefused naming the file and the object.
+    """
+    picks = Picks()
+    for file in dict.fromkeys(given.files):
+        kinds = (HOLE,) if given.layer is None else _KINDS
+        objects = read_objects(file, given.layer, kinds)
+        if given.picks is not None and Path(given.picks) == file:
+            _add_picks(picks, objects, given, scale, units)
+        if given.intervals is not None and Path(given.intervals) == file:
+            _add_intervals(picks, objects, given, scale, (units, plan_step))
+    for _, places in picks.holes.values():
+        places.sort(key=lambda pick: -pick[1][2])
+    return picks
+
+
+def _add_picks(
+    picks: Picks, objects: list[GeoObject], boreholes: Boreholes, scale: np.ndarray, units: UnitNames
+) -> None:
+    points: dict[str, list[Pick]] = {}
+    missing = 0
+    for obj in objects:
+        for code, hole, place in _picks_of(obj, boreholes):
+            surface = units.surface(code)
+            if units.says_nothing(code) or not surface:
+                continue
+            if not np.isfinite(place).all():
+                missing += 1
+                continue
+            points.setdefault(surface, []).append((Origin(hole), place * scale))
+            picks.holes.setdefault(hole, (_collar(obj, scale), []))[1].append((surface, place * scale))
+    picks.of_surfaces |= points
+    if not points:
+        raise InputRefused("there are no picks in it", file=boreholes.picks)
+    if missing:
+        picks.warnings.append(f"{boreholes.picks}: left out: {counted(missing, 'pick')} without a place")
+
+
+def _picks_of(obj: GeoObject, boreholes: Boreholes) -> Iterator[tuple[str, str, np.ndarray]]:
+    """The name of the surface, the hole and the place (3,) of each pick of an object."""
+    aliases = (*PICKS["surface"], *INTERVALS["block"])
+    values, column = _table(obj, obj.values, boreholes, "surface", aliases)
+    names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
+    before = ("", "")
+    for name, hole, place in zip(names, holes, values.places, strict=True):
+        repeats = values.ends is not None and (name, hole) == before
+        before = (name, hole)
+        if not repeats:
+            yield name, hole, place
+
+
+@dataclass
+class _Log:
+    """The intervals of a hole: where their ends are, by depth, and (from, to, block)."""
+
+    collar: np.ndarray | None
+    depths: list[float] = field(default_factory=list)
+    places: list[np.ndarray] = field(default_factory=list)
+    intervals: list[tuple[float, float, str]] = field(default_factory=list)
+
+    def place(self, depth: float) -> np.ndarray:
+        """(3,) the place of a depth, on straight lines between the known ones."""
+        depths, first = np.unique(self.depths, return_index=True)
+        places = np.array(self.places)[first]
+        return np.array([np.interp(depth, depths, column) for column in places.T])
+
+
+def _add_intervals(
+    picks: Picks,
+    objects: list[GeoObject],
+    boreholes: Boreholes,
+    scale: np.ndarray,
+    meaning: tuple[UnitNames, float | None],
+) -> None:
+    units, plan_step = meaning
+    logs: dict[str, _Log] = {}
+    for obj in objects:
+        _read_log(logs, picks, obj, boreholes, scale, units)
+    if not logs:
+        raise InputRefused("there are no intervals in it", file=boreholes.intervals)
+    if plan_step is None:
+        plan_step = plan_step_of(np.array([log.places[0][:2] for log in logs.values()]))
+    parts = []
+    for hole, log in logs.items():
+        parts.append(observed_intervals(hole, log.intervals, log.place, plan_step, picks.left_out))
+        picks.holes.setdefault(hole, (log.collar, []))[1].extend(tops_of(parts[-1]))
+    picks.observations.append(Observations.joined(parts))
+
+
+def _read_log(
+    logs: dict[str, _Log],
+    picks: Picks,
+    obj: GeoObject,
+    boreholes: Boreholes,
+    scale: np.ndarray,
+    units: UnitNames,
+) -> None:
+    tables = [values for values in obj.values if values.ends is not None]
+    values, column = _table(obj, tables, boreholes, "block", INTERVALS["block"])
+    names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
+    assert values.ends is not None
+    begins, ends = values.places * scale, values.ends * scale
+    depths = _depths(begins, ends, holes) if values.depths is None else values.depths * scale[2]
+    for code, hole, (low, high), begin, end in zip(names, holes, depths.tolist(), begins, ends, strict=True):
+        log = logs.setdefault(hole, _Log(_collar(obj, scale)))
+        if not (np.isfinite(begin).all() and np.isfinite(end).all()):
+            what = f"an interval of hole '{hole}' has no place"
+            raise InputRefused(what, file=boreholes.intervals, item=f"object '{obj.name}'")
+        log.depths += [low, high]
+        log.places += [begin, end]
+        where = f"object '{obj.name}', hole '{hole}' at {low:.9g}, '{code}'"
+        if not units.says_nothing(code):
+            interval = known_interval((low, high, code), hole, where, units, picks.left_out)
+            log.intervals += [] if interval is None else [interval]
+
+
+def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarray:
+    """(N, 2) the depths of the ends of intervals that follow one another along each hole, from 0."""
+    last: dict[str, tuple[float, np.ndarray]] = {}
+    depths = []
+    for hole, begin, end in zip(holes, begins, ends, strict=True):
+        depth, place = last.get(hole, (0.0, begin))
+        depth += float(norm(begin - place))
+        depths.append((depth, depth + float(norm(end - begin))))
+        last[hole] = depths[-1][1], end
+    return np.array(depths).reshape(-1, 2)
+
+
+def _table(
+    obj: GeoObject, tables: list[Values], boreholes: Boreholes, meaning: str, aliases: Iterable[str]
+) -> tuple[Values, str]:
+    """The data of an object that name surfaces or blocks, and under which name."""
+    said = boreholes.columns.get(meaning)
+    for values in tables:
+        column = _column(values, said, aliases)
+        if column is not None:
+            return values, column
+    names = [name for values in tables for name in values.columns]
+    what = f"it has no data '{said or meaning}'"
+    advice = f"it has {names_shown(names)}: " if names else ""
+    advice += f'name it: columns = {{ {meaning} = "..." }}'
+    raise InputRefused(what, file=boreholes.files[-1], item=f"object '{obj.name}'", advice=advice)
+
+
+def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
+    """The name of a column: the one that the user says, or the first that is called as usual."""
+    if said is not None:
+        return next((name for name in values.columns if name.lower() == str(said).strip().lower()), None)
+    plain = {plain_name(name): name for name in reversed(values.columns)}
+    return next((plain[alias] for alias in aliases if alias in plain), None)
+
+
+def _holes(obj: GeoObject, values: Values, boreholes: Boreholes) -> list[str]:
+    column = _column(values, boreholes.columns.get("hole"), PICKS["hole"])
+    return [obj.name] * len(values.places) if column is None else _texts(values.columns[column])
+
+
+def _collar(obj: GeoObject, scale: np.ndarray) -> np.ndarray | None:
+    return None if obj.collar is None else obj.collar * scale
+
+
+def _texts(column: np.ndarray) -> list[str]:
+    return [value.strip() if isinstance(value, str) else f"{value:g}" for value in column.tolist()]

@@ -11,8 +11,8 @@ import numpy as np
 from ..base.algebra import begins_run
 from ..base.errors import InputRefused, counted
 from ..base.units import MODEL_UNIT
-from ..settings.map_file import MapFile
-from .map_input import read_shapes
+from ..settings.data_files import MapFile
+from .any_format import read_shapes
 from .maps.shapes import Heights, Shapes, of_name
 from .tables.table_layout import names_shown
 

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from ..cells.blocks import named_blocks
 from ..cells.model_data import SomeModel
-from ..project.colors import hex_color, rgb
 from ..project.library import Library, Property
+from ..project.looks import hex_color, rgb
 from ..project.project import Project
 
 # Colors of rocks for what has none: any two differ, and most of all neighbors, also for people who confuse

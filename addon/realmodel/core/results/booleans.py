@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.named import keyword_only
-from ..base.sheet import Triangulation
-from ..base.triangles import checked_triangulation
+from ..base.triangles import Triangulation, checked_triangulation
 from ..base.work import Cancel, NativeError, Progress, Work, refused_as, run
 from ..settings.method_options import check_threads
 

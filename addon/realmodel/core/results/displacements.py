@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
-from ..structures.sheets.displacement import Measured
+from ..structures.sheets.throws import Measured
 from ..surfaces.rock_structure import RockStructure
 
 

@@ -14,8 +14,8 @@ from ..cells.blocks import Block
 from ..cells.model_data import ModelData
 from ..notebook import data_frame
 from ..project.project import Project
-from .model_boreholes import Interval
-from .regular_cells import plan_grids
+from .model_holes import Interval
+from .samples import plan_grids
 
 if TYPE_CHECKING:
     import pandas

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from ..base.algebra import ascending
 from ..base.errors import InputRefused, place_text
+from .data_files import FieldTable
 from .directions import gradient_of, normal_of
-from .field_table import FieldTable
 from .setting import Setting
 
 NORMAL = ("normal_x", "normal_y", "normal_z")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.elementary import cos, sin
+from ..base.algebra import cos, sin
 from .method_options import OptionRefused
 
 COMPASS = {name: 45.0 * number for number, name in enumerate(("N", "NE", "E", "SE", "S", "SW", "W", "NW"))}

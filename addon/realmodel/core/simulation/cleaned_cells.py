@@ -8,13 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..base.algebra import is_number
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, UsageError
+from ..base.errors import BuildWarning, InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.model_data import ModelData
 from ..settings.method_options import check_threads
-from .volume_mesh import PolyhedralMesh, model_arrays
-from .volume_warnings import changed_volumes
+from .volume_mesh import PolyhedralMesh, changed_volumes, model_arrays
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -3,24 +3,97 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..base.algebra import is_number
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, UsageError, place_text
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.errors import BuildFailed, BuildWarning, InputRefused, UsageError, place_text
+from ..base.work import Arguments, Cancel, Progress, Result, Work, native_module, run
 from ..cells.model_data import ModelData
-from ..settings.mesh_sizes import check_mesher, local_lengths
+from ..settings.meshers import check_mesher, local_lengths
 from ..settings.method_options import check_threads
 from ..surfaces.planar_mesh import MeshOptions, mesh_rings
-from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
-from .native_call import call_native
-from .tetrahedra import divided, divided_quadrilaterals
-from .volume_mesh import PlanMesh, VolumeMesh, model_arrays
-from .volume_warnings import changed_voids, changed_volumes
+from .elements import divided, divided_quadrilaterals
+from .volume_mesh import PlanMesh, VolumeMesh, changed_voids, changed_volumes, model_arrays
+
+
+def call_native(
+    work: Work,
+    function: Callable[Arguments, Result],
+    *arguments: Arguments.args,
+    **options: Arguments.kwargs,
+) -> Result:
+    """The result of a native function. Raises InputRefused, BuildFailed."""
+    native = native_module()
+    try:
+        return work.native(function, *arguments, **options)
+    except native.InputError as error:
+        if error.kind == "nothing":
+            raise InputRefused(str(error), advice="use a shorter edge length") from error
+        if error.kind == "size":
+            raise InputRefused(str(error)) from error
+        place = tuple(error.place[:2]) if error.place is not None else None
+        raise BuildFailed(f"the mesh cannot be made: {error}" + (f" at {place}" if place else "")) from error
+
+
+_FAULT = 1  # of surface_kind
+
+
+def filled(work: Work, model: ModelData, edge_length: float, tolerance: float, sizes: list[tuple]) -> dict:
+    """Tetrahedra of a model: points (P, 3), corners (E, 4), block and compartment (E,), triangles (F, 3)
+    outside, between blocks or compartments and on faults, and surface (F,) of these.
+
+    tolerance: how far boundaries may lie from the exact ones, model units. sizes: as local_lengths gives
+    them.
+    """
+    parts = np.stack([model.cell_block, model.cell_compartment], axis=1)
+    regions, of_cell = np.unique(parts, axis=0, return_inverse=True)
+    made = call_native(
+        work,
+        native_module().filled_mesh,
+        model_arrays(model),
+        of_cell.ravel().astype(np.int32),
+        (np.asarray(model.surface_kind) == _FAULT).astype(np.uint8),
+        edge_length,
+        tolerance,
+        sizes,
+    )
+    block, compartment = regions[made["region"]].T.astype(np.int32)
+    return {
+        "points": made["points"],
+        "corners": made["tetrahedra"],
+        "block": np.ascontiguousarray(block),
+        "compartment": np.ascontiguousarray(compartment),
+        "triangles": made["triangles"],
+        "surface": made["surface"],
+    }
+
+
+def tetrahedron_volumes(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(E,) float64, positive where corners are in order."""
+    a, b, c = (points[corners[:, 1:]] - points[corners[:, :1]]).transpose(1, 0, 2)
+    return np.einsum("ij,ij->i", np.cross(a, b), c) / 6
+
+
+def smallest_dihedral_angle(points: np.ndarray, corners: np.ndarray) -> float:
+    """The smallest angle between two faces of a tetrahedron, degrees; 180 without tetrahedra."""
+    smallest = np.pi
+    for i in range(4):
+        for j in range(i + 1, 4):
+            k, m = (n for n in range(4) if n not in (i, j))
+            edge = points[corners[:, j]] - points[corners[:, i]]
+            edge /= np.linalg.norm(edge, axis=1, keepdims=True)
+            sides = []
+            for n in (k, m):
+                side = points[corners[:, n]] - points[corners[:, i]]
+                sides.append(side - (side * edge).sum(axis=1, keepdims=True) * edge)
+            across = np.linalg.norm(np.cross(*sides), axis=1)
+            along = (sides[0] * sides[1]).sum(axis=1)
+            smallest = min(smallest, float(np.arctan2(across, along).min(initial=np.pi)))
+    return float(np.degrees(smallest))
+
 
 ALL_LINES = np.empty((0, 2))  # of local lengths: no places
 ELEMENTS = ("prisms", "tetrahedra")

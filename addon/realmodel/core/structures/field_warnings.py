@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import number_list, place_text
-from ..base.sheet import Sheet
+from ..base.errors import BuildWarning, number_list, place_text
+from ..base.triangles import Sheet
 from ..base.work import Work
 from ..fields import ScalarField, SolvedField, are_on
 from ..fields.series_field import SeriesField
 from ..project.series import Series
 from ..readers.tables.observations import KINDS, LeftOut
-from ..surfaces.distant_points import farthest
+from ..surfaces.doubtful_heights import farthest
 from ..surfaces.rock_input import RockInput
 from ..surfaces.wrong_sides import heights_at
 from .series_data import SeriesData

@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.algebra import are_among
-from ..base.elementary import cube_root
+from ..base.algebra import are_among, cube_root
 from ..base.errors import InputRefused, naming
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import Work, refused_as
 from ..fields import (
     HeldData,
@@ -25,10 +24,9 @@ from ..fields import (
 )
 from ..fields.series_field import SeriesField
 from ..project.series import Series
-from ..settings.series import AUTO, FIELD
+from ..settings.series_kinds import BY_DATA, FIELD
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import RockStructure, joined
-from ..surfaces.sides import sides_of
+from ..surfaces.rock_structure import RockStructure, joined, sides_of
 from ..surfaces.surface_heights import where_known
 from .field_warnings import (
     leave_out,
@@ -43,8 +41,7 @@ from .field_warnings import (
 )
 from .parts.part_models import level
 from .series_data import SeriesData
-from .sheets.families import DIES_OUT, Family, families
-from .sheets.within import Within
+from .sheets.families import DIES_OUT, Family, Within, families
 from .slits import Slits
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above it all rock ends
@@ -320,7 +317,7 @@ def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -
     low = np.minimum([*plan.min(axis=0), base], places.min(axis=0))
     high = np.maximum([*plan.max(axis=0), top], places.max(axis=0))
     size = high - low
-    is_auto = series.resolution == AUTO
+    is_auto = series.resolution == BY_DATA
     step = cube_root(float(size.prod()) / _CELLS) if is_auto else float(series.resolution)
     step, unit = _short(step)
     origin = unit * np.floor((low - _MARGIN * step) / unit)

@@ -11,25 +11,22 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.algebra import dot, norm, principal_axes, ranks_in_runs
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, place_text
-from ..base.sheet import Sheet
-from ..base.triangles import edge_lengths
+from ..base.errors import BuildWarning, InputRefused, place_text
+from ..base.triangles import Sheet, edge_lengths
 from ..base.work import Work, native_module
 from ..project.project import Rock
 from ..project.structure_entries import Fault
 from ..settings.rules import RULES
 from ..surfaces.planar_mesh import triangulate_rings
 from ..surfaces.rock_input import RockInput
-from ..surfaces.sides import FaultShape, fault_sides, sides_of
+from ..surfaces.rock_structure import FaultShape, fault_sides, sides_of
 from ..surfaces.surface_heights import needed_surfaces
 from ..surfaces.wrong_sides import heights_at
 from .parts.part_models import level
-from .parts.parts import Structures
-from .parts.refusals import ends_inside
-from .shapes.branches import nearest_to_meet, require_meeting
+from .parts.parts import Structures, ends_inside
 from .shapes.continued import Border, border_of, connected, continued
 from .shapes.fitted import plane_axes
+from .shapes.reading import nearest_to_meet, require_meeting
 
 _GAP = 0.25  # of an edge length: a narrower gap is closed
 _SHARE = 0.5  # of the part of a side of the border that is in the rock: with so much near its end, it reaches

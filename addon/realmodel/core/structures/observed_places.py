@@ -9,18 +9,18 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import Work, native_module
 from ..readers.tables.observations import Observations, in_one_interval
 from ..surfaces.field_data import apply_observations, observed_on_mesh
+from ..surfaces.observed.columns import Succession
 from ..surfaces.observed.derived import BlockNumbers, Situation
 from ..surfaces.observed.edge_crossings import with_places
-from ..surfaces.observed.succession import Succession
 from ..surfaces.rock_input import RockInput
-from ..surfaces.sides import sides_of
+from ..surfaces.rock_structure import sides_of
 from .fields import spacing
 from .parts.parts import Structures
-from .sheets.within import box_of, parts_of_lines, walls_of
+from .sheets.families import box_of, parts_of_lines, walls_of
 
 # Of an edge length of the planar mesh, or of the lattice of a field alone.
 _NEAR = 0.25  # nearer to a fault, a boundary between blocks may be the fault

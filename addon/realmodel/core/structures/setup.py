@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.build_warning import BuildWarning
-from ..base.errors import BuildFailed
+from ..base.errors import BuildFailed, BuildWarning
 from ..base.mapped_arrays import StoreArray, as_it_is
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project
 from ..project.structure_entries import Fault
@@ -26,15 +25,13 @@ from ..surfaces.prepare import (
     read_rocks,
 )
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import joined
-from ..surfaces.sides import FaultShape, fault_sides
+from ..surfaces.rock_structure import FaultShape, fault_sides, joined
 from ..surfaces.surface_heights import interpolation_order
 from ..surfaces.surface_input import Reader, read_each
 from .fields import make_fields, place_level_sets, with_levels
 from .gaps import close_gaps, gap_widths, tops_of_faults
 from .observed_places import apply_in_compartments
-from .parts.parts import Structures, add_compartments, box_around, divide, structures_of
-from .parts.refusals import refused_structure
+from .parts.parts import Structures, add_compartments, box_around, divide, refused_structure, structures_of
 from .shapes.reading import read_structures
 from .sheets.sheets import make_sheets, warn_of_doubts
 

@@ -22,11 +22,10 @@ from ..base.work import Work, native_module
 from ..fields import Lattice, SharedCorners, SlitData
 from ..settings.rules import RULES
 from ..surfaces.rock_input import RockInput
-from ..surfaces.sides import FaultShape, fault_sides
+from ..surfaces.rock_structure import FaultShape, fault_sides
 from ..surfaces.wrong_sides import heights_at
 from .field_warnings import within_rock
-from .sheets.families import Family
-from .sheets.within import Within
+from .sheets.families import Family, Within
 
 _PIECE = 0.5  # of an edge of the lattice: what a continuation is divided into
 _BESIDE = 1e-6  # of an edge of the lattice: what touches a cell is in it

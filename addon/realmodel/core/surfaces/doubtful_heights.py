@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Warnings about interpolated surfaces that miss a point by much, or cut older layers beyond their points."""
+"""Warnings about points that cannot be meant for a region, and about surfaces that miss a point by much or
+cut older layers beyond their points.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.algebra import dot
-from ..base.build_warning import BuildWarning
-from ..base.errors import number_list, place_text
-from ..base.sheet import Sheet
-from ..base.units import number_text
+from ..base.errors import BuildWarning, InputRefused, number_list, place_text
+from ..base.triangles import Sheet
+from ..base.units import length_text, number_text
 from ..base.work import Work, native_module
 from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
+from ..project.project import surface_item
 from ..readers.tables.observations import Origin
 from ..settings.methods import METHODS, SURFACE_OPTIONS
 from ..settings.rules import RULES, Rule
@@ -276,3 +278,55 @@ class _Blocks:
             least = 0.1 * thickness[is_there].mean() if is_there.any() else np.inf
             is_cut.append(is_there & (top - np.maximum(z, bottom) > least))
         return np.array(is_cut)
+
+
+_FARTHEST = 3.0  # times the extent of points and region
+_TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
+
+
+def require_points_near(entry: RockInput, unit: str) -> None:
+    """Refuses a surface whose points are all far away from the region of its rock mass, or whose mesh lies
+    beside it.
+
+    Points do if the gap between their bounding box and that of the region, in plan, is more than three times
+    the diagonals of both; meshes, which say nothing beyond their borders, where there is any. Raises
+    InputRefused with the distance.
+    """
+    rock = entry.rock
+    if rock.region is None:
+        return
+    low, high = _box(np.concatenate(rock.rings()))
+    for surface, data in zip(rock.surfaces, entry.data, strict=True):
+        is_interpolated = rock.is_interpolated(surface)
+        points = data.points if is_interpolated else surface.vertices
+        if points is None or not len(points):
+            continue
+        first, last = _box(points[:, :2])
+        gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
+        away = float(np.hypot(*gap))
+        most = _FARTHEST if is_interpolated else 0.0
+        if away > most * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
+            towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
+            what = "its points lie" if is_interpolated else "its mesh lies"
+            raise InputRefused(
+                f"{what} {length_text(away, unit)} {towards} of the region",
+                item=surface_item(rock, surface),
+                file=surface.shape_file,
+                advice="check the coordinates and units of both; the region must lie where the surface is",
+            )
+
+
+def farthest(region: np.ndarray, places: np.ndarray) -> tuple[int, float] | None:
+    """The place of some (P, 2 or 3) that lies farthest from the bounding box of a region (N, 2) in plan, and
+    how far, if that is more than three times the diagonal of the box."""
+    low, high = _box(region)
+    beyond = np.maximum(np.maximum(low - places[:, :2], places[:, :2] - high), 0.0)
+    away = np.hypot(*beyond.T)
+    if not (away > _FARTHEST * np.hypot(*(high - low))).any():
+        return None
+    worst = int(away.argmax())
+    return worst, float(away[worst])
+
+
+def _box(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return plan.min(axis=0), plan.max(axis=0)

@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import naming, number_list
+from ..base.errors import BuildWarning, naming, number_list
 from ..base.work import Work
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
@@ -19,10 +18,9 @@ from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_
 from ..readers.tables.boreholes import Pick
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips, SpaceDips
-from ..settings.series import SHEETS
+from ..settings.series_kinds import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
-from .observed.contradictions import without_contradictions
-from .observed.derived import Situation, derive, with_contacts
+from .observed.derived import Situation, derive, with_contacts, without_contradictions
 from .observed.edge_crossings import with_crossings
 from .rock_input import RockInput
 from .wrong_sides import heights_at

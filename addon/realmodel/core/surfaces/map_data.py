@@ -19,14 +19,12 @@ from ..heights.interpolate import interpolate
 from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
 from ..readers import UnitNames, is_mesh_file
-from ..readers.fault_trace import read_fault_trace
-from ..readers.point_input import read_raster_heights
+from ..readers.any_format import read_raster_heights
+from ..readers.fault_input import read_fault_trace
 from ..readers.tables.observations import LeftOut, Observations
 from ..readers.unit_polygons import UnitPolygon, read_unit_polygons
-from ..settings.map_file import MapFile
-from ..settings.map_layer import MapLayer
+from ..settings.data_files import MapFile, MapLayer, MeshFile, PointFile
 from ..settings.methods import CONTINUATION, CONTINUATION_OPTIONS
-from ..settings.point_file import MeshFile, PointFile
 from .observed.map_places import MapFrame, observed_on_map
 from .observed.polygon_borders import inside
 from .planar_mesh import mesh_region

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, place_text
-from ..base.sheet import Sheet, Triangulation
+from ..base.triangles import Sheet, Triangulation
 from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
 from ..heights.ties import TieData, tie_data
-from ..project.region_rings import numbered_ring, region_rings
-from ..settings.mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
-from ..settings.meshers import DEFAULT_MESHER
+from ..project.plan_input import numbered_ring, region_rings
+from ..settings.meshers import DEFAULT_MESHER, check_mesher, local_lengths, places_of, size_of_edges
 from .rock_input import RockInput
-from .sides import sides_of
+from .rock_structure import sides_of
 
 _SAME = 1e-9  # of the extent: nearer places are one
 _LOOKED_AT = 8  # places around one

@@ -11,12 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, number_list
+from ..base.errors import BuildWarning, InputRefused, naming, number_list
 from ..base.mapped_arrays import StoreArray, as_it_is
-from ..base.sheet import Sheet
 from ..base.text import no_step
-from ..base.triangles import median_edge
+from ..base.triangles import Sheet, median_edge
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from ..project.project import Project, Rock, surface_item
@@ -27,21 +25,18 @@ from ..readers.tables.dips import DIPS
 from ..readers.tables.hole_tables import OBSERVED, other_units_in
 from ..settings.crs import epsg_code
 from ..settings.dips import Dips, SpaceDips, as_given
-from ..settings.mesh_sizes import AUTO
-from ..settings.series import SHEETS
-from .distant_points import require_points_near
-from .doubtful_heights import doubtful_heights
+from ..settings.meshers import AUTO
+from ..settings.series_kinds import SHEETS
+from .doubtful_heights import doubtful_heights, require_points_near
 from .field_data import FieldData, apply_observations, bodies_of, left_out_warnings, read_field_data
-from .observed.conformable import proposals
+from .observed.conformable import proposals, with_least_thickness
 from .observed.kept_contacts import kept_bounds
-from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
 from .rock_input import RockInput
 from .surface_heights import give_heights, interpolation_order
 from .surface_input import Reader, SurfaceInput, read_each
-from .wrong_order import points_above_younger
-from .wrong_sides import points_too_low
+from .wrong_sides import points_above_younger, points_too_low
 
 _EDGE_LENGTH_KINDS = (
     "edge_length",

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, place_text
+from ..base.errors import BuildWarning, InputRefused, place_text
 from ..base.work import Work
 from ..heights import heights
 from ..heights.interpolation import Task

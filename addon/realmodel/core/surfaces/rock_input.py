@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming
-from ..base.sheet import Sheet
+from ..base.errors import BuildWarning, InputRefused, naming
 from ..base.stored_objects import NOT_STORED
-from ..base.triangles import median_edge
+from ..base.triangles import Sheet, median_edge
 from ..fields import FieldDraws, LevelSolid, ScalarField
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
@@ -22,8 +20,7 @@ from ..project.project import Rock, surface_item
 from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS
 from .observed.surface_data import SurfaceData
-from .rock_structure import RockStructure
-from .sides import RockFaults
+from .rock_structure import RockFaults, RockStructure
 
 
 @dataclass

@@ -9,22 +9,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, place_text
-from ..base.sheet import Sheet
+from ..base.errors import BuildWarning, InputRefused, place_text
+from ..base.triangles import Sheet
 from ..base.work import Work, native_module
 from ..heights import Interpolation, heights
-from ..heights.interpolation import Task
+from ..heights.interpolation import Task, heights_of
 from ..heights.mis_ties import without_mis_ties
 from ..heights.on_mesh import BOUNDS, within_bounds
 from ..heights.run import elsewhere
-from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, raised_heights, tie_data
 from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface
 from ..settings.methods import METHODS, checked_options
-from .observed.conformable import alike_of
-from .observed.sheet_series import bounds_beside, companions_of
+from .observed.conformable import alike_of, bounds_beside, companions_of
 from .observed.surface_data import SurfaceData
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.atomic import Outputs
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
+from ..base.errors import BuildWarning, InputRefused
 from ..base.toml_table import TomlDocument
 from ..cells.blocks import Block
 from ..project.project import Project, Rock, Surface

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 from ..base.work import Work
 from ..cells.assembly import assemble
 from ..cells.blocks import named_blocks
@@ -18,7 +18,7 @@ from ..cells.joining import blocks_divided, body_block, build_joined
 from ..cells.labels import compartments
 from ..cells.model_data import ModelData
 from ..model.model import Model
-from ..surfaces.surface_arrays import SurfaceArrays
+from ..surfaces.surface_input import SurfaceArrays
 from .owned_cells import Seam, inseparable, owners, reach_of
 from .tile_model import Frame, Name
 from .windows import Window

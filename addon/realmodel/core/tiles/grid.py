@@ -13,7 +13,7 @@ import numpy as np
 from ..base.algebra import ranks_in_runs
 from ..base.errors import UsageError
 from ..base.mapped_arrays import in_pieces
-from ..base.sheet import Sheet
+from ..base.triangles import Sheet
 
 _SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was asked for
 _IN_GAP = 0.3819660112501051  # the golden section: far from all simple fractions

@@ -12,9 +12,9 @@ from ..base.atomic import Outputs
 from ..base.errors import InputRefused
 from ..base.stored_objects import NamedArrays, StoredClasses
 from ..cells.model_record import RECORD, RECORDED
-from ..exporters.npz import write_arrays
+from ..exporters.model_arrays import write_arrays
 from ..readers.npz import read_npz
-from ..results.model_fields import RockFields
+from ..results.layer_values import RockFields
 
 FIELDS = "fields.npz"  # in the folder
 _STORED = StoredClasses((*RECORDED, RockFields))

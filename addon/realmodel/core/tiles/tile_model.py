@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ..base.atomic import Outputs
-from ..base.build_warning import BuildWarning
-from ..base.errors import BuildFailed, OutputFailed
-from ..base.sheet import Sheet
+from ..base.errors import BuildFailed, BuildWarning, OutputFailed
+from ..base.triangles import Sheet
 from ..base.work import NativeError, Work, refused_as
 from ..cells.assembly import assemble
 from ..cells.blocks import Block, blocks_of_arrays
@@ -20,16 +19,16 @@ from ..cells.built_cells import BuiltCells
 from ..cells.cell_complex import CellComplex
 from ..cells.joining import built_cells
 from ..cells.stack_refusals import refused_stack
-from ..exporters.npz import model_arrays, write_arrays
+from ..exporters.model_arrays import model_arrays, write_arrays
 from ..model.model import Model
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_entries import Body, Fault
 from ..readers.npz import read_npz
-from ..settings.series import FIELD
+from ..settings.series_kinds import FIELD
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.surface_arrays import SurfaceArrays
+from ..surfaces.surface_input import SurfaceArrays
 from .grid import Box, TileGrid, box_triangles, clipped_region
 from .settling import BorderVertices
 

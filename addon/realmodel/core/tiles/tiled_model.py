@@ -14,17 +14,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.algebra import dot
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, UsageError
+from ..base.errors import BuildWarning, InputRefused, UsageError
 from ..base.named import NamedList, keyword_only
 from ..cells.blocks import Block, named_blocks
 from ..fields import ScalarField
+from ..model.cutting import Fence, Section
 from ..model.model import Model
-from ..model.section import Fence, Section
 from ..notebook import ShortRepr
 from ..project.project import Project
-from ..results.model_boreholes import Interval
-from ..results.model_fields import RockFields, field_of
+from ..results.layer_values import RockFields, field_of
+from ..results.model_holes import Interval
 from ..results.tables import block_table, borehole_table
 from .catalog import TILES, Catalog, TileEntry, read_catalog
 from .tile_fields import FIELDS, read_rock_fields

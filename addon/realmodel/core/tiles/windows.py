@@ -14,16 +14,14 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.mapped_arrays import StoreArray, as_it_is
-from ..base.sheet import Sheet
-from ..base.triangles import extents
+from ..base.triangles import Sheet, extents
 from ..base.work import Work, native_module
 from ..cells.joining import beyond_all
 from ..cells.reach import Reach
 from ..project.structure_entries import Body, Fault
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import RockStructure, joined
-from ..surfaces.sides import RockFaults, fault_sides
+from ..surfaces.rock_structure import RockFaults, RockStructure, fault_sides, joined
 from .grid import Box, TileGrid, tile_grid, triangles_by_tile
 from .tile_model import without_shape
 

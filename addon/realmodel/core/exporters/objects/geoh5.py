@@ -18,9 +18,9 @@ from ...base.atomic import Outputs
 from ...base.packages import extra
 from ...base.text import Step
 from ...cells.model_data import ModelData
-from ...results.regular_cells import CellSize, RegularCells, regular_cells
+from ...results.samples import CellSize, RegularCells, regular_cells
 from ...results.sections.section_data import rgb_bytes
-from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
+from .object_contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _UNITS = {"m": "meter", "ft": "feet"}  # those that a workspace has
 _OUTSIDE = 0  # the number that the format keeps for what is not known

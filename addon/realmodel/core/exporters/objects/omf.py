@@ -21,10 +21,10 @@ from ...base.atomic import Outputs
 from ...base.packages import omf_library, quiet
 from ...base.text import Step
 from ...cells.model_data import ModelData
-from ...results.regular_cells import CellSize, RegularCells, regular_cells
+from ...results.samples import CellSize, RegularCells, regular_cells
 from ...results.sections.section_data import rgb_bytes
-from ..shapes.parts import Part
-from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
+from ..shapes.shape_parts import Part
+from .object_contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _LONG_AGO = datetime.datetime(1970, 1, 1)  # of all that the library dates: the same model has the same bytes
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...base.text import Step
 from ...drawing.drawing import BLACK
-from ...drawing.dxf import ZERO_LAYER, entities, layer_name
+from ...drawing.dxf_file import ZERO_LAYER, entities, layer_name
 from ..encodings.text_rows import write_rows
-from .parts import Part
+from .shape_parts import Part
 
 _FACE = "  0\n3DFACE\n  8\n{layer}\n" + "".join(
     f" 1{corner}\n%r\n 2{corner}\n%r\n 3{corner}\n%r\n" for corner in range(4)

@@ -13,8 +13,8 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from ...project.colors import linear
-from .parts import Part
+from ...project.looks import linear
+from .shape_parts import Part
 
 _FLOAT, _UINT32, _TRIANGLES, _POSITIONS, _INDICES = 5126, 5125, 4, 34962, 34963
 

@@ -11,7 +11,7 @@ from typing import BinaryIO
 from ...base.atomic import Outputs
 from ...base.text import Step
 from ..encodings.text_rows import write_rows
-from .parts import Part, plain_words
+from .shape_parts import Part, plain_words
 
 
 def write_obj(parts: Sequence[Part], path: Path, outputs: Outputs, step: Step) -> None:

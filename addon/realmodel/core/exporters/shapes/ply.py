@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from .parts import Part
+from .shape_parts import Part
 
 _FACE = np.dtype(
     [("size", "u1"), ("corners", "<i4", 3), ("block", "<i4"), ("property", "<i4"), ("color", "u1", 3)]

@@ -9,7 +9,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..encodings.text_rows import write_rows
-from .parts import Part
+from .shape_parts import Part
 
 _FACET = (
     "facet normal %.6g %.6g %.6g\n outer loop\n"

@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import PolyhedralMesh, VolumeMesh
-from ...simulation.element_faces import ElementFaces
+from ...simulation.elements import ElementFaces
 from ...simulation.patches import solver_names
 from ..encodings.netcdf import NetcdfFile, characters
 from .vtu import CellFaces

@@ -10,9 +10,9 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import VolumeMesh
-from ...simulation.element_faces import ElementFaces
+from ...simulation.elements import ElementFaces
 from ..encodings.text_rows import write_rows, write_wrapped
-from ..shapes.parts import distinct_names
+from ..shapes.shape_parts import distinct_names
 
 # What kinds are called there, and the order of their corners.
 _ZONES = {

@@ -11,8 +11,8 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import VolumeMesh
-from ...simulation.element_faces import ElementFaces, joint_sets
-from ..shapes.parts import distinct_names
+from ...simulation.elements import ElementFaces, joint_sets
+from ..shapes.shape_parts import distinct_names
 
 _VOLUMES = {"tetrahedron": 4, "hexahedron": 5, "prism": 6, "pyramid": 7}
 _SURFACES = {"triangle": 2, "quadrilateral": 3}

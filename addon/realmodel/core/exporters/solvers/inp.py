@@ -13,7 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import VolumeMesh
-from ...simulation.element_faces import ElementFaces, joint_sets
+from ...simulation.elements import ElementFaces, joint_sets
 from ...simulation.patches import solver_names
 from ..encodings.text_rows import write_rows
 

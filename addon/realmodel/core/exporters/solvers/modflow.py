@@ -18,7 +18,7 @@ from ...base.errors import UsageError, place_text
 from ...base.text import Step
 from ...base.units import MODEL_UNIT
 from ...simulation import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
-from ...simulation.element_faces import OUTWARD
+from ...simulation.elements import OUTWARD
 from ..encodings.text_rows import write_rows, write_wrapped
 from .vtu import CellFaces
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK unstructured grid (.vtu) of polyhedral cells, binary, for ParaView, PyVista and meshio.
-
-Polyhedra stand as `faces` (for each cell: number of
-faces, then for each face its number of corners and the corners) and `faceoffsets` (end of each cell).
+"""VTK unstructured grid (.vtu), binary, of polyhedral cells or of elements, for ParaView, PyVista, meshio
+and OpenGeoSys.
 """
 
 from __future__ import annotations
@@ -13,8 +11,8 @@ from typing import BinaryIO
 import numpy as np
 
 from ...base.work import native_module, on_threads
-from ...simulation import PolyhedralMesh
-from ..encodings.vtk_xml import END, ArrayTag, write_array, write_header, write_length
+from ...simulation import PolyhedralMesh, VolumeMesh
+from ..encodings.vtk_xml import END, ArrayTag, write_array, write_grid, write_header, write_length
 
 _POLYHEDRON = 42
 _CELLS_AT_ONCE = 2_000  # the memory for more of them would be asked for anew each time
@@ -118,3 +116,25 @@ class CellFaces:
         return native_module().describe_cells(
             self.mesh.face_offsets, self.mesh.face_vertices, self.begin[start : end + 1], self._sides
         )
+
+
+def write_vtu_elements(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -> None:
+    """Writes elements with the cell arrays `MaterialIDs`, as OpenGeoSys calls it, and `block`, both the
+    number of the block in the model's list, `property` (library id, 0: none) and, where it is known,
+    `compartment`."""
+    cells, data = mesh.vtk_cells(), mesh.cell_data()
+    step(0.3)
+    write_grid(
+        file,
+        [
+            ("Points", "Points", mesh.points.astype("<f8", copy=False)),
+            ("Cells", "connectivity", cells.corners.astype("<i8")),
+            ("Cells", "offsets", cells.offsets[1:].astype("<i8")),
+            ("Cells", "types", cells.types),
+            *(
+                ("CellData", name, values.astype("<i4"))
+                for name, values in {"MaterialIDs": data["block"], **data}.items()
+            ),
+        ],
+    )
+    step(1.0)

@@ -14,7 +14,7 @@ from ...base.work import Work
 from ...settings.dips import Dips
 from ...settings.variogram import Variogram
 from ..companions import Companions, SheetModel
-from ..from_neighbours import KrigingStructure
+from ..from_neighbors import KrigingStructure
 from ..interpolation import Task
 from ..mis_ties import without_mis_ties
 from .turning_bands import FieldArea, GaussianField, Noise

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.algebra import dot, norm
-from ...base.elementary import cos, exp, hypot, sin
+from ...base.algebra import cos, dot, exp, hypot, norm, sin
 from ...base.work import Work, native_module
 from ...settings.variogram import NO_ANISOTROPY, Structure, Variogram
 

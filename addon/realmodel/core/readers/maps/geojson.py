@@ -14,7 +14,7 @@ import numpy as np
 from ...base.algebra import is_number
 from ...base.errors import InputRefused
 from ...base.text import BOM, Step, no_step
-from ...settings.map_layer import MapLayer
+from ...settings.data_files import MapLayer
 from .shapes import Heights, Selection, Shapes
 
 _RECORD_SEPARATOR = b"\x1e"  # begins each text of a GeoJSON text sequence (RFC 8142)

@@ -15,7 +15,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...settings.crs import is_in_degrees
-from ...settings.map_layer import MapLayer
+from ...settings.data_files import MapLayer
 from ..tables.table_layout import names_shown
 from .shapes import Heights, Selection, Shapes
 

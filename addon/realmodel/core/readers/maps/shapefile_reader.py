@@ -16,7 +16,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.packages import vendored
 from ...base.text import Step, no_step
-from ...settings.map_layer import MapLayer
+from ...settings.data_files import MapLayer
 from .shapes import Heights, Selection, Shapes
 
 _MAGIC = b"\0\0\x27\x0a"

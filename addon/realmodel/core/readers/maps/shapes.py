@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...settings.point_file import list_of
+from ...settings.data_files import list_of
 from ..tables.table_layout import names_shown
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import BOM, Step, no_step, read_bytes, read_text
-from ...settings.map_layer import MapLayer, begins_as_wkt
+from ...settings.data_files import MapLayer, begins_as_wkt
 from .shapes import Heights, Shapes
 
 _TOKEN = re.compile(r"\s*(?:([A-Za-z]+)|([(),;])|([-+0-9.][^\s(),;]*)|(\S))")

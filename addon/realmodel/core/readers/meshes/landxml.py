@@ -8,8 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...base.errors import InputRefused
-from ...base.text import Step, no_step, read_bytes
-from ...base.xml_text import local_name, parse_xml
+from ...base.text import Step, local_name, no_step, parse_xml, read_bytes
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _UNITS = {

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.text import Step, no_step, read_bytes
-from .damaged_mesh import UNREADABLE, unreadable
-from .triangle_mesh import TriangleMesh, mesh_of_faces
+from .triangle_mesh import UNREADABLE, TriangleMesh, mesh_of_faces, unreadable
 
 _MAGIC = b"%ARANZ-1.0"
 _ARRAY = re.compile(rb"^\s*(\w+) (\w+) (\d{1,9}) (\d{1,9});\s*$", re.MULTILINE)  # name, type, columns, rows

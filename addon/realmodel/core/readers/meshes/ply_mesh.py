@@ -11,8 +11,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
 from ...base.text import FileBytes, Step, line_of_word, no_step, pieces_of, with_newlines
-from .damaged_mesh import UNREADABLE, DamagedError, unreadable
-from .triangle_mesh import MeshRows, TriangleMesh
+from .triangle_mesh import UNREADABLE, DamagedError, MeshRows, TriangleMesh, unreadable
 
 _ORDERS = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
 _TYPES = {

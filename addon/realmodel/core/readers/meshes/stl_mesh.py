@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.text import Step, no_step, read_bytes
-from .damaged_mesh import UNREADABLE, DamagedError, unreadable
-from .triangle_mesh import TriangleMesh, mesh_of_corners
+from .triangle_mesh import UNREADABLE, DamagedError, TriangleMesh, mesh_of_corners, unreadable
 
 _CORNER = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _HEAD, _FACET = 84, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])

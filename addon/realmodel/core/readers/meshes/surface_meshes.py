@@ -15,8 +15,7 @@ from pathlib import Path
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step, text_lines
 from ...base.units import METERS
-from .damaged_mesh import UNREADABLE
-from .triangle_mesh import TriangleMesh, mesh_of_faces
+from .triangle_mesh import UNREADABLE, TriangleMesh, mesh_of_faces
 
 
 def begins_as_tsurf(head: bytes, _size: int = 0) -> bool:

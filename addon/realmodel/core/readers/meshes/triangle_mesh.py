@@ -15,7 +15,7 @@ from ...base.algebra import begins_run
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeRows, Rows, in_memory, in_pieces
 from ...base.triangles import fanned
-from ...settings.point_file import MeshFile
+from ...settings.data_files import MeshFile
 
 _MOST_VERTICES = np.iinfo(np.int32).max
 
@@ -161,3 +161,20 @@ def mesh_of_corners(file: Path, corners: ArrayLike, sizes: Sequence[int] = (3,))
     ends = itertools.accumulate(sizes, initial=0)
     numbers = index.tolist()
     return mesh_of_faces(file, vertices, [numbers[begin:end] for begin, end in itertools.pairwise(ends)])
+
+
+UNREADABLE = (ValueError, IndexError, KeyError, OverflowError, TypeError)
+
+
+class DamagedError(ValueError):
+    """An error in a file, with its line or byte."""
+
+    def __init__(self, what: str, line: int | None = None, byte: int | None = None):
+        super().__init__(what if byte is None else f"{what} (byte {byte})")
+        self.line = line
+
+
+def unreadable(file: Path, kind: str, error: Exception) -> InputRefused:
+    reason = " ".join(str(error).split()) or type(error).__name__
+    line = getattr(error, "line", None)
+    return InputRefused(f"not a {kind} file that can be read: {reason:.200}", file=file, line=line)

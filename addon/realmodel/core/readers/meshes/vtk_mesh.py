@@ -16,8 +16,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.text import Step, no_step, read_bytes
-from ...base.xml_text import parse_xml
+from ...base.text import Step, no_step, parse_xml, read_bytes
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _TYPES = {

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.elementary import cos, sin
+from ...base.algebra import cos, sin
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import InputRefused, counted
 from ...base.text import Step
-from ...settings.boreholes import Boreholes
+from ...settings.data_files import Boreholes
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
 from .holes import Holes
 from .intervals import read_intervals

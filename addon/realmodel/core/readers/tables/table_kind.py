@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...base.errors import InputRefused
 from ...base.text import no_step
-from ...settings.boreholes import Boreholes
+from ...settings.data_files import Boreholes
 from .dips import DIPS, NAMED
 from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, columns_in, rows
 

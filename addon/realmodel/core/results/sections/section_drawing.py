@@ -12,8 +12,7 @@ import numpy as np
 from ...base.errors import UsageError
 from ...base.units import METERS
 from ...drawing.charts import Axes, legend, legend_size, tick_texts
-from ...drawing.drawing import BLACK, WHITE, Drawing
-from ...drawing.glyphs import text_width
+from ...drawing.drawing import BLACK, WHITE, Drawing, text_width
 from .section_data import FenceData, SectionData
 from .section_holes import UNKNOWN, HoleLine, parts_near
 

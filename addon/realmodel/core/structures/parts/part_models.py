@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...base.sheet import Sheet
+from ...base.triangles import Sheet
 from ...settings.rules import RULES
 
 NOTHING = -1

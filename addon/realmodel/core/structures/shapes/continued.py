@@ -9,8 +9,7 @@ import numpy as np
 
 from ...base.algebra import dot, norm, principal_axes
 from ...base.errors import InputRefused, place_text
-from ...base.sheet import Sheet
-from ...base.triangles import cross, edge_numbers, edges_of, welded
+from ...base.triangles import Sheet, cross, edge_numbers, edges_of, welded
 from .fitted import plane_axes
 
 _MITRE = 0.5  # a vertex goes on at most by twice the length

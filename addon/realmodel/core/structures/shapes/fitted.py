@@ -4,19 +4,25 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from ...base.algebra import ascending, dot, norm, principal_axes
-from ...base.elementary import cos, sin
-from ...base.errors import InputRefused
-from ...base.sheet import Sheet
-from ...base.work import Work
+from ...base.algebra import ascending, begins_run, cos, dot, norm, principal_axes, sin
+from ...base.errors import InputRefused, number_list, place_text
+from ...base.triangles import Sheet
+from ...base.work import Work, native_module
 from ...heights import Task, heights
-from ...settings.mesh_sizes import AUTO
+from ...project.structure_entries import Fault
+from ...readers.fault_input import FaultLines, read_fault_trace
+from ...settings.directions import COMPASS, checked_direction, degrees_text, unit_vector
+from ...settings.meshers import AUTO
 from ...settings.methods import checked_options
 from ...surfaces.planar_mesh import MeshOptions, mesh_rings
+from .ground import Top, heights_on, levels_of, plan_of
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
@@ -224,3 +230,356 @@ def convex_hull(plan: np.ndarray) -> np.ndarray:
         return chain[:-1]
 
     return np.array(half(points) + half(points[::-1]))
+
+
+VERTICAL = 90.0
+_ALONG = math.sin(math.radians(15.0))  # of the angle between trace and dip direction: less is along the trace
+_OBLIQUE = math.cos(math.radians(30.0))  # of the angle to the normal of the trace: beyond, a warning
+_END = 0.1  # of the length of a line: so much of it at an end gives the direction of its continuation
+_PIECES = 256  # of the extent of the rock in plan: so long are the pieces of a line that is put on the ground
+_STRAIGHT = 1e-5  # of the same extent: what leaves a straight line by less needs no vertex
+_MOST_LINES = 1000
+
+
+def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
+    """The fault with its trace as one line (N, 3), z NaN where it has none, and with the dip of the file's
+    attributes where it has none of its own; and warnings. Raises InputRefused."""
+    text_or_file = fault.trace_file or (fault.trace if isinstance(fault.trace, str) else None)
+    fault_lines = (
+        FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
+    )
+    line, warnings = _joined([line[begins_run(line[:, :2])] for line in fault_lines.lines])
+    if (line[0, :2] == line[-1, :2]).all():
+        raise InputRefused(
+            f"its trace returns to where it begins, {place_text(line[0, :2])}",
+            advice="cut it open, or give the fault as a mesh",
+            place=tuple(line[0, :2].tolist()),
+        )
+    if fault.elevation is None and (line[:, 2] == 0.0).all() and fault.trace_file is not None:
+        text = "its line has elevation 0 everywhere; if that is no elevation, set elevation = ..."
+        warnings.append(text)
+    dip = fault_lines.dip() if fault.dip is None else fault.dip
+    direction = checked_direction("dip_direction", fault.dip_direction)
+    if direction is None and dip != VERTICAL:
+        direction = fault_lines.dip_direction()
+    if dip is None:
+        what = "it has no dip, and its file has no attribute 'dip'"
+        raise InputRefused(what, advice="set dip = ... (90 where the fault is vertical)")
+    if dip != VERTICAL and direction is None:
+        one, other = (degrees_text(side) for side in _sides(line))
+        raise InputRefused(
+            "it has a dip, but no dip direction",
+            advice=f"set dip_direction = {one} or {other}, the two sides of its trace",
+        )
+    level = fault.elevation
+    level = level if level is None or isinstance(level, str) else float(level)
+    return replace(fault, trace=line, dip=float(dip), dip_direction=direction, elevation=level), warnings
+
+
+def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, list[str]]:
+    """The surface through the trace of a fault that read_trace returned, vertices (V, 3) float64 and
+    triangles (T, 3) int32; and warnings.
+
+    tops: of each rock mass that it displaces, the RockInput, and the number of the surface that the line is
+    on where it has no elevation, or None. A number as direction is that of the dip, and all rulings are
+    parallel to it; a point of the compass says the side to which the plane through both ends dips. Raises
+    InputRefused.
+    """
+    plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace_line()[:, 2])
+    extent = float(norm(plan[1] - plan[0]))
+    margin = (high - low) + extent / 4
+    low, high = low - margin, high + margin
+    line, is_given = _with_heights(work, fault, tops, extent)
+    run, toward = _dip_of(fault, line)
+    # where the surface cuts the level `high`: a line along its strike
+    top = _at_level(line, high, run, toward)
+    is_kept, is_given = _once_each(top, is_given)
+    line, top = line[is_kept], top[is_kept]
+    is_kept = is_given | _bends(top, is_given, _STRAIGHT * extent)
+    line, top = line[is_kept], top[is_kept]
+    warnings = [] if fault.dip in (None, VERTICAL) else _compare(top, toward, fault.dip)
+    down = run * (high - low) * toward
+    ends = None
+    if fault.extend > 0:
+        ends = _continuation(line, run, toward, [fault.extend, fault.extend])
+    elif not fault.dies_out:
+        # the rulings at its ends are beside the rock then, whatever the direction
+        far = [max(_farthest(plan, end), _farthest(plan, end + down)) + extent for end in top[[0, -1]]]
+        ends = _continuation(line, run, toward, far)
+    if ends is not None:
+        line, top = (_continued(row, ends) for row in (line, top))
+    _refuse_crossing(top)
+    rows = [
+        np.column_stack([top, np.full(len(top), high)]),
+        np.column_stack([top + down, np.full(len(top), low)]),
+    ]
+    if fault.dip != VERTICAL:
+        # the surface holds the points that were given, not points beside them by what rounding moved these:
+        # where the trace ends at a wall of the rock, a sliver would lie between the two
+        rows.insert(1, line)
+    return Sheet(np.concatenate(rows), _strips(len(rows), len(top))), warnings
+
+
+def _at_level(line: np.ndarray, level: float, run: float, toward: np.ndarray) -> np.ndarray:
+    """The points (N, 2) where the rulings through those of a line (N, 3) reach a level."""
+    return line[:, :2] if run == 0.0 else line[:, :2] - (run * (level - line[:, 2]))[:, None] * toward
+
+
+def _strips(rows: int, count: int) -> np.ndarray:
+    """The triangles (T, 3) int32 between rows of so many vertices, the highest row first."""
+    first = np.arange(count - 1)
+    strips = []
+    for above in range(0, (rows - 1) * count, count):
+        here, below = above + first, above + count + first
+        strips += [np.column_stack([below, below + 1, here + 1]), np.column_stack([below, here + 1, here])]
+    return np.concatenate(strips).astype(np.int32)
+
+
+def _farthest(plan: np.ndarray, place: np.ndarray) -> float:
+    """The distance of a place (2,) from the farthest point of a box (2, 2)."""
+    return float(norm(np.abs(plan - place).max(axis=0)))
+
+
+def _lines_of(trace: Any) -> list[np.ndarray]:
+    """The lines (N, 3) of arrays (N, 2) or (N, 3)."""
+    several = len(trace) and np.ndim(trace[0]) > 1
+    lines = []
+    for number, points in enumerate(trace if several else [trace], 1):
+        name = f"line {number} of the trace" if several else "the trace"
+        try:
+            line = np.array(points, np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputRefused(f"{name} must be an array (N, 2) or (N, 3)") from error
+        if line.ndim != 2 or line.shape[1] not in (2, 3):
+            raise InputRefused(f"{name} must be an array (N, 2) or (N, 3), not {line.shape}")
+        if line.shape[1] == 2:
+            line = np.column_stack([line, np.full(len(line), np.nan)])
+        bad = np.flatnonzero(~np.isfinite(line[:, :2]).all(axis=1) | np.isinf(line[:, 2]))
+        if len(bad):
+            raise InputRefused(f"point {bad[0]} of {name} is {place_text(line[bad[0]])}, not finite")
+        lines.append(line)
+    return lines
+
+
+def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
+    """The pieces of a trace as one line: ends that are nearest to one another are joined, first those with
+    the smallest gap. Refuses pieces that do not go on from one another."""
+    lines = [line for line in lines if len(line) > 1]
+    if not lines:
+        raise InputRefused("its trace has no length in plan", advice="give two points or more")
+    if len(lines) > _MOST_LINES:
+        what = f"its trace has {len(lines)} lines"
+        raise InputRefused(what, advice="choose the lines of one fault with where = { ... }")
+    ends = np.array([line[at, :2] for line in lines for at in (0, -1)])
+    one, other = np.triu_indices(len(ends), 1)
+    one, other = one[one // 2 != other // 2], other[one // 2 != other // 2]
+    gaps = norm(ends[one] - ends[other])
+    joins: dict[int, int] = {}
+    chain = np.arange(len(lines))
+    for pair in np.argsort(gaps, kind="stable").tolist():
+        a, b = int(one[pair]), int(other[pair])
+        if a in joins or b in joins or chain[a // 2] == chain[b // 2]:
+            continue
+        joins[a], joins[b] = b, a
+        chain[chain == chain[a // 2]] = chain[b // 2]
+        if len(joins) == 2 * len(lines) - 2:
+            break
+    at = next(end for end in range(len(ends)) if end not in joins)
+    order, bridged = [lines[at // 2][:: -1 if at % 2 else 1]], []
+    while (before := at ^ 1) in joins:
+        at = joins[before]
+        piece = lines[at // 2][:: -1 if at % 2 else 1]
+        _refuse_turning_back(order[-1], piece)
+        bridged.append(float(norm(piece[0, :2] - order[-1][-1, :2])))
+        order.append(piece)
+    line = np.concatenate(order)
+    line = line[begins_run(line[:, :2])]
+    open_gaps = [gap for gap in bridged if gap > 0]
+    if not open_gaps:
+        return line, []
+    text = f"gaps of {number_list(f'{gap:.6g}' for gap in open_gaps)} between the {len(lines)} lines of its "
+    return line, [text + "trace are bridged by straight lines"]
+
+
+def _refuse_turning_back(before: np.ndarray, after: np.ndarray) -> None:
+    """Refuses two pieces of a trace of which the second does not go on from the first."""
+    gap = after[0, :2] - before[-1, :2]
+    steps = [before[-1, :2] - before[0, :2], gap, after[-1, :2] - after[0, :2]]
+    steps = [step for step in steps if step.any()]
+    turns_back = any(dot(a, b) < 0 for a, b in itertools.combinations(steps, 2))
+    if turns_back or norm(gap) > max(norm(steps[0]), norm(steps[-1])):
+        raise InputRefused(
+            f"the lines of its trace do not go on from one another at {place_text(before[-1, :2])}",
+            advice="give the lines of one fault only: choose them with where = { ... }",
+            place=tuple(before[-1, :2].tolist()),
+        )
+
+
+def _sides(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The two directions (2,) at right angles to the line through the ends of a trace."""
+    along = line[-1, :2] - line[0, :2]
+    right = np.array([along[1], -along[0]]) / norm(along)
+    return right, -right
+
+
+def _dip_of(fault: Fault, line: np.ndarray) -> tuple[float, np.ndarray]:
+    """How far the surface goes sideways for each unit down, and the direction (2,) of that."""
+    if fault.dip == VERTICAL:
+        return 0.0, np.zeros(2)
+    direction = fault.dip_direction
+    assert fault.dip is not None and direction is not None  # of read_trace
+    angle = math.radians(fault.dip)
+    run = float(cos(angle) / sin(angle))
+    if not isinstance(direction, str):
+        return run, unit_vector(direction)
+    right, left = _sides(line)
+    side = float(dot(right, unit_vector(COMPASS[direction])))
+    if abs(side) < _ALONG:
+        raise _refused_along(f"its dip direction, {direction},", right)
+    # of the two planes with this dip through both ends the one that dips to this side
+    ends = line[[0, -1]]
+    share = run * float(ends[0, 2] - ends[1, 2]) / float(norm(ends[1, :2] - ends[0, :2]))
+    if abs(share) >= _OBLIQUE:
+        raise InputRefused(
+            f"the line between the ends of its trace is about as steep as its dip, {fault.dip:g} degrees",
+            advice="give the dip direction in degrees, or correct the dip or the elevations",
+            place=tuple(ends[0].tolist()),
+        )
+    along = (ends[1, :2] - ends[0, :2]) / norm(ends[1, :2] - ends[0, :2])
+    return run, math.sqrt(1.0 - share * share) * (right if side > 0 else left) + share * along
+
+
+def _refused_along(what: str, across: np.ndarray) -> InputRefused:
+    one, other = degrees_text(across), degrees_text(-across)
+    return InputRefused(
+        f"{what} is along its trace, which runs at right angles to {one} and {other}",
+        advice=f"the two sides of the trace are dip_direction = {one} and {other}",
+    )
+
+
+def _with_heights(
+    work: Work, fault: Fault, tops: list[tuple], extent: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The trace with all its elevations, and (N,) bool: the points that were given. Between these it gets
+    more where it is put on a surface."""
+    line = fault.trace_line().copy()
+    is_given = np.ones(len(line), bool)
+    if isinstance(fault.elevation, float):
+        line[:, 2] = fault.elevation
+    elif fault.elevation is not None:
+        line[:, 2] = np.nan
+    unknown = np.isnan(line[:, 2])
+    if fault.dip == VERTICAL or not unknown.any():
+        return line, is_given
+    if unknown.all():
+        line, is_given = _divided(line, extent / _PIECES)
+        unknown = np.ones(len(line), bool)
+    line[unknown, 2] = heights_on(work, np.ascontiguousarray(line[unknown, :2]), tops)
+    return line, is_given
+
+
+def _divided(line: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """A line in pieces that are not longer, and (N,) bool: its own points."""
+    pieces, are_given = [], []
+    for begin, end in itertools.pairwise(line):
+        count = max(1, math.ceil(float(norm(end[:2] - begin[:2])) / longest))
+        shares = np.arange(count)[:, None] / count
+        pieces.append(begin + shares * (end - begin))
+        are_given.append(np.arange(count) == 0)
+    return np.concatenate([*pieces, line[-1:]]), np.concatenate([*are_given, [True]])
+
+
+def _once_each(top: np.ndarray, is_given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) bool: the points that are not where the one before is; and which of them were given."""
+    new = begins_run(top)
+    top, is_given = top[new], is_given[new]
+    if (top[0] == top[-1]).all():
+        raise InputRefused(
+            "its trace runs down its dip: it shows no surface",
+            advice="correct the dip direction, or give a longer trace",
+            place=tuple(top[0].tolist()),
+        )
+    is_given[[0, -1]] = True
+    return new, is_given
+
+
+def _bends(top: np.ndarray, is_given: np.ndarray, near: float) -> np.ndarray:
+    """(N,) bool: of the points between given ones those that a line with a straight piece in their place
+    would miss by more (Douglas and Peucker 1973)."""
+    is_kept = np.zeros(len(top), bool)
+    waiting = list(itertools.pairwise(np.flatnonzero(is_given).tolist()))
+    while waiting:
+        begin, end = waiting.pop()
+        if end - begin < 2:
+            continue
+        along = top[end] - top[begin]
+        apart = top[begin + 1 : end] - top[begin]
+        share = np.clip(dot(apart, along) / max(float(dot(along, along)), 1e-300), 0.0, 1.0)
+        away = norm(apart - share[:, None] * along)
+        worst = int(away.argmax())
+        if away[worst] > near:
+            middle = begin + 1 + worst
+            is_kept[middle] = True
+            waiting += [(begin, middle), (middle, end)]
+    return is_kept
+
+
+def _compare(top: np.ndarray, toward: np.ndarray, dip: float) -> list[str]:
+    """A warning where the dip direction is oblique to the strike of the surface, a line from end to end of
+    `top`. Refuses one along it."""
+    along = top[-1] - top[0]
+    across = np.array([along[1], -along[0]]) / norm(along)
+    share = float(dot(across, toward))
+    across, share = (across, share) if share >= 0 else (-across, -share)
+    if share < _ALONG:
+        raise _refused_along("its dip direction", across)
+    if share >= _OBLIQUE:
+        return []
+    angle = math.degrees(math.atan(math.tan(math.radians(dip)) / share))
+    return [
+        f"its dip direction is oblique to its trace, so that it dips {angle:.0f} degrees toward "
+        f"{degrees_text(across)}, not {dip:g}; check the dip direction"
+    ]
+
+
+def _continuation(line: np.ndarray, run: float, toward: np.ndarray, lengths: list[float]) -> np.ndarray:
+    """(2, 2): how far a line, seen along the dip, goes on straight beyond its first and last point, in the
+    mean direction of its last tenth there."""
+    steps = []
+    for ordered, length in zip((line[::-1], line), lengths, strict=True):
+        seen = _at_level(ordered, float(ordered[-1, 2]), run, toward)
+        way = norm(np.diff(seen, axis=0))[::-1].cumsum()  # from the end
+        step = seen[-1] - seen[-2 - int(np.searchsorted(way, _END * way[-1]))]
+        steps.append(length * step / norm(step))
+    return np.array(steps)
+
+
+def _continued(row: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """A row of points (N, 2) or (N, 3) with one more at each end, moved in plan."""
+    ends = row[[0, -1]].copy()
+    ends[:, :2] += by
+    return np.concatenate([ends[:1], row, ends[1:]])
+
+
+def _refuse_crossing(top: np.ndarray) -> None:
+    """Refuses a line that crosses or touches itself (exact)."""
+    begin, end = top[:-1], top[1:]
+    pieces = np.stack([begin, end, end], axis=1)
+    native = native_module()
+    orient2d, pairs = native.orient2d, native.meeting_boxes(pieces, pieces)
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+    next_to = pairs[:, 1] == pairs[:, 0] + 1
+    one, other = pairs[~next_to].T
+    a, b, c, d = begin[one], end[one], begin[other], end[other]
+    meets = (orient2d(a, b, c) * orient2d(a, b, d) <= 0) & (orient2d(c, d, a) * orient2d(c, d, b) <= 0)
+    turn = pairs[next_to][:, 0]
+    a, b, d = begin[turn], end[turn], end[turn + 1]
+    back = (orient2d(a, b, d) == 0) & (dot(b - a, d - b) < 0)
+    places = np.concatenate([begin[other[meets]], end[turn[back]]])
+    if len(places):
+        raise InputRefused(
+            f"its surface crosses itself: seen along the dip its trace, continued at both ends, crosses or "
+            f"touches itself near {place_text(places[0])}",
+            advice="correct the trace, its elevation or its dip, limit `extend`, or give the fault as a mesh",
+            place=tuple(places[0].tolist()),
+        )

@@ -9,23 +9,28 @@ from typing import Any
 
 import numpy as np
 
-from ...base.algebra import are_among
-from ...base.build_warning import BuildWarning
-from ...base.errors import InputRefused, naming, number_list, place_text
-from ...base.sheet import Sheet
-from ...base.triangles import NoTwoSidesError, checked_triangulation, open_edges, oriented, without_flat
-from ...base.work import Work, native_module
+from ...base.algebra import are_among, norm
+from ...base.errors import BuildWarning, InputRefused, naming, number_list, place_text
+from ...base.triangles import (
+    NoTwoSidesError,
+    Sheet,
+    checked_triangulation,
+    meet,
+    open_edges,
+    oriented,
+    without_flat,
+)
+from ...base.work import Work, native_module, on_threads
 from ...heights.interpolate import checked_points
 from ...project.project import Project
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import displaced_surfaces
 from ...readers import read_mesh
-from ...readers.fault_sticks import read_fault_points
+from ...readers.fault_input import read_fault_points
 from ...surfaces.rock_input import RockInput
 from .continued import extended
-from .fitted import fit_points, fit_sticks
+from .fitted import fit_points, fit_sticks, read_trace, trace_surface
 from .ground import Top
-from .traces import read_trace, trace_surface
 
 
 def read_structures(
@@ -194,3 +199,40 @@ def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning]) -> S
     if not len(with_area):
         raise InputRefused("its triangles have no area")
     return Sheet(vertices, with_area)
+
+
+_TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault reaches it
+
+
+def require_meeting(fault: Fault, ends: list[Fault]) -> None:
+    """Refuses a fault that does not meet those at which it ends. All have arrays. Raises InputRefused."""
+    for other in ends:
+        nearest = nearest_to_meet(fault, other)
+        if nearest is not None:
+            raise _does_not_meet(fault, other, *nearest)
+
+
+def nearest_to_meet(branch: Fault, other: Fault) -> tuple[np.ndarray, float] | None:
+    """Where the border of a fault comes nearest to another one, and how near; None where they meet."""
+    (vertices, triangles), (of_other, others) = branch.triangulation(), other.triangulation()
+    if meet(vertices[triangles], of_other[others]).any():
+        return None
+    border = np.unique(open_edges(vertices, triangles))
+    places = vertices[border] if len(border) else vertices
+    _, away = native_module().nearest_triangles(of_other[others], places, execution=on_threads(1))
+    nearest = int(away.argmin())
+    near = _TOUCHES * float(norm(np.ptp(np.concatenate([vertices, of_other]), axis=0)))
+    return None if away[nearest] <= near else (places[nearest], float(away[nearest]))
+
+
+def _does_not_meet(branch: Fault, other: Fault, place: np.ndarray, away: float) -> InputRefused:
+    source = branch.source
+    return InputRefused(
+        f"it ends at fault '{other.name}', but does not meet it: the nearest it comes is {away:.6g} at "
+        f"{place_text(place)}",
+        file=source.document.file if source else branch.shape_file,
+        line=source.line("ends_at") if source else None,
+        item=branch.item,
+        advice="extend it to that fault, or take it out of 'ends_at'",
+        place=tuple(place.tolist()),
+    )

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...base.algebra import dot, norm
 from ...base.work import native_module
-from .within import Within, box_of, middles_of_parts
+from .families import Within, box_of, middles_of_parts
 
 _WIDTH = 1e-9  # of the extent of a sheet: narrower gaps are due to rounding
 _INSET = 1e-3  # of a part: its border may lie on another fault, which has no side there

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.algebra import dot, principal_axes
 from ...base.work import Work, native_module
-from ...surfaces.sides import FaultShape, fault_sides
+from ...surfaces.rock_structure import FaultShape, fault_sides
 from ...surfaces.wrong_sides import Sheet
 from .tips import trace_of
 

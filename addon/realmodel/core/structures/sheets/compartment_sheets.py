@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...base.build_warning import BuildWarning
-from ...base.errors import InputRefused
+from ...base.errors import BuildWarning, InputRefused
 from ...surfaces.rock_input import RockInput, named_surfaces
 from ...surfaces.surface_heights import needed_surfaces
 from .borrowed import between_faults

@@ -17,17 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.algebra import norm
-from ...base.elementary import exp
+from ...base.algebra import exp, norm
 from ...base.work import Work
 from ...heights.on_mesh import BOUNDS
 from ...settings.methods import METHODS
 from ...surfaces.rock_input import RockInput
 from ...surfaces.rock_structure import Steps
 from ...surfaces.surface_heights import needed_surfaces
-from .beyond_faults import contradicting
 from .families import keys_of
-from .points_at_faults import point_sides
+from .points_at_faults import contradicting, point_sides
 
 _MOST = 150  # points of a surface: more show how it goes on to the fault; and of all that are fitted at once
 _FREE = 2  # points more than unknowns

@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.algebra import are_among, dot
-from ...base.build_warning import BuildWarning
-from ...base.errors import number_list, place_text
-from ...base.sheet import Sheet
+from ...base.errors import BuildWarning, number_list, place_text
+from ...base.triangles import Sheet
 from ...base.work import Work
 from ...heights import Interpolation
 from ...heights.mis_ties import mean_heights
@@ -22,11 +21,10 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...settings.variogram import lacks_deviation
-from ...surfaces.observed.conformable import conformable_run
-from ...surfaces.observed.sheet_series import sheets_beside
+from ...surfaces.observed.conformable import conformable_run, sheets_beside
 from ...surfaces.observed.surface_data import SurfaceData
 from ...surfaces.rock_input import RockInput
-from ...surfaces.sides import fault_sides, sides_of
+from ...surfaces.rock_structure import fault_sides, sides_of
 from ...surfaces.surface_heights import (
     Trend,
     counts_by_node,
@@ -36,17 +34,14 @@ from ...surfaces.surface_heights import (
     where_known,
 )
 from ...surfaces.wrong_sides import heights_at
-from .beyond_faults import contradicting
 from .borrowed import as_at_fault, sheet_runs_away
-from .families import Family, keys_of
+from .families import Family, Within, keys_of
 from .few_points import are_few, of_residuals
-from .lips import Lip, beyond_lips
 from .near_rows import near_rows
-from .points_at_faults import at_height, placed_warning, point_sides, sided_dips
+from .points_at_faults import at_height, contradicting, placed_warning, point_sides, sided_dips
 from .throws import Sheets
 from .tied_sheets import data_of_sheets, sides_of_sheets, tied_sheets, weights_of_sheets
-from .tips import shared, trace_of, with_equal_ends
-from .within import Within
+from .tips import Lip, beyond_lips, shared, trace_of, with_equal_ends
 
 _RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
 

@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...base.sheet import Sheet
+from ...base.triangles import Sheet
 from ...base.work import Work, native_module
-from ...surfaces.sides import FaultShape, fault_sides
+from ...surfaces.rock_structure import FaultShape, fault_sides
 
 _RINGS = 2  # of triangles around those in which a compartment is
 

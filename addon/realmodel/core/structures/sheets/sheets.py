@@ -11,13 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.mapped_arrays import StoreArray, as_it_is
-from ...base.sheet import Sheet
+from ...base.triangles import Sheet
 from ...base.work import Work
 from ...project.project import Rock
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
 from ...surfaces.rock_input import RockInput
-from ...surfaces.rock_structure import RockStructure
-from ...surfaces.sides import sides_of
+from ...surfaces.rock_structure import RockStructure, sides_of
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
 from .compartment_sheets import CompartmentSheets, make_borrowed

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...base.sheet import Sheet
-from ...base.triangles import median_edge
+from ...base.triangles import Sheet, median_edge
 from ...base.work import Work
 from ...heights.ties import TieData, correction, missed_warnings, tie_data, tied_heights
 from ...readers.tables.observations import Bounds

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that are conformable: their heights vary alike, and a series of sheets may interpolate them
-better."""
+"""Surfaces that are conformable, which a series of sheets interpolates together, and what the surfaces of
+a series know of one another.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from ...base.build_warning import BuildWarning
-from ...base.errors import InputRefused, number_list
+from ...base.errors import BuildWarning, InputRefused, number_list
 from ...base.work import Work
 from ...heights.companions import Alike, Companions
 from ...heights.cross_validation import validate
 from ...heights.interpolation import Task
 from ...project.project import Rock, Surface
+from ...readers.tables.observations import Bounds
 from ...settings.dips import Dips
 from ...settings.methods import METHODS, checked_options
 from ...settings.rules import RULES
+from ...settings.series_kinds import SHEETS
 from .surface_data import SurfaceData
 
 _MOST_ALIKE = 10_000  # points of a surface: more are a survey, which says of itself how its heights vary
@@ -189,3 +191,50 @@ def _proposal(rock: Rock, run: list[int], errors: list[_Compared]) -> BuildWarni
         '"sheets" interpolates them together, by method kriging'
     )
     return BuildWarning(text, "series", rock.name)
+
+
+def sheets_beside(rock: Rock, number: int) -> list[int]:
+    """The surfaces of the series of sheets of one, itself included, oldest first; none where it is in
+    none."""
+    name = rock.surfaces[number].series
+    for series in rock.series:
+        if series.kind == SHEETS and series.name == name:
+            return rock.members(series)
+    return []
+
+
+def with_least_thickness(rock: Rock) -> Rock:
+    """A rock mass whose sheets of a series do not lie below the older one of it."""
+    surfaces = list(rock.surfaces)
+    for number, surface in enumerate(surfaces):
+        beside = sheets_beside(rock, number)
+        if beside and number > beside[0] and surface.minimum_thickness is None:
+            surfaces[number] = replace(surface, minimum_thickness=0.0)
+    return replace(rock, surfaces=surfaces)
+
+
+def companions_of(
+    rock: Rock, data: Sequence[SurfaceData], number: int, known: dict[bytes, Any]
+) -> Companions | None:
+    """The sheets with which a surface is interpolated; None where none of the others has points. known: as
+    of Alike."""
+    beside = sheets_beside(rock, number)
+    if not any(len(data[other].points) for other in beside if other != number):
+        return None
+    sheets = [data[other] for other in beside]
+    points = [np.ascontiguousarray(sheet.points) for sheet in sheets]
+    dips = [sheet.dips for sheet in sheets]
+    return Companions(beside.index(number), points, dips, known, mean_error(sheets))
+
+
+def bounds_beside(bounds: Bounds, companions: Companions | None) -> Bounds:
+    """Bounds of a surface, and those by the contacts of the other sheets: it lies at or above the older
+    ones, and at or below the younger ones."""
+    if companions is None:
+        return bounds
+    parts = [bounds]
+    for other, points in enumerate(companions.points):
+        if other != companions.own and len(points):
+            is_older = np.full(len(points), other < companions.own)
+            parts.append(replace(Bounds.at_or_above(points), is_lower=is_older))
+    return Bounds.joined(parts)

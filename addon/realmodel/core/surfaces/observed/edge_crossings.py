@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.sheet import Sheet
-from ...base.triangles import edges_of
+from ...base.triangles import Sheet, edges_of
 from ...base.work import native_module
 from ...readers.tables.observations import Observations, in_one_interval
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...project.project import Rock, Surface
 from ...readers.tables.observations import Bounds
-from .succession import Succession
+from .columns import Succession
 from .surface_data import SurfaceData
 
 

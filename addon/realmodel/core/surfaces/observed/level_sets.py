@@ -13,7 +13,7 @@ import numpy as np
 
 from ...project.project import Rock
 from ...readers.tables.observations import Bounds, Observations
-from ...settings.series import FIELD
+from ...settings.series_kinds import FIELD
 
 
 class FieldStatements:
