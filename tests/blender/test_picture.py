@@ -220,7 +220,7 @@ class SetUp(PanelCase):
 
 
 class Unasked(PanelCase):
-    """Light and camera of the first build from the panel: only where nobody has cared for them."""
+    """Light and camera of the first build from the panel: only where the user has set up none."""
 
     def begin(self):
         bpy.ops.wm.read_homefile(use_factory_startup=True)

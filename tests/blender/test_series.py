@@ -157,7 +157,7 @@ class Series(PanelCase):
         self.refused(ops.build, "has no region")
         needs = "give that a base and a region"
         self.assertIn(needs, " ".join(draw_tab(bpy.context).labels))
-        self.assertNotIn("has no end", " ".join(draw_tab(bpy.context).labels), "the hint says it")
+        self.assertNotIn("is unbounded", " ".join(draw_tab(bpy.context).labels), "the hint says it")
         ops.region_around()
         self.refused(ops.build, "base_elevation")
         drawn = draw_tab(bpy.context)
@@ -289,7 +289,7 @@ class Series(PanelCase):
         row["dips"]["arrays"]["positions"] = "not what is stored"
         with self.assertRaises(InputRefused):
             surface_dips.of_row(row)
-        self.refused(ops.build, "series 'folded beds': what the .blend keeps of it cannot be read")
+        self.refused(ops.build, "series 'folded beds': the data stored in the .blend file are damaged")
         self.assertIn("cannot be read", " ".join(draw_tab(bpy.context).labels))
 
 

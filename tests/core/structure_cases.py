@@ -2,7 +2,7 @@
 """Small faults, surfaces and rock masses for the tests of structures."""
 
 import numpy as np
-from realmodel.core.base.mapped_arrays import as_it_is
+from realmodel.core.base.mapped_arrays import unchanged
 from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.proof.closed_form import ClosedForm
@@ -31,7 +31,7 @@ def prepared(project, threads=1):
     return with_structures(project, threads, joins=True)[0]
 
 
-def with_structures(project, threads=1, keep=as_it_is, joins=False):
+def with_structures(project, threads=1, keep=unchanged, joins=False):
     """The rock masses (RockInput) of a project with their sheets, and its structures."""
 
     def task(work):

@@ -345,7 +345,7 @@ def test_nobody_reads_on(layers, out):
         check=False,
     )
     os.close(writing)
-    assert "nobody reads" in refused(done)
+    assert "standard output was closed" in refused(done)
     assert names(out) == []
 
 

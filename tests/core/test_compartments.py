@@ -7,7 +7,7 @@ from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface
 from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.cells.joining import blocks_divided
-from realmodel.core.cells.reach import Reach
+from realmodel.core.cells.reach import PartExtents
 from realmodel.core.proof.closed_form import BodyOfRock
 from realmodel.core.structures.parts.parts import divide, structures_of
 from realmodel.core.structures.shapes.reading import require_meeting
@@ -69,7 +69,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
     structures = network(NETWORKS[name], [Body("B", *ball([5, 4, 0], 1.7))])
     points = np.random.default_rng(1).uniform(*BOX, (4000, 3))
     rows = sides_at(structures, points)
-    reach = run(lambda work: Reach(work, structures))
+    reach = run(lambda work: PartExtents(work, structures))
     sheet = np.array([[x, y, 0] for x in np.linspace(0, 10, 41) for y in np.linspace(0, 10, 41)])
     k = (np.arange(40)[:, None] * 41 + np.arange(40)).ravel()
     squares = np.concatenate([np.column_stack([k, k + 41, k + 42]), np.column_stack([k, k + 42, k + 1])])
@@ -96,7 +96,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
 
 def test_a_part_reaches_no_farther_than_it_must():
     structures = network(NETWORKS["parallel"])
-    reach = run(lambda work: Reach(work, structures))
+    reach = run(lambda work: PartExtents(work, structures))
     shares = sorted(reach.cells_of(part).any(axis=2).mean() for part in range(len(structures.sides)))
     assert len(shares) == 3 and sum(shares) < 1.3
 

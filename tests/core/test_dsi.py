@@ -121,7 +121,7 @@ def test_a_plane_comes_out_as_a_plane():
 def test_few_points():
     one = dsi(POINTS[:1])
     assert one.z == pytest.approx(np.full(len(NODES), POINTS[0, 2]), abs=1e-9)
-    assert "one point only" in one.warnings[0]
+    assert "only one point" in one.warnings[0]
     a, b = utm([20, 20], [60, 20])
     two = dsi([[*a, 10], [*b, 20]])
     assert two.z == pytest.approx(10 + (NODES[:, 0] - a[0]) / 4, abs=1e-6)

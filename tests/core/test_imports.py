@@ -117,8 +117,8 @@ def test_a_folder_says_what_comes_in_and_goes_out(root):
     folders = {file.parent for file in root.rglob("*.py")}
     for folder in folders - {root}:
         text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
-        assert "Comes in: " in text, folder
-        assert "Goes out: " in text, folder
+        assert "Input: " in text, folder
+        assert "Output: " in text, folder
     assert max(len(list(folder.glob("*.py"))) for folder in folders) <= 20
 
 

@@ -23,7 +23,7 @@ from realmodel.core import (
 from realmodel.core.base.work import native_module
 from realmodel.core.exporters.report import model_report
 from realmodel.core.project.project_checks import check_project
-from realmodel.core.surfaces.observed.derived import Situation, derive
+from realmodel.core.surfaces.observed.derived import PlaceContext, derive
 
 LEVELS = {recumbent: (1.5, 2.5, 4.0), dome: (3.0, 4.5, 6.0), plunging: (2.5, 4.0, 6.0)}
 NAMES = ("f", "fi", "fii", "ground")
@@ -148,7 +148,7 @@ def stated(rules, places, blocks, base=True):
         for name, rule in zip(names, rules, strict=True)
     ]
     rock = Rock("r", surfaces, region=SQUARE, base_elevation=0.0, series=[Series("s")])
-    return derive(rock, Observations(places, blocks), Situation())
+    return derive(rock, Observations(places, blocks), PlaceContext())
 
 
 def said(found, number):

@@ -106,7 +106,7 @@ def test_auto_says_what_and_why():
 
 def test_auto_by_number_and_spread():
     one = interpolate([[1, 2, 3]], NODES, "auto")
-    assert (one.method, one.reason) == ("constant", "there is one point only")
+    assert (one.method, one.reason) == ("constant", "only one point")
     two = interpolate([[0, 0, 0], [1, 0, 1]], [[2, 0]], "auto")
     assert (two.method, two.z.tolist()) == ("plane", pytest.approx([2]))
     line = interpolate([[0, 0, 0], [1, 1, 1], [2, 2, 2.5], [3, 3, 3]], NODES, "auto")

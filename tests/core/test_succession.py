@@ -11,7 +11,7 @@ from realmodel.core import Rock, Surface
 from realmodel.core.readers.tables.observations import Observations
 from realmodel.core.settings.rules import RULES
 from realmodel.core.surfaces.observed.columns import Succession
-from realmodel.core.surfaces.observed.derived import Situation, derive
+from realmodel.core.surfaces.observed.derived import PlaceContext, derive
 
 HISTORIES = st.lists(st.tuples(st.sampled_from(list(RULES)), st.integers(0, 12)), min_size=1, max_size=8)
 
@@ -171,10 +171,10 @@ def test_bodies_say_which_later_surfaces_did_not_remove_them():
 def test_a_surface_that_is_not_there_changes_nothing():
     rock = rock_of(["erosional"] * 4)
     covered = np.tile([True, False, True, True], (4, 1))
-    derived = derive(rock, seen([(9, 5, 3), (5, 0, 2)]), Situation(covered=covered))
+    derived = derive(rock, seen([(9, 5, 3), (5, 0, 2)]), PlaceContext(covered=covered))
     assert derived.contacts[2].tolist() == [[0.0, 0.0, 5.0]]
     assert [len(bounds) for bounds in derived.bounds] == [1, 0, 0, 1]
-    derived = derive(rock, seen([(9, 5, 3), (5, 0, 1)]), Situation(covered=covered))
+    derived = derive(rock, seen([(9, 5, 3), (5, 0, 1)]), PlaceContext(covered=covered))
     assert [each.kind for each in derived.left_out] == ["no_surface"] * 2
     assert not len(derived.contacts[1])
 
@@ -212,7 +212,7 @@ def test_across_a_fault_there_is_no_order():
     rock = rock_of(["erosional"] * 3)
     assert derive(rock, seen(rows, hole="B1")).left_out
     sides = np.array([[1], [1], [-1], [-1]], np.int8)
-    derived = derive(rock, seen(rows, hole="B1"), Situation(sides=sides))
+    derived = derive(rock, seen(rows, hole="B1"), PlaceContext(sides=sides))
     assert not derived.left_out
     assert sum(map(len, derived.contacts)) == 0
     assert {len(bounds) for bounds in derived.bounds} == {1, 2}
@@ -221,12 +221,12 @@ def test_across_a_fault_there_is_no_order():
 def test_observations_that_contradict_bodies():
     rock = rock_of(["erosional", "erosional", "conformable"])
     inside = np.array([[True], [False]])
-    situation = Situation(inside=inside, after=[1], bodies=["salt"], voids=[False])
+    situation = PlaceContext(inside=inside, after=[1], bodies=["salt"], voids=[False])
     given = Observations([[0, 0, 5], [9, 9, 5]], ["S1", "salt"])
     assert [each.kind for each in derive(rock, given, situation).left_out] == ["in_body", "in_body"]
     given = Observations([[0, 0, 5], [9, 9, 5]], ["salt", "S1"])
     assert not derive(rock, given, situation).left_out
     # what fills a void lies below the surfaces that it was dug through
-    void = Situation(inside=inside, after=[1], bodies=["pit"], voids=[True])
+    void = PlaceContext(inside=inside, after=[1], bodies=["pit"], voids=[True])
     derived = derive(rock, Observations([[0, 0, 5], [9, 9, 5]], ["S2", "S2"]), void)
     assert [bounds.places[:, 0].tolist() for bounds in derived.bounds] == [[], [9.0], [0.0, 9.0]]

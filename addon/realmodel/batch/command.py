@@ -52,7 +52,7 @@ def main(arguments: list[str]) -> int:
         return say(str(error), REFUSED)
     except BrokenPipeError:
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - nobody listens any more
-        return say("nobody reads the standard output any more: nothing was written; use --quiet", REFUSED)
+        return say("standard output was closed; no file was written; use --quiet", REFUSED)
     except MemoryError:
         return say("not enough memory for this model; use fewer triangles or a longer edge length", REFUSED)
     return DONE

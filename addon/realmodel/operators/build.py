@@ -49,7 +49,7 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
             live.touch(scene)  # Auto builds again
         has_picture = False
         if self._is_first and scene is not None:
-            viewports.frame(scene, viewports.still_open(self._spaces))
+            viewports.frame(scene, viewports.is_open(self._spaces))
             has_picture = by_hand(self) and set_up_first(scene)
         present = sum(block.cells > 0 for block in model.blocks)
         for warning in notices.shown(model):

@@ -30,7 +30,7 @@ def by_hand(operator):
 
 
 def set_up_first(scene):
-    """Sets up light and camera for the model or the beds of a scene where nobody has cared for them. Returns
+    """Sets up light and camera for the model or the beds of a scene where the user has set up none. Returns
     whether it did."""
     is_seen = bpy.context.scene == scene and len(viewpoints.model_points(scene, cut=True)) > 0
     if not is_seen or not first_picture.is_free(scene):

@@ -32,7 +32,7 @@ class Reporting:
 
     @classmethod
     def poll(cls, context):
-        scene_needs = (an_own_scene,) if "UNDO" in cls.bl_options else ()
+        scene_needs = (scene_is_local_error,) if "UNDO" in cls.bl_options else ()
         for need in (*scene_needs, *cls.needs):
             reason = need(context)
             if reason:
@@ -51,7 +51,7 @@ class Reporting:
             return {"CANCELLED"}
 
 
-def an_own_scene(context):
+def scene_is_local_error(context):
     scene = context.scene
     if scene.library is None:
         return None
@@ -258,7 +258,7 @@ class InBackground(Reporting):
         except Cancelled:
             self._leave(context)
             self.cancelled()
-            self.report({"WARNING"}, "Cancelled: the scene is as it was")
+            self.report({"WARNING"}, "Cancelled: the scene was not changed")
             return {"CANCELLED"}
         except Exception as error:
             self._leave(context)

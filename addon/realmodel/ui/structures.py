@@ -135,11 +135,11 @@ class REALMODEL_UL_structures(OfRows, bpy.types.UIList):
         if settings.kind_of(item) == "body" and not item.void:
             draw_swatch(row, library_rows.find(context.scene, item.property_id))
         row.prop(item, "name", text="", emboss=False)
-        right_label(row, _said(item))
+        right_label(row, _statement_text(item))
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
 
 
-def _said(row):
+def _statement_text(row):
     """The special settings of a fault or a body, in two words."""
     if settings.kind_of(row) == "body":
         return "void" if row.void else ""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The display of a built model: display modes, stage, exploded view, colors, cut.
 
-Comes in: a built model, the settings of the view. Goes out: what the viewport shows. Each setting calls one
+Input: a built model, the settings of the view. Output: what the viewport shows. Each setting calls one
 function of this module when it changes; the build calls `built` and `cleared`. Nothing here changes the
 model: see docs/guide/tour.md, "View".
 
@@ -221,9 +221,9 @@ def built(scene, bounds, stage=None):
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
 
-def let_go(item):
+def release(item):
     """An interface is one no more: it is drawn as any object."""
-    modes.let_go(item)
+    modes.release(item)
 
 
 def cleared(scene):
@@ -262,7 +262,7 @@ def frame_changed(scene, depsgraph=None):
 
 def render_begins(scene):
     """A render begins: from now on no data may be freed that the renderer may use."""
-    replacing.tidy()
+    replacing.remove_leftovers()
     replacing.begin_render()
     if len(scene.realmodel.results) and scene.library is None:
         render_marks.put(scene, scene.realmodel.display)
@@ -318,7 +318,7 @@ def _show(scene, has_shapes=False, **wanted):
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
         return
-    replacing.tidy()
+    replacing.remove_leftovers()
     group.view.message = ""
     now = {key: getattr(group, key) for key in _ANIMATED} | _applied(scene) | wanted
     stage = now["stage"] if "stage" in wanted and not has_shapes else None

@@ -133,7 +133,7 @@ def follow(scene, depsgraph):
     cut = json.loads(scene.realmodel.view.cut or "[[], []]")
     if [vector.tolist() for vector in plane_in_model(scene, matrix)] == cut[:2]:
         return False
-    if replacing.nobody_waits():
+    if replacing.must_finish_now():
         cut_now(scene, cut[2] if len(cut) > 2 else None, matrix)
         return True
     touch(scene)
@@ -142,7 +142,7 @@ def follow(scene, depsgraph):
 
 def refresh(scene, stage=None):
     """Updates the cut: at once in background mode, otherwise after a short pause."""
-    if replacing.nobody_waits():
+    if replacing.must_finish_now():
         cut_now(scene, stage)
     else:
         touch(scene)

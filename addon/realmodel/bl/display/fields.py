@@ -52,7 +52,7 @@ def show(scene):
         bodies.listed(scene, kind) for kind, key in ((SECTION, "plane"), (LEVELS, "levels")) if wanted[key]
     ):
         return
-    elif replacing.nobody_waits():
+    elif replacing.must_finish_now():
         _take(scene, _begun(scene, wanted).result())
     else:
         _work.touch(scene.name)

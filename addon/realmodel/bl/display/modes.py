@@ -206,10 +206,10 @@ def without_blocks(scene):
         if obj is not None and obj.library is None:
             obj.pop(WANTED, None)
             want(scene, obj, not surface.hide, not surface.hide)
-            let_go(obj)
+            release(obj)
 
 
-def let_go(item):
+def release(item):
     """Resets the display of an interface to Blender's default."""
     _wires(item, False)
     _see_through(item, False)

@@ -15,7 +15,7 @@ from . import cells, modes, replacing, shown_models
 def lacks(scene, stage, mode):
     """Whether something is yet to be made to show a scene at a stage in a display mode; stage: None where the
     blocks have their shapes already. Where a window would freeze for it, it is begun."""
-    if replacing.nobody_waits() or not scene.realmodel.built_stamp:  # without a stamp nothing is cached
+    if replacing.must_finish_now() or not scene.realmodel.built_stamp:  # without a stamp nothing is cached
         return False
     if not _is_missing(scene, stage, mode):
         return False

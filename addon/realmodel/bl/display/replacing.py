@@ -25,16 +25,16 @@ def end_render():
     global _rendering
     _rendering = False
     if bpy.app.background:
-        tidy()
-    elif not bpy.app.timers.is_registered(tidy):
-        bpy.app.timers.register(tidy, first_interval=0.5)
+        remove_leftovers()
+    elif not bpy.app.timers.is_registered(remove_leftovers):
+        bpy.app.timers.register(remove_leftovers, first_interval=0.5)
 
 
 def is_rendering():
     return _rendering
 
 
-def nobody_waits():
+def must_finish_now():
     """Whether things are to be made at once: a script or a renderer needs them now, and there is no window
     that would freeze."""
     return bpy.app.background or _rendering
@@ -57,7 +57,7 @@ def give_shape(item, shape):
     _left_meshes.append(old.name)
     if not _rendering:
         name = old.name
-        tidy()
+        remove_leftovers()
         model_tree.give_name(bpy.data.meshes, mesh, name)
 
 
@@ -77,7 +77,7 @@ def _remove(obj):
         model_tree.remove_unused_materials()
 
 
-def tidy():
+def remove_leftovers():
     """Removes what renders have left over."""
     if _rendering:
         return
@@ -96,5 +96,5 @@ def tidy():
 def stop():
     global _rendering
     _rendering = False
-    if bpy.app.timers.is_registered(tidy):
-        bpy.app.timers.unregister(tidy)
+    if bpy.app.timers.is_registered(remove_leftovers):
+        bpy.app.timers.unregister(remove_leftovers)

@@ -18,7 +18,7 @@ _EMPTY = PolygonMesh(np.empty((0, 3), np.float32), np.zeros(1, np.int32), np.emp
 
 
 def show(scene, stage):
-    """Shows a stage of a scene's model. Raises RealModelError; then the scene is as it was."""
+    """Shows a stage of a scene's model. Raises RealModelError; then the scene is not changed."""
     shapes = shown_models.shapes_at_stage(scene, stage)
     for row in scene.realmodel.results:
         _give_shape(scene, row, shapes.get((row.rock, row.name)))

@@ -17,7 +17,7 @@ from ...core.readers import (
 )
 from ...core.readers.formats import SHAPES, endings
 from ...core.readers.object_input import is_object_file
-from ...core.readers.tables.hole_tables import OBSERVED, joined
+from ...core.readers.tables.hole_tables import OBSERVED, normalized_name
 from ...core.readers.tables.intervals import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
 from ...core.settings.data_files import HOLE_COLUMNS as OF_HOLES
@@ -188,7 +188,7 @@ def _read(scene, rock, tables, units):
     codes = [entry.block for entry in left_out if entry.kind == "unknown_block"]
     meant = {}
     for name in map(units.meaning, codes):
-        meant.setdefault(joined(name), name)  # of names that are written in several ways the first
+        meant.setdefault(normalized_name(name), name)  # of names that are written in several ways the first
     return Found(
         picks,
         Observations.joined(seen),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender as the host of the add-on: its versions, and what runs in it beside its main loop.
 
-Comes in: functions to call later, arrays of a mesh. Goes out: threads, timers and draw handlers, caches that
+Input: functions to call later, arrays of a mesh. Output: threads, timers and draw handlers, caches that
 are cleared with the file, nodes, messages.
 """

@@ -116,7 +116,7 @@ def _refusing():
         raise
     except _BROKEN as error:
         raise InputRefused(
-            f"what the .blend keeps of it cannot be read: {error}",
+            f"the data stored in the .blend file are damaged: {error}",
             advice="choose its file again, or open an older copy of the .blend",
         ) from error
 

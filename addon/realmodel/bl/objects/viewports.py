@@ -73,7 +73,7 @@ def updated_layer(scene):
     return layer
 
 
-def still_open(remembered):
+def is_open(remembered):
     """The viewports of a list that still exist, by their pointers."""
     return [space for space in all_spaces() if space.as_pointer() in remembered]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Legend, north arrow, scale bar and axes over the viewport and in every picture.
 
-Comes in: the displayed model and a view of it. Goes out: one drawing of the core (`core.drawing.overlay`),
+Input: the displayed model and a view of it. Output: one drawing of the core (`core.drawing.overlay`),
 which `viewport` draws with the graphics card and `rendered` puts before a camera as an image.
 """
 

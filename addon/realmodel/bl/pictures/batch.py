@@ -32,7 +32,7 @@ def write_scene(model, project=None):
 def save_blend(path):
     """Write the current state to a .blend file, compressed. Raises OutputFailed."""
     try:
-        with without_chatter():
+        with silenced_stdout():
             bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True, check_existing=False)
     except RuntimeError as error:
         raise _failed(path, error) from error
@@ -49,14 +49,14 @@ def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.
     if not Path(path).parent.is_dir():  # newer versions of Blender would make the folder
         raise OutputFailed(f"{path}: there is no folder {Path(path).parent}")
     try:
-        with without_chatter():
+        with silenced_stdout():
             return picture.render_picture(bpy.context.scene, path, size, samples, time_limit)
     except RuntimeError as error:
         raise _failed(path, error) from error
 
 
 @contextlib.contextmanager
-def without_chatter():
+def silenced_stdout():
     """Suppress Blender's own output (a line per sample of a render).
 
     Its errors are raised as RuntimeError, too.

@@ -107,13 +107,13 @@ def _render(context, path, size):
         raise InputRefused("there is nothing to be seen", advice="build a model")
     spaces = viewports.spaces(context)
     try:
-        with picture.throw_away(scene.copy()) as stage:
+        with picture.discard_scene(scene.copy()) as stage:
             for obj in [obj for obj in stage.collection.objects if picture.KEY in obj]:
                 stage.collection.objects.unlink(obj)
             stage.world = None
             picture.set_up(stage, points, size, spaces[0] if spaces else None, sun=None)
             picture.set_renderer(stage, path, size, _SAMPLES, picture.TIME_LIMIT)
-            with batch.without_chatter():
+            with batch.silenced_stdout():
                 bpy.ops.render.render(write_still=True, scene=stage.name)
     except RuntimeError as error:
         raise OutputFailed(f"{path}: {' '.join(str(error).split())}") from error

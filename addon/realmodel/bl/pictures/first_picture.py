@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether light and camera may be set up for a scene without being asked: where nobody has cared for them.
+"""Whether light and camera may be set up for a scene without being asked: where the user has set up none.
 
 That is a scene that has nothing but what Blender's own startup file brings along: its camera and its lamp
 where they stand there, its world, its renderer; or what was added here before, as long as nobody changed it.

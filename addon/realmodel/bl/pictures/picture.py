@@ -167,7 +167,7 @@ def _ground_mesh(corners):
 
 
 @contextlib.contextmanager
-def throw_away(scene):
+def discard_scene(scene):
     """A scene for one picture: it and all datablocks that are made meanwhile are removed at the end."""
     stores = (bpy.data.objects, bpy.data.meshes, bpy.data.cameras, bpy.data.lights, bpy.data.worlds)
     stores += (bpy.data.materials, bpy.data.images, bpy.data.collections)
@@ -201,7 +201,7 @@ def render_picture(scene, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
     factor = exaggeration_of(np.ptp(coordinates, axis=0))
     if scene.realmodel.view.exaggeration != 1.0:
         factor = exaggeration.factor(scene)
-    with throw_away(bpy.data.scenes.new("RealModel picture")) as stage:
+    with discard_scene(bpy.data.scenes.new("RealModel picture")) as stage:
         for key, shape in shapes.items():
             made = bpy.data.objects.new(key[1], meshes.new_mesh(key[1], shape))
             made.data.materials.append(rows[key].data.materials[0])

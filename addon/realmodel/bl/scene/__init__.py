@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The build of a scene: its model, made in a thread and put into the scene.
 
-Comes in: a scene with its settings. Goes out: surfaces, blocks and data as objects, the tables of the
+Input: a scene with its settings. Output: surfaces, blocks and data as objects, the tables of the
 panel, the problem of a build that failed, files of objects.
 """

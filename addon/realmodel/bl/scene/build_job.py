@@ -72,7 +72,7 @@ class BuildJob(ThreadJob):
         if scene is None or not self._job.succeeded:
             return True  # finish raises the error
         if self._slices is None:
-            shapes = built_scene.shapes_to_come(scene, self._job.result())
+            shapes = built_scene.pending_meshes(scene, self._job.result())
             self._slices = meshes.slices(shapes)
         try:
             return self._slices.make(seconds)

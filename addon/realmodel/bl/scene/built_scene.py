@@ -128,11 +128,11 @@ def _other_origin(model, composed, away):
         model.warnings.append(BuildWarning(text.replace(" lay ", " lies "), "origin"))
         return composed.origin
     origin = choose_origin(model.surface_vertices)
-    model.warnings.append(BuildWarning(f"{text}: it has got another origin, {place_text(origin)}", "origin"))
+    model.warnings.append(BuildWarning(f"{text}: its origin was moved to {place_text(origin)}", "origin"))
     return origin
 
 
-def shapes_to_come(scene, prepared):
+def pending_meshes(scene, prepared):
     """(name, PolygonMesh) of each mesh that `put` will make, as the scene stands."""
     for place, row in settings.interface_rows(scene):
         shape, digest = prepared.interfaces.get(place, (None, ""))
@@ -523,7 +523,7 @@ def _remove_model(scene, kept_objects=()):
 
 def _release(scene, obj):
     """An object of the user's that is no interface any more."""
-    display.let_go(obj)
+    display.release(obj)
     exaggeration.release(obj)
     for key in (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.PROPERTY):
         if key in obj:

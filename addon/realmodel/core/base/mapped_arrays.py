@@ -32,7 +32,7 @@ _HEADER = 128  # bytes before an array in a file of NumPy
 _READING_A_HEADER = threading.Lock()
 
 
-def as_it_is(array: np.ndarray) -> np.ndarray:
+def unchanged(array: np.ndarray) -> np.ndarray:
     """For callers that keep arrays in memory."""
     return array
 

@@ -63,7 +63,7 @@ class FileBytes:
             while len(content) < end - begin and (more := opened.read(end - begin - len(content))):
                 content += more
         if len(content) < end - begin:
-            raise InputRefused("it became shorter while it was read", file=self._file)
+            raise InputRefused("the file was truncated while being read", file=self._file)
         return bytes(content)
 
     def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:

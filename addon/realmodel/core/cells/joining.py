@@ -32,7 +32,7 @@ from ..structures.parts.parts import Structures, compartment_of, refused_structu
 from ..surfaces.rock_input import RockInput
 from .built_cells import BuiltCells, CellParts, NativeWarning
 from .cell_complex import CellComplex
-from .reach import Reach
+from .reach import PartExtents
 from .stack_refusals import refused_stack
 
 
@@ -41,7 +41,7 @@ def build_joined(
     inputs: list[RockInput],
     structures: Structures,
     cells: str,
-    reach: Reach | None = None,
+    reach: PartExtents | None = None,
 ) -> BuiltCells:
     """The cells of rock masses (RockInput) with structures, and their parts.
 
@@ -54,7 +54,7 @@ def build_joined(
         built = build_joined(work, inputs, few, cells)
         return _renumbered(built, np.array(present, np.int64), part, len(structures))
     if reach is None and structures.is_divided:
-        reach = Reach(work, structures)
+        reach = PartExtents(work, structures)
     solids = SolidsOfFields(work, inputs)
     surfaces = _first_surfaces(inputs)[-1]
     piece = None if structures.continued is None else (structures.continued, structures.largest)
@@ -151,7 +151,12 @@ class PartPlace:
 
 
 def _part(
-    work: Work, structures: Structures, reach: Reach | None, part: int, cells: str, solids: SolidsOfFields
+    work: Work,
+    structures: Structures,
+    reach: PartExtents | None,
+    part: int,
+    cells: str,
+    solids: SolidsOfFields,
 ) -> tuple:
     """One part of space, with all rock masses as they are there, as native build_parts takes it."""
     work.check()
@@ -237,7 +242,7 @@ def _stacks_at(inputs: list[RockInput], place: PartPlace) -> list[Stack]:
     return [_stack(inputs, place, number, first[number], first[-1]) for number in range(len(inputs))]
 
 
-def _in_reach(reach: Reach, stacks: list[list[Stack]], part: int, cells: str) -> tuple:
+def _in_reach(reach: PartExtents, stacks: list[list[Stack]], part: int, cells: str) -> tuple:
     """Stacks where a part may be, what space of it is wanted, and the region around that if it has one."""
     structures = reach.structures
     space = reach.cells_of(part)

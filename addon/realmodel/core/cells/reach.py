@@ -19,7 +19,7 @@ _MARGIN = 0.125  # of a cell: so far a model reaches beyond its part at least
 _BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have points
 
 
-class Reach:
+class PartExtents:
     """Answers where some part may be, and which triangles may lie over or under it.
 
     The box of all rock is divided into cells. A cell that a fault may pass, or go on through beyond its
@@ -39,7 +39,7 @@ class Reach:
         self.masks = [self._sides(work, shape) for shape in structures.fault_shapes()]
         self.asked = np.ones(self.count, bool)
 
-    def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
+    def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> PartExtents:
         """The reach of the parts that meet a box in plan (low x, low y, high x, high y), for some of the
         faults, by their numbers. structures: these faults, and some bodies."""
         few = copy.copy(self)

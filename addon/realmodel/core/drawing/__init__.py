@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drawings for charts, sections, and legends, and the files that they are written to.
 
-Comes in: polygons, lines, dots and texts in points. Goes out: pixels, or files in SVG, DXF and PNG.
+Input: polygons, lines, dots and texts in points. Output: pixels, or files in SVG, DXF and PNG.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ensembles: many models of one project, and the probabilities of blocks when heights are uncertain.
 
-Comes in: a `Model`, a number of realizations and a seed. Goes out: volumes of each realization, statistics of
+Input: a `Model`, a number of realizations and a seed. Output: volumes of each realization, statistics of
 heights, probabilities of blocks at samples, and their files.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that a model, and what is made of it, is written to, by their ending.
 
-Comes in: `ModelData`, a mesh for simulation, surfaces, a section or a hole, and a path. Goes out: a file that
+Input: `ModelData`, a mesh for simulation, surfaces, a section or a hole, and a path. Output: a file that
 appears whole or not at all, with the same bytes for the same content.
 """
 

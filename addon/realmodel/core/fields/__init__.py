@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scalar fields in space, whose level sets are the surfaces of a series.
 
-Comes in: a `Lattice` and data of surfaces: contacts, dips, bounds. Goes out: a `ScalarField`, linear on each
+Input: a `Lattice` and data of surfaces: contacts, dips, bounds. Output: a `ScalarField`, linear on each
 tetrahedron of the lattice, and the level of each surface.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Strata in any solid: a sculpted cliff, a boulder, a scan, or a terrain down to a base.
 
-Comes in: a triangulated mesh, and `Strata`, which say how beds lie. Goes out: the bed of any point (`Beds`),
+Input: a triangulated mesh, and `Strata`, which say how beds lie. Output: the bed of any point (`Beds`),
 and a `Model` whose blocks are the beds and together are the mesh.
 """
 

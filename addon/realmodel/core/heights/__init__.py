@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Methods that give heights: `heights` runs the requested one.
 
-Comes in: points (N, 3), nodes (M, 2), a method with its options. Goes out: an `Interpolation`: heights of the
+Input: points (N, 3), nodes (M, 2), a method with its options. Output: an `Interpolation`: heights of the
 nodes, with variances and warnings; or heights drawn at random that the points allow.
 """
 

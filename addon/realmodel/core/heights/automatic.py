@@ -84,7 +84,7 @@ def choose(task: Task) -> tuple[Trial, str]:
     if len(places) <= 2 and task.dips is not None:
         return _trial(task, _OF_DIPS), f"there are {len(places)} points, and it uses dips"
     if len(places) == 1:
-        return _trial(task, Candidate("constant", {})), "there is one point only"
+        return _trial(task, Candidate("constant", {})), "only one point"
     if len(places) == 2:
         why = "there are two points only: the slope between them is all they show"
         return _trial(task, Candidate("plane", {})), why

@@ -91,7 +91,7 @@ def few_points(points: np.ndarray, method: str, z: np.ndarray) -> list[str]:
         off = np.abs(z[np.isfinite(z)] - points[0, 2])
         if off.max(initial=0.0) > _SAME_HEIGHT * max(1.0, abs(points[0, 2])):
             return []
-        return ["there is one point only: the surface is its height everywhere"]
+        return ["only one point: the surface is horizontal"]
     return ["there are two points only: they do not show the slope across their line"]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects of the libraries that notebooks are full of, which are imported when they are needed.
 
-Comes in: arrays, or rows of a table. Goes out: a mesh of PyVista, or a DataFrame.
+Input: arrays, or rows of a table. Output: a mesh of PyVista, or a DataFrame.
 """
 
 from .frames import data_frame

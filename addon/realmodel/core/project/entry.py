@@ -91,7 +91,7 @@ class Entry(Compared):
 
 
 @contextmanager
-def refused_by(refuse: Refuse, key: str | None = None, before: str = "") -> Iterator[None]:
+def errors_located(refuse: Refuse, key: str | None = None, before: str = "") -> Iterator[None]:
     """Within it a wrong setting is refused where it is written: at its own key, or at another."""
     try:
         yield
@@ -113,7 +113,7 @@ def named_once(entries: Sequence, kind: str) -> Iterator:
 
 def check_values(entry: Any, refuse: Refuse) -> None:
     """Refuses what the declarations of an entry do not allow."""
-    with refused_by(refuse):
+    with errors_located(refuse):
         check_fields(entry)
 
 
@@ -135,7 +135,7 @@ def check_file(file: str | Path | None, key: str, refuse: Refuse) -> None:
 def check_table_file(table: Any, key: str, refuse: Refuse) -> None:
     """Refuses the table of a key whose options make no sense, or that does not exist; None is no table."""
     if table is not None:
-        with refused_by(refuse, key, f"{key}: "):
+        with errors_located(refuse, key, f"{key}: "):
             table.check()
         for file in table.files:
             check_file(file, key, refuse)

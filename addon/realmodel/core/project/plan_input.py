@@ -22,7 +22,7 @@ from ..readers.maps.shapes import Shapes
 from ..readers.maps.wkt import parse_wkt
 from ..settings.data_files import MapLayer, is_wkt
 from ..settings.meshers import AT_WORDS
-from .entry import Refuse, check_file, refused_by
+from .entry import Refuse, check_file, errors_located
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ def check_layer(given: Any, key: str, refuse: Refuse) -> None:
     layer = map_layer(given)
     if layer is None:
         return
-    with refused_by(refuse, key):
+    with errors_located(refuse, key):
         layer.check()
     check_file(layer.file, key, refuse)
 

@@ -31,9 +31,9 @@ from .entry import (
     check_property,
     check_table_file,
     check_values,
+    errors_located,
     keys_without_effect,
     named_once,
-    refused_by,
     shapes_given,
 )
 from .plan_input import check_layer, is_place_elsewhere
@@ -88,7 +88,7 @@ def check_field_data(project: Project, rock: Rock) -> None:
 
 def _check_map(rock: Rock, map_file: MapFile) -> None:
     refuse = rock.refused
-    with refused_by(refuse, "map", "map: "):
+    with errors_located(refuse, "map", "map: "):
         map_file.check()
     check_layer(map_file.polygons, "map", refuse)
     check_layer(map_file.faults, "map", refuse)
@@ -166,7 +166,7 @@ def _check_dips_of_series(series: Series, refuse: Refuse) -> None:
 def _check_field(rock: Rock, refuse: Refuse) -> None:
     for key, value in (("region", rock.region), ("base_elevation", rock.base_elevation)):
         if value is None:
-            what = f"its field has no end: {rock.item} has no {key}"
+            what = f"the field is unbounded: {rock.item} has no {key}"
             raise refuse(what, "name", f"give the rock mass a {key}")
 
 
@@ -180,7 +180,7 @@ def check_level_set(rock: Rock, surface: Surface, refuse: Refuse) -> None:
     if surface.points is None and not rock.has_field_data:
         raise refuse("it has no points", advice="add points = ...")
     check_file(surface.input_file, "points", refuse)
-    with refused_by(refuse):
+    with errors_located(refuse):
         if surface.point_file is not None:
             surface.point_file.check()
 
@@ -244,7 +244,7 @@ def _check_structure_shape(entry: Fault | Body, refuse: Refuse, files: tuple[str
     if not shapes:
         advice = " or ".join(f"{key} = ..." for key in reversed(files))
         raise refuse("it has no shape", advice=f"add {advice}")
-    with refused_by(refuse):
+    with errors_located(refuse):
         for file in (entry.mesh_file, entry.point_file, getattr(entry, "trace_file", None)):
             if file is not None:
                 file.check()
@@ -406,7 +406,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if shapes:
         check_file(surface.input_file, shapes[0], refuse)
-    with refused_by(refuse):
+    with errors_located(refuse):
         for file in (surface.mesh_file, surface.point_file):
             if file is not None:
                 file.check()
@@ -437,7 +437,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
 def _check_dips(surface: Surface, refuse: Refuse) -> None:
     check_table_file(surface.dip_file, "dips", refuse)
     if surface.dips is not None:
-        with refused_by(refuse):
+        with errors_located(refuse):
             check_uses_dips(surface.method or DEFAULT_METHOD)
 
 
@@ -453,7 +453,7 @@ def _check_continuation(surface: Surface, refuse: Refuse) -> None:
 
 
 def _check_method(surface: Surface, refuse: Refuse, no_points: bool = False) -> None:
-    with refused_by(refuse):
+    with errors_located(refuse):
         check_method(surface.method or DEFAULT_METHOD)
         if no_points and surface.needs_points:
             method, _ = surface.method_options()

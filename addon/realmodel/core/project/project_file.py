@@ -17,7 +17,7 @@ from ..readers import is_mesh_file
 from ..settings.data_files import MESH_READING, READING, MapLayer, MeshFile, PointFile, is_wkt
 from ..settings.method_options import checked
 from ..settings.setting import Setting, declarations, settings_of
-from .entry import check_file, is_file, refused_by
+from .entry import check_file, errors_located, is_file
 from .library import PROPERTY, Library, Property, check_property
 from .plan_input import is_place_elsewhere
 from .project import PROJECT, Project
@@ -53,7 +53,7 @@ def load_library(path: str | Path) -> Library:
     for table in top.tables("property", "property") if "property" in top else []:
         table.allow_only(PROPERTY)
         entry = Property(**_values(table, Property, path.parent, _unchecked))
-        with refused_by(table.refuse):
+        with errors_located(table.refuse):
             check_property(entry, properties)
         properties[entry.id] = entry
     return Library(list(properties.values()), path)
@@ -109,7 +109,7 @@ def _values(table: Table, entry: type, folder: Path, other: Read) -> dict:
 
 
 def _checked(key: _Key) -> Any:
-    with refused_by(key.table.refuse, key.name):
+    with errors_located(key.table.refuse, key.name):
         return checked(key.name, key.setting, key.value)
 
 

@@ -60,7 +60,7 @@ def _refused(entry: RockInput, what: str, at: np.ndarray, lower: float) -> Input
 
 
 def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int) -> None:
-    points = entry.data[number].known_points
+    points = entry.data[number].measured_points
     deep = points[points[:, 2] < form.base_elevation]
     deep = deep[np.isfinite(form.heights(work, number, deep))]
     if len(deep):
@@ -125,7 +125,7 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
             data = entry.data[number]
             if not surface.has_points or not (rock.is_level_set(surface) or len(data.tied_points(surface))):
                 continue
-            points = data.known_points
+            points = data.measured_points
             is_observed = bool(len(points)) and len(observed_contacts(surface, data)) == len(points)
             for cutter in succession.cut_later(number) if len(points) else ():
                 if not (is_observed or surfaces[cutter].has_points):

@@ -104,7 +104,7 @@ def _points(model: ModelData, which: tuple[int, int, int], near: float) -> Itera
     """which: the number of a surface in the model, in its rock mass, and that of the rock mass."""
     entry = model.rock_inputs[which[2]]
     rock, surface, data = entry.rock, entry.rock.surfaces[which[1]], entry.data[which[1]]
-    points = data.known_points
+    points = data.measured_points
     heights = heights_of_points(model, *which, points) if len(points) else np.empty(0)
     for row in np.flatnonzero(np.abs(points[:, 2] - heights) > near).tolist():
         place, z = tuple(points[row].tolist()), float(heights[row])

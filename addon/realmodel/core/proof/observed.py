@@ -226,7 +226,7 @@ def _observed(work: Work, model: ModelData) -> Observed:
             blocks += _blocks(work, model, number, form)
             for at, surface in enumerate(rock.surfaces):
                 data = entry.data[at]
-                places = data.contacts[: 0 if data.is_along_bounds else None]
+                places = data.contacts[: 0 if data.has_only_bound_points else None]
                 z = heights_of_points(model, first + at, at, number, places)
                 near = NEAR * float(np.ptp(observed.places[:, 2]))
                 for row, (place, height) in enumerate(zip(places.tolist(), z.tolist(), strict=True)):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of input files.
 
-Comes in: a path and its reading options. Goes out: points, dips, triangulated surfaces, shapes in plan, picks
+Input: a path and its reading options. Output: points, dips, triangulated surfaces, shapes in plan, picks
 of boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
 their line.
 """

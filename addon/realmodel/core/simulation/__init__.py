@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes for simulation, in a plain form for the writers of solvers' formats.
 
-Comes in: the cells and surfaces of a model, and edge lengths. Goes out: a `SimulationMesh` of elements that
+Input: the cells and surfaces of a model, and edge lengths. Output: a `SimulationMesh` of elements that
 share their faces, or `CleanedCells` without small details.
 """
 

@@ -41,7 +41,7 @@ from .field_warnings import (
 )
 from .parts.part_models import level
 from .series_data import SeriesData
-from .sheets.families import DIES_OUT, Family, Within, families
+from .sheets.families import DIES_OUT, CompartmentTest, Family, families
 from .slits import Slits
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above it all rock ends
@@ -187,7 +187,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     critical = [np.empty((0, 3))]
     draws = entry.field_draws.get(series.name)
     for number, family in enumerate(work.share_out(shared)):
-        within = Within(work, structure, numbers[-1], family)
+        within = CompartmentTest(work, structure, numbers[-1], family)
         names = [structure.names[compartment] for compartment in family.members]
         chosen = _chosen(entry, series, data, within.has(sides), names)
         _warn_of_sides(entry, series, data, sides, family)

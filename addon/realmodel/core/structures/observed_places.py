@@ -14,7 +14,7 @@ from ..base.work import Work, native_module
 from ..readers.tables.observations import Observations, in_one_interval
 from ..surfaces.field_data import apply_observations, observed_on_mesh
 from ..surfaces.observed.columns import Succession
-from ..surfaces.observed.derived import BlockNumbers, Situation
+from ..surfaces.observed.derived import BlockNumbers, PlaceContext
 from ..surfaces.observed.edge_crossings import with_places
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import sides_of
@@ -60,7 +60,7 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             observations, is_kept = observed_on_mesh(entry, observations)
             at = np.cumsum(is_kept) - 1
             is_own, across = is_kept & is_own[at], is_kept & across[at]
-        situation = Situation(
+        situation = PlaceContext(
             None,
             *sides(observations.places),
             after=[after for _, after in bodies],
@@ -146,7 +146,7 @@ def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndar
 
 
 def _between(
-    entry: RockInput, observations: Observations, reach: float, situation: Situation
+    entry: RockInput, observations: Observations, reach: float, situation: PlaceContext
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N,) bool: of intervals the places between an end at which another block begins, and a fault or the
     border of a body, if that passes within `reach` along the hole: it may be this that divides the blocks,
@@ -187,7 +187,7 @@ def _displaced(entry: RockInput) -> np.ndarray:
     return np.array([faults.active(surface) for surface in range(count)]).reshape(count, len(faults))
 
 
-def _dividing(entry: RockInput, situation: Situation) -> np.ndarray:
+def _dividing(entry: RockInput, situation: PlaceContext) -> np.ndarray:
     """(B, B, F) bool: whether two blocks may meet at a fault. Not if a surface that it does not displace
     would be there, too."""
     count, displaced = len(entry.rock.surfaces), _displaced(entry)

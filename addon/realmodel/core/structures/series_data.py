@@ -152,7 +152,7 @@ class SeriesData:
     def left_out(self, row: int, against: Sequence[tuple[str, int]]) -> LeftOut:
         """A bound that is not used. against: what it contradicts, by kind and row."""
         bounds, at = self._bounds_of(row), int(self.bound_rows[row])
-        others = tuple(dict.fromkeys(self._said(*kind_and_row) for kind_and_row in against))
+        others = tuple(dict.fromkeys(self._statement_text(*kind_and_row) for kind_and_row in against))
         return LeftOut(
             "contradiction",
             f"{self.bound_text(row)}, which contradicts {'; '.join(others) or 'data near it'}",
@@ -162,7 +162,7 @@ class SeriesData:
             others,
         )
 
-    def _said(self, kind: str, row: int) -> str:
+    def _statement_text(self, kind: str, row: int) -> str:
         """What a datum says, by its kind and row."""
         if kind == "bound":
             return self.bound_text(row)

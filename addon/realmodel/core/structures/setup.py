@@ -10,13 +10,13 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.errors import BuildFailed, BuildWarning
-from ..base.mapped_arrays import StoreArray, as_it_is
+from ..base.mapped_arrays import StoreArray, unchanged
 from ..base.triangles import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project
 from ..project.structure_entries import Fault
 from ..surfaces.field_data import apply_observations, left_out_warnings, observed_on_mesh
-from ..surfaces.observed.derived import Situation
+from ..surfaces.observed.derived import PlaceContext
 from ..surfaces.prepare import (
     interpolate_rock,
     mesh_again,
@@ -50,7 +50,7 @@ def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tup
     return inputs, replace(project, faults=faults, bodies=bodies)
 
 
-def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is) -> None:
+def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = unchanged) -> None:
     """Meshes the regions of rock masses. keep: where the meshes are kept. Raises InputRefused."""
     for entry in work.share_out(inputs):
         with work.phase(0.0, 1.0, f"meshing the region of {entry.rock.name}"):
@@ -60,7 +60,7 @@ def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is
         if entry.rock.observed is not None and entry.rock.interpolates:
             on_mesh = observed_on_mesh(entry, entry.rock.observed)
             if not on_mesh[1].all():  # along inclined holes bounds follow the mesh
-                apply_observations(work, entry, Situation(), on_mesh)
+                apply_observations(work, entry, PlaceContext(), on_mesh)
 
 
 def make_surfaces(
@@ -68,7 +68,7 @@ def make_surfaces(
     project: Project,
     inputs: list[RockInput],
     stage: int | None,
-    keep: StoreArray = as_it_is,
+    keep: StoreArray = unchanged,
     joins: bool = True,
 ) -> Structures:
     """Interpolates the surfaces of rock masses that are read and meshed, and divides these by the faults and
@@ -96,7 +96,7 @@ def make_structures(
     inputs: list[RockInput],
     stage: int | None,
     joins: bool = True,
-    keep: StoreArray = as_it_is,
+    keep: StoreArray = unchanged,
 ) -> Structures:
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
     returns the parts of space.

@@ -25,7 +25,7 @@ from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import FaultShape, fault_sides
 from ..surfaces.wrong_sides import heights_at
 from .field_warnings import within_rock
-from .sheets.families import Family, Within
+from .sheets.families import CompartmentTest, Family
 
 _PIECE = 0.5  # of an edge of the lattice: what a continuation is divided into
 _BESIDE = 1e-6  # of an edge of the lattice: what touches a cell is in it
@@ -47,7 +47,7 @@ class Slit:
     reach: float
     ends: tuple[tuple[int, int], ...] = ()
 
-    def mouth(self, work: Work, points: np.ndarray) -> np.ndarray:
+    def opening(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) from 0 beyond its tips to at most 1."""
         if not len(self.pieces):  # it divides all rock
             return np.ones(len(points))
@@ -71,7 +71,7 @@ class Slits:
     of_nodes: np.ndarray
 
     @classmethod
-    def of(cls, entry: RockInput, family: Family, within: Within, lattice: Lattice) -> Slits:
+    def of(cls, entry: RockInput, family: Family, within: CompartmentTest, lattice: Lattice) -> Slits:
         """Those of a family, whose places `within` tells. Raises InputRefused."""
         faults = entry.divided().faults
         order = [number for number in faults.order() if number in family.dying]
@@ -124,9 +124,9 @@ class Slits:
             return None
         every = np.concatenate(parts)
         combinations = self.combinations[numbers]
-        mouths = self._columns([slit.mouth(work, every) for slit in self.slits], len(every))
+        openings = self._columns([slit.opening(work, every) for slit in self.slits], len(every))
         ends = np.cumsum([len(part) for part in parts])[:2]
-        contacts, dips, bounds = np.split(0.5 * combinations * mouths, ends)
+        contacts, dips, bounds = np.split(0.5 * combinations * openings, ends)
         _, of_dips, of_bounds = np.split(numbers, ends)
         slopes = np.empty((len(dips), len(self.slits), 3))
         step = _STEP * self.lattice.spacing[0]
@@ -135,8 +135,8 @@ class Slits:
             ahead, behind = (self._beside(work, parts[1] + way, of_dips) for way in (move, -move))
             slopes[:, :, axis] = (ahead - behind) / (2 * step)
         positions = self.lattice.positions()
-        mouths = self._columns([slit.mouth(work, positions) for slit in self.slits], len(positions))
-        nodes = 0.5 * self.of_nodes * mouths
+        openings = self._columns([slit.opening(work, positions) for slit in self.slits], len(positions))
+        nodes = 0.5 * self.of_nodes * openings
         of_bounds = of_bounds.astype(np.int32)
         return SlitData(contacts, dips, bounds, slopes, self._normals(), nodes, self._same, of_bounds)
 
@@ -158,8 +158,8 @@ class Slits:
             coordinates[here, n] = fault_sides(work, points[here], slit.shape)
             for at, side in slit.ends:
                 coordinates[coordinates[:, at] == -side, n] = 0.0
-        mouths = self._columns([slit.mouth(work, points) for slit in self.slits], len(points))
-        return 0.5 * coordinates * mouths
+        openings = self._columns([slit.opening(work, points) for slit in self.slits], len(points))
+        return 0.5 * coordinates * openings
 
     @cached_property
     def _same(self) -> np.ndarray:
@@ -185,7 +185,11 @@ class Slits:
 
 
 def _slit(
-    entry: RockInput, number: int, within: Within, lattice: Lattice, ends: list[tuple[int, int, Slit]]
+    entry: RockInput,
+    number: int,
+    within: CompartmentTest,
+    lattice: Lattice,
+    ends: list[tuple[int, int, Slit]],
 ) -> Slit:
     """The slit of a fault. ends: those at which it ends, with their places and the side that it is on."""
     structure = entry.divided()
@@ -213,7 +217,9 @@ def _slit(
     return Slit(shape, number, pieces, cells, reach, tuple((at, side) for at, side, _ in ends))
 
 
-def _in_rock(entry: RockInput, number: int, within: Within, pieces: np.ndarray, size: float) -> np.ndarray:
+def _in_rock(
+    entry: RockInput, number: int, within: CompartmentTest, pieces: np.ndarray, size: float
+) -> np.ndarray:
     """(T,) bool: the pieces (T, 3, 3) of what continues a fault that lie in a family, or nearly so, where
     rock is that the fault displaces: not above a younger surface that cuts."""
     work, structure = within.work, entry.divided()

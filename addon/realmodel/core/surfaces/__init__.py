@@ -2,6 +2,6 @@
 """The surfaces of rock masses: read, meshed and interpolated, with warnings about points that cannot be
 right.
 
-Comes in: a `Project`. Goes out: a `RockInput` for each rock mass, with the triangles of its surfaces on the
+Input: a `Project`. Output: a `RockInput` for each rock mass, with the triangles of its surfaces on the
 planar mesh of its region; or the parts of its surfaces that a tile needs.
 """

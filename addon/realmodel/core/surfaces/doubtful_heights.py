@@ -51,7 +51,7 @@ def doubtful_heights(
     reach, warnings = _Reach(work, entry), []
     for number in numbers:
         points = np.ascontiguousarray(entry.data[number].points, np.float64)
-        if len(points) and not entry.data[number].is_along_bounds:
+        if len(points) and not entry.data[number].has_only_bound_points:
             warnings.append(_missed(work, entry, number, points, compartment is None))
         if len(points := points if compartment is None else compartment.points):
             warnings.append(reach.beyond(number, points, compartment))

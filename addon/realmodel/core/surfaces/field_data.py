@@ -20,7 +20,7 @@ from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observation
 from ..settings.dips import Dips, SpaceDips
 from ..settings.series_kinds import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
-from .observed.derived import Situation, derive, with_contacts, without_contradictions
+from .observed.derived import PlaceContext, derive, with_contacts, without_contradictions
 from .observed.edge_crossings import with_crossings
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -175,12 +175,12 @@ def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -
     return shown
 
 
-def bodies_of(project: Project, rock: Rock) -> Situation:
+def bodies_of(project: Project, rock: Rock) -> PlaceContext:
     """The bodies that there may be in a rock mass, before their shapes are known."""
     number = [project_rock.name for project_rock in project.rocks].index(rock.name)
     bodies_and_times = [(body, body_times(project, body)) for body in project.bodies]
     in_rock = [(body, times[number]) for body, times in bodies_and_times if number in times]
-    return Situation(
+    return PlaceContext(
         after=[after for _, after in in_rock],
         bodies=[body.name for body, _ in in_rock],
         voids=[body.void for body, _ in in_rock],
@@ -205,7 +205,7 @@ def observed_on_mesh(entry: RockInput, observations: Observations) -> tuple[Obse
 
 
 def apply_observations(
-    work: Work, entry: RockInput, situation: Situation, given: tuple[Observations, np.ndarray]
+    work: Work, entry: RockInput, situation: PlaceContext, given: tuple[Observations, np.ndarray]
 ) -> None:
     """Gives the surfaces of a RockInput that is read the contacts and bounds that follow from its
     observations, in the place of those that they have. situation: where these lie, but for where surfaces
@@ -241,7 +241,7 @@ def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
     of them is on."""
     warnings = []
     for surface, data in zip(entry.rock.surfaces, entry.data, strict=True):
-        if data.is_along_bounds:
+        if data.has_only_bound_points:
             text = (
                 "it has no points, and no observation is on it: it goes through the "
                 f"{len(data.points)} places nearest to which observations allow it"

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import BuildWarning, InputRefused, naming, number_list
-from ..base.mapped_arrays import StoreArray, as_it_is
+from ..base.mapped_arrays import StoreArray, unchanged
 from ..base.text import no_step
 from ..base.triangles import Sheet, median_edge
 from ..base.work import Work, run
@@ -113,7 +113,7 @@ def _require_points(entry: RockInput) -> None:
     """Refuses a surface of a RockInput of which nothing is known."""
     for surface, data in zip(entry.rock.surfaces, entry.data, strict=True):
         if surface.has_points and surface.needs_points and not len(data.points):
-            what = "it has no points, and no borehole or observation tells of it"
+            what = "no points, boreholes or observations constrain this surface"
             raise InputRefused(what, file=surface.shape_file, item=surface_item(entry.rock, surface))
 
 
@@ -247,7 +247,7 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         raise error.within(rock.item, file=file, line=line) from error
 
 
-def mesh_again(work: Work, entry: RockInput, keep: StoreArray = as_it_is) -> bool:
+def mesh_again(work: Work, entry: RockInput, keep: StoreArray = unchanged) -> bool:
     """Meshes the region of a rock mass anew where observations gave its surfaces other contacts since, which
     its mesh cannot tell apart. keep: as of mesh_inputs. Returns whether it did."""
     if entry.region is None or entry.rock.observed is None or not entry.rock.interpolates:
@@ -319,10 +319,10 @@ def interpolate_rock(
     work: Work,
     entry: RockInput,
     stage: int | None = None,
-    keep: StoreArray = as_it_is,
+    keep: StoreArray = unchanged,
 ) -> None:
     """Interpolates the surfaces of a rock mass; for a stage only those that it needs. keep: stores the
-    finished surfaces; unless it is as_it_is, their interpolations and attributes are dropped."""
+    finished surfaces; unless it is unchanged, their interpolations and attributes are dropped."""
     waiting = interpolation_order(entry.rock, stage)
     if entry.draws is None:
         entry.warnings += points_above_younger(entry, waiting)
@@ -330,11 +330,11 @@ def interpolate_rock(
     for number in work.share_out(waiting):
         with work.phase(0.0, 1.0, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number)
-        if keep is not as_it_is:
+        if keep is not unchanged:
             entry.surfaces[number] = Sheet(*map(keep, entry.surface(number)))
             entry.interpolations[number] = None
             del entry.attributes[number]
     entry.warnings += points_too_low(work, entry, sorted(waiting))
-    if keep is as_it_is:  # tiles have no such warnings
+    if keep is unchanged:  # tiles have no such warnings
         entry.warnings += doubtful_heights(work, entry, sorted(waiting))
     entry.untied.clear()

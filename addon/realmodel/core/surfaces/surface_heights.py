@@ -69,7 +69,7 @@ def counts_by_node(rock: Rock, number: int, surface: Surface, data: SurfaceData)
         or settings.get("neighbours") == 0  # all points are one system
         or (METHODS[method].is_constrained and is_more_known)  # these count for all nodes together
         or (METHODS[method].needs_points(settings) and not len(data.points))
-        or (surface.tie and data.is_along_bounds)  # where bounds do not hold, its points yield
+        or (surface.tie and data.has_only_bound_points)  # where bounds do not hold, its points yield
         or (method == "plane" and settings["extrapolate"] == "nearest")  # its points count only there
     ):
         return False
@@ -158,7 +158,7 @@ def _tied(
     free = result.z
     data = tie_data(surface_data.tied_points(surface), task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
-    if warnings and surface_data.is_along_bounds:  # the places that it was put through yield to its bounds
+    if warnings and surface_data.has_only_bound_points:  # its places yield to its bounds
         data = tie_data(np.empty((0, 3)), task.bounds)
         z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
     if z is not free:

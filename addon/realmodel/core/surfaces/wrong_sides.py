@@ -63,7 +63,7 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
     one is no contradiction: there the younger one ends, or has cut.
     """
     surfaces, shapes = entry.rock.surfaces, entry.surfaces
-    points = {number: entry.data[number].known_points for number in numbers if number > 0}
+    points = {number: entry.data[number].measured_points for number in numbers if number > 0}
     points = {number: xyz for number, xyz in points.items() if len(xyz)}
     beneath = {number: _Beneath(len(xyz)) for number, xyz in points.items()}
     for older in range(max(points, default=0)):
@@ -192,7 +192,7 @@ class WrongPoints:
         place = np.array([self.place[:2]])
         named = []
         for number in self.others:
-            points = entry.data[number].known_points
+            points = entry.data[number].measured_points
             if len(points) and native_module().outside_hull(points, place)[0]:
                 named.append(f"'{entry.rock.surfaces[number].name}'")
         if not named:
@@ -227,7 +227,7 @@ def points_above_younger(entry: RockInput, numbers: Collection[int]) -> list[Bui
     above the ground. Rasters are left out: they may be of one ground at several times.
     """
     surfaces, data = entry.rock.surfaces, entry.data
-    checked = [n for n in sorted(numbers) if _may_be_picks(data[n].known_points)]
+    checked = [n for n in sorted(numbers) if _may_be_picks(data[n].measured_points)]
     points = {n: data[n].points for n in checked}
     places = dict(zip(checked, places_of(list(points.values())), strict=True)) if checked else {}
     wrong_points: dict[int, WrongPoints] = {}

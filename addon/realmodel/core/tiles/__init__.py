@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A model in tiles of the plan (docs/dev/tiles.md).
 
-Comes in: `RockInput`s of the whole, or a folder with tiles. Goes out: the cells of one tile, with the same
+Input: `RockInput`s of the whole, or a folder with tiles. Output: the cells of one tile, with the same
 bytes on both sides of a border, or the whole of which only the tiles asked for are read.
 
 grid          the lines that divide the plan

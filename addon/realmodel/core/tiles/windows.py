@@ -13,11 +13,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.mapped_arrays import StoreArray, as_it_is
+from ..base.mapped_arrays import StoreArray, unchanged
 from ..base.triangles import Sheet, extents
 from ..base.work import Work, native_module
 from ..cells.joining import beyond_all
-from ..cells.reach import Reach
+from ..cells.reach import PartExtents
 from ..project.structure_entries import Body, Fault
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
@@ -39,7 +39,7 @@ class Window:
     safe: Box
     inputs: list[RockInput]
     structures: Structures
-    reach: Reach | None
+    reach: PartExtents | None
     numbers: np.ndarray
     part: np.ndarray
 
@@ -91,7 +91,7 @@ class Windows:
         work: Work,
         inputs: list[RockInput],
         structures: Structures,
-        keep: StoreArray = as_it_is,
+        keep: StoreArray = unchanged,
     ):
         self.inputs, self.joined = inputs, None
         self.structures, self._keep = structures, keep
@@ -102,7 +102,7 @@ class Windows:
                 self.inputs, self.joined = _joined(work, inputs, keep, borders=True)
                 self._find_plans()
             return
-        self._reach = Reach(work, structures)
+        self._reach = PartExtents(work, structures)
         if _are_any_close(work, [plan.vertices for plan in self._all]):
             self.inputs, self.joined = _joined(work, inputs, keep, borders=False)
             self._find_plans()
@@ -171,7 +171,7 @@ class Windows:
             )
             for entry in self.inputs
         ]
-        windows._keep = as_it_is
+        windows._keep = unchanged
         return windows
 
     def meets(self, box: Box) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The encodings that several formats share: rows of text, VTK's XML, NetCDF.
 
-Comes in: arrays. Goes out: bytes in an open file.
+Input: arrays. Output: bytes in an open file.
 """

@@ -2,5 +2,5 @@
 """Files of named objects for programs around models of the ground: OMF, geoh5, IFC, each by its own library,
 which is an extra of the package.
 
-Comes in: a model. Goes out: a file of its blocks, surfaces and boreholes.
+Input: a model. Output: a file of its blocks, surfaces and boreholes.
 """

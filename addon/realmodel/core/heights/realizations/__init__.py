@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Heights that data allow, drawn at random.
 
-Comes in: points, dips and bounds of a surface or of a series of sheets, and a seed. Goes out: the heights of
+Input: points, dips and bounds of a surface or of a series of sheets, and a seed. Output: the heights of
 one realization.
 """

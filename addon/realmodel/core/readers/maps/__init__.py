@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Outlines, lines and points in plan.
 
-Comes in: a file of shapes and which of it counts. Goes out: `Shapes`, or points with heights.
+Input: a file of shapes and which of it counts. Output: `Shapes`, or points with heights.
 """

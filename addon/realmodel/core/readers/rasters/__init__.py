@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rasters.
 
-Comes in: a file of a grid. Goes out: its heights as points, row by row, without those that say there is none.
+Input: a file of a grid. Output: its heights as points, row by row, without those that say there is none.
 """

@@ -222,7 +222,7 @@ def _parts(body: str, separator: str) -> Iterator[str]:
         yield from fields(line, separator)
 
 
-def joined(name: str) -> str:
+def normalized_name(name: str) -> str:
     """A name, for comparing, in small letters, and with one sign for the spaces, hyphens and underscores that
     may part its words."""
     return re.sub(r"[\s_-]+", "_", name.strip().lower())
@@ -231,7 +231,7 @@ def joined(name: str) -> str:
 def _columns(reading: Reading, table: TextTable, meanings: Columns, needed: Sequence[str]) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
     written = table.layout.names or ()
-    names = [joined(plain_name(name)) for name in written]
+    names = [normalized_name(plain_name(name)) for name in written]
     as_written = [name.strip().lower() for name in written]
     columns: dict[str, int] = {}
     for column, called in reading.columns.items():  # first, so that no other column takes what they name
@@ -241,13 +241,16 @@ def _columns(reading: Reading, table: TextTable, meanings: Columns, needed: Sequ
             columns[column] = called - 1
         elif called.strip().lower() in as_written:
             columns[column] = table.column(called)
-        elif joined(called) in names:
-            columns[column] = names.index(joined(called))
+        elif normalized_name(called) in names:
+            columns[column] = names.index(normalized_name(called))
     for column, aliases in meanings.items():
         # depths of picks are often called otherwise than a survey's
         if column in columns or (reading.columns.get(column) is not None and meanings is not SURVEY):
             continue
-        at = next((names.index(joined(alias)) for alias in aliases if joined(alias) in names), None)
+        at = next(
+            (names.index(normalized_name(alias)) for alias in aliases if normalized_name(alias) in names),
+            None,
+        )
         if at is not None and at not in columns.values():
             columns[column] = at
     for column in needed:

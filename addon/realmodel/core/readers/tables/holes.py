@@ -14,7 +14,7 @@ from ...base.algebra import atan2, cos, sin
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ...settings.data_files import Boreholes
-from .hole_tables import COLLARS, SURVEY, Row, joined, rows
+from .hole_tables import COLLARS, SURVEY, Row, normalized_name, rows
 from .observations import LeftOut
 
 Direction = tuple[float, float, float]  # of length 1: to the east, to the north, down
@@ -231,7 +231,7 @@ class Holes:
         self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
         self._collars = None if given.collars is None else self._read_collars()
         for hole in self._collars or ():
-            self._written.setdefault(joined(hole), {})[hole] = None
+            self._written.setdefault(normalized_name(hole), {})[hole] = None
         self._unused = set(self._collars or ())
         self._surveyed: set[str] = set()
         if given.survey is not None:
@@ -274,7 +274,7 @@ class Holes:
         hole = row.text("hole")
         if self._collars is None or hole in self._collars:
             return hole
-        alike = list(self._written.get(joined(hole), ()))
+        alike = list(self._written.get(normalized_name(hole), ()))
         if len({self._collars[name] for name in alike}) != 1:
             return hole
         self._taken[str(row.table.file), hole, alike[0]] = None

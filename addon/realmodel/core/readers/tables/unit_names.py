@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from .hole_tables import NO_VALUE, joined
+from .hole_tables import NO_VALUE, normalized_name
 
 # What stands for core that is not there, or that nobody looked at.
 _NO_CORE = frozenset(
-    joined(name)
+    normalized_name(name)
     for name in (
         *("lost core", "core loss", "coreloss", "lostcore", "lc", "no core", "no recovery", "nr"),
         *("not recovered", "not logged", "nl", "not cored", "no sample", "no data", "unknown", "missing"),
@@ -79,8 +79,8 @@ class UnitNames:
         meanings = {name: name for name in (*self.bodies, *self.blocks, *self.surfaces)} | dict(self.names)
         spellings: dict[str, str | None] = {}
         for name, meant in meanings.items():
-            if spellings.setdefault(joined(name), meant) != meant:
-                spellings[joined(name)] = None
+            if spellings.setdefault(normalized_name(name), meant) != meant:
+                spellings[normalized_name(name)] = None
         return spellings
 
     def _found(self, code: str) -> str | None:
@@ -92,9 +92,9 @@ class UnitNames:
                 return self.names[spelling]
             if self._is_known(spelling):
                 return spelling
-        return None if _is_empty(code) else self._alike.get(joined(code))
+        return None if _is_empty(code) else self._alike.get(normalized_name(code))
 
 
 def _is_empty(code: str) -> bool:
     """Whether an entry stands for nothing everywhere."""
-    return code.lower() in NO_VALUE or joined(code) in _NO_CORE
+    return code.lower() in NO_VALUE or normalized_name(code) in _NO_CORE

@@ -2,5 +2,5 @@
 """What planes and fences meet in a model: polygons of blocks, traces of faults, holes near by; and how they
 are drawn.
 
-Comes in: `ModelData`, and polygons that the native module has cut. Goes out: `SectionData`, its `Drawing`.
+Input: `ModelData`, and polygons that the native module has cut. Output: `SectionData`, its `Drawing`.
 """

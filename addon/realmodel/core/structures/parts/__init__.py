@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts into which faults and bodies divide space, and the compartments of rock masses.
 
-Comes in: shapes of faults and bodies, and which rock masses they displace. Goes out: `Structures`: each part
+Input: shapes of faults and bodies, and which rock masses they displace. Output: `Structures`: each part
 by its sides, with the compartment of each rock mass and the bodies in it.
 """

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...base.algebra import dot, norm
 from ...base.work import native_module
-from .families import Within, box_of, middles_of_parts
+from .families import CompartmentTest, box_of, middles_of_parts
 
 _WIDTH = 1e-9  # of the extent of a sheet: narrower gaps are due to rounding
 _INSET = 1e-3  # of a part: its border may lie on another fault, which has no side there
@@ -18,7 +18,7 @@ _Planes = list[tuple[np.ndarray, np.ndarray]]
 
 
 def places_between(
-    one: np.ndarray, other: np.ndarray, beyond: np.ndarray, within: Within
+    one: np.ndarray, other: np.ndarray, beyond: np.ndarray, within: CompartmentTest
 ) -> tuple[np.ndarray, np.ndarray]:
     """Where triangles `beyond` (M, 3, 3) lie between two others with one plan, those of `one` and `other`
     (T, 3, 3), in a compartment: the number (K,) of the pair of each place, and places (K, 3), some in each
@@ -38,7 +38,7 @@ def places_between(
 
 
 def _places_in_parts(
-    one: np.ndarray, other: np.ndarray, crossing: np.ndarray, within: Within
+    one: np.ndarray, other: np.ndarray, crossing: np.ndarray, within: CompartmentTest
 ) -> tuple[np.ndarray, np.ndarray]:
     """As places_between has them, of one triangle (3, 3) of `crossing` (P, 3, 3) for each pair."""
     origin = one[:, 0]

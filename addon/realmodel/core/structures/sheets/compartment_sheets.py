@@ -59,7 +59,7 @@ class CompartmentSheets:
             self.made |= {family.key: self.surface.sheets(family) for family in unmade}
         return True
 
-    def tell(self, throws: Throws) -> None:
+    def add_throws(self, throws: Throws) -> None:
         """Tells of all its sheets, and of those that only wait for the older surface from which they are to
         keep a minimum thickness: without it."""
         for family in self.every:
@@ -72,7 +72,7 @@ class CompartmentSheets:
             for family in self.own:
                 if family.key not in self.waited:
                     self.waited.add(family.key)
-                    throws.tell(self.number, family, free.sheets(family), self._rank(family))
+                    throws.add(self.number, family, free.sheets(family), self._rank(family))
 
     def neighbors(self, family: Family, throws: Throws) -> list[SheetSource]:
         """From which families across one fault one without enough data may take its sheets now: those where
@@ -199,7 +199,7 @@ class CompartmentSheets:
 
     def _tell(self, family: Family, sheets: Sheets, throws: Throws) -> None:
         self.told.add(family.key)
-        throws.tell(self.number, family, sheets, self._rank(family))
+        throws.add(self.number, family, sheets, self._rank(family))
 
     def _rank(self, family: Family) -> int:
         if family.key in self.few:
@@ -255,7 +255,7 @@ def make_borrowed(
     while unfinished:
         made = [sheets for sheets in unfinished if sheets.make_own()]
         for sheets in unfinished:
-            sheets.tell(throws)
+            sheets.add_throws(throws)
         if not made:
             borrowable = [
                 (sheets, family, sheets.neighbors(family, throws))
@@ -272,7 +272,7 @@ def make_borrowed(
                     sheets.make_last(throws)
         for sheets in unfinished:
             if not sheets.waiting:
-                sheets.tell(throws)
+                sheets.add_throws(throws)
                 finish(sheets)
         unfinished = [sheets for sheets in unfinished if sheets.waiting]
 

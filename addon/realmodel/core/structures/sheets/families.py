@@ -122,7 +122,7 @@ _LEAST = 1e-12  # of a line: shorter parts are rounding
 
 
 @dataclass
-class Within:
+class CompartmentTest:
     """Whether points lie in the compartments of a family of surface `number` of a rock mass."""
 
     work: Work

@@ -35,7 +35,7 @@ from ...surfaces.surface_heights import (
 )
 from ...surfaces.wrong_sides import heights_at
 from .borrowed import as_at_fault, sheet_runs_away
-from .families import Family, Within, keys_of
+from .families import CompartmentTest, Family, keys_of
 from .few_points import are_few, of_residuals
 from .near_rows import near_rows
 from .points_at_faults import at_height, contradicting, placed_warning, point_sides, sided_dips
@@ -65,7 +65,7 @@ class InterpolatedSurface:
         self._leave_out_contradictions()
         self.steps = (structure.steps or {}).get(number)
         self._warn_of_no_throws()
-        self.counts = self._that_count()
+        self.counts = self._usable_points()
         self.keys = keys_of(entry.divided(), number, self.placed.sides)
         self.dips, self.dip_sides = sided_dips(work, self.known, entry)
         self.bounds = self.known.bounds
@@ -123,7 +123,7 @@ class InterpolatedSurface:
         warning = BuildWarning(text, "compartment", self.entry.rock.name, self.surface.name)
         structure.warnings.append((list(family.members), warning))
 
-    def _that_count(self) -> np.ndarray:
+    def _usable_points(self) -> np.ndarray:
         """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
         if METHODS[self.surface.method_options()[0]].on_mesh:
             nodes, triangles = self.entry.planar_mesh()
@@ -175,12 +175,12 @@ class InterpolatedSurface:
         count."""
         dips = self.dips
         if dips is not None:
-            dips = dips.some(self._that_constrain(family, dips.positions, self.dip_sides, beside))
+            dips = dips.some(self._constraining_sheets(family, dips.positions, self.dip_sides, beside))
         plan = np.ascontiguousarray(self.bounds.places[:, :2])
-        bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
+        bounds = self.bounds.some(self._constraining_sheets(family, plan, self.bound_sides, beside))
         return replace(self.known, dips=dips, bounds=bounds)
 
-    def _that_constrain(
+    def _constraining_sheets(
         self, family: Family, plan: np.ndarray, sides: np.ndarray, beside: Sequence[tuple]
     ) -> np.ndarray:
         constrains = self._within(family).has(sides)
@@ -427,7 +427,7 @@ class InterpolatedSurface:
         surfaces[self.number] = replace(surface, tie=surface.tie and not self.ties_at_end)
         every[self.number] = data
         below = [self.number - 1] if self.surface.minimum_thickness is not None else []
-        for other in {*below, *self._that_say_more()} - {self.number}:
+        for other in {*below, *self._supporting_surfaces()} - {self.number}:
             every[other] = self._with_own_points(family, other)
         shapes: list[Sheet | None] = [None] * len(surfaces)
         for other in needed_surfaces(entry.rock, self.number):
@@ -446,7 +446,7 @@ class InterpolatedSurface:
         give_heights(self.work, one, self.number, None if trend is None else self._trend(trend))
         return one
 
-    def _that_say_more(self) -> list[int]:
+    def _supporting_surfaces(self) -> list[int]:
         """The surfaces whose data count for it, itself included."""
         rock = self.entry.rock
         beside = sheets_beside(rock, self.number)
@@ -536,8 +536,8 @@ class InterpolatedSurface:
             return sheet.vertices[:, 2]
         return heights_at(self.work, sheet, nodes)
 
-    def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry.divided(), self.number, family)
+    def _within(self, family: Family) -> CompartmentTest:
+        return CompartmentTest(self.work, self.entry.divided(), self.number, family)
 
     @property
     def ties_at_end(self) -> bool:

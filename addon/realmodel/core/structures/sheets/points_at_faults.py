@@ -180,7 +180,7 @@ class _Agreement:
         least = _LEAST * float(np.ptp(self.points[:, 2]))
         asked = choice.possible & ~self.counts[choice.points, None]
         for number in np.flatnonzero(asked.any(axis=0)).tolist():
-            group = self._sorted.mean_heights(self._that_count(choice, number))
+            group = self._sorted.mean_heights(self._points_on_sides(choice, number))
             if len(group):
                 some = asked[:, number]
                 plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
@@ -193,7 +193,7 @@ class _Agreement:
                 tolerated[some, number] = np.abs(expected - planes[0]) + rise + least
         return off, tolerated
 
-    def _that_count(self, choice: _Choice, number: int) -> np.ndarray:
+    def _points_on_sides(self, choice: _Choice, number: int) -> np.ndarray:
         """(P,) bool: those that count, on these sides of the faults that matter."""
         counts = self.counts.copy()
         for fault in np.flatnonzero(choice.matters):

@@ -29,7 +29,7 @@ from ...surfaces.planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 from ...surfaces.rock_input import RockInput
 from ...surfaces.rock_structure import FaultShape, fault_sides
 from .between_sheets import common_lines
-from .families import Family, Within, around_tips, families
+from .families import CompartmentTest, Family, around_tips, families
 from .points_at_faults import distances
 from .throws import Sheets
 from .tips import (
@@ -412,8 +412,8 @@ class ReadyMesh:
         equal = with_equal_ends(self.work, plan, triangles, heights, ramps, self._within(family))
         return shared({sides: Sheet(np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
-    def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry.divided(), self.number, family)
+    def _within(self, family: Family) -> CompartmentTest:
+        return CompartmentTest(self.work, self.entry.divided(), self.number, family)
 
     def _continued(
         self,

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.mapped_arrays import StoreArray, as_it_is
+from ...base.mapped_arrays import StoreArray, unchanged
 from ...base.triangles import Sheet
 from ...base.work import Work
 from ...project.project import Rock
@@ -30,7 +30,7 @@ def make_sheets(
     work: Work,
     entry: RockInput,
     stage: int | None = None,
-    keep: StoreArray = as_it_is,
+    keep: StoreArray = unchanged,
     numbers: Collection[int] | None = None,
     with_levels: Callable[[Work, RockInput], RockStructure] = lambda _, entry: entry.divided(),
 ) -> None:
@@ -155,7 +155,7 @@ def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray)
             return (sides_of(work, places, structure.faults) == row).all(axis=1)
 
         warnings = points_too_low(work, one, [number])
-        if keep is as_it_is:
+        if keep is unchanged:
             of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
             warnings += doubtful_heights(work, one, [number], Compartment(of_sheet, holds))
         for warning in warnings:

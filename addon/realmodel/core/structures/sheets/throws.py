@@ -14,7 +14,7 @@ from ...base.triangles import Sheet, unit_normals
 from ...base.work import Work, native_module, on_threads
 from ...surfaces.rock_structure import FaultShape, RockStructure, fault_sides
 from ...surfaces.wrong_sides import PlacesOnSheet, heights_at
-from .families import Family, Within, box_of, parts_of_lines, walls_of
+from .families import CompartmentTest, Family, box_of, parts_of_lines, walls_of
 from .tips import crossed_edges, shared
 
 _LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
@@ -268,7 +268,7 @@ class Throws:
         self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
         self._places: dict[tuple[int, int], PlacesOnSheet] = {}  # of vertices of one surface on another one
 
-    def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
+    def add(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
         """The sheets of a surface in a family."""
         for compartment, sides in family.members.items():
             self.structure.sheets[compartment][number] = sheets[sides]
@@ -312,7 +312,7 @@ class Throws:
 
         So its thickness from one of these is that of the source; between two it is the share of theirs.
         """
-        within = Within(self.work, self.structure, number, source)
+        within = CompartmentTest(self.work, self.structure, number, source)
         pairs = [
             pair if pair[0] in family.members else pair[::-1] for pair in self._pairs(fault, source, family)
         ]
@@ -324,7 +324,9 @@ class Throws:
                 z = vertices[:, 2] + shift.at(vertices[:, :2])
                 if pairs:
                     here, across = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
-                    laid_on = self._laid(number, vertices, within(vertices), shift.surfaces, here, across)
+                    laid_on = self._projected(
+                        number, vertices, within(vertices), shift.surfaces, here, across
+                    )
                     z = np.where(np.isfinite(laid_on), laid_on, z)
                 laid[sides] = Sheet(np.column_stack([vertices[:, :2], z]), triangles)
         return shared(laid)
@@ -341,7 +343,7 @@ class Throws:
         """Whether a surface has sheets in two compartments."""
         return all(self.structure.sheets[compartment][number] is not None for compartment in pair)
 
-    def _laid(
+    def _projected(
         self,
         number: int,
         vertices: np.ndarray,
@@ -359,10 +361,10 @@ class Throws:
             for compartment in (across, here)
         )
         if len(from_here) == 1:
-            return from_here[0] + _tamed(z - from_there[0], is_known)
+            return from_here[0] + _clamped(z - from_there[0], is_known)
         thickness = from_there[1] - from_there[0]
         share = (z - from_there[0]) / np.where(thickness > 0, thickness, np.nan)
-        return from_here[0] + np.clip(_tamed(share, is_known), 0.0, 1.0) * (from_here[1] - from_here[0])
+        return from_here[0] + np.clip(_clamped(share, is_known), 0.0, 1.0) * (from_here[1] - from_here[0])
 
     def _pairs(self, fault: int, one: Family, other: Family) -> list[tuple[int, int]]:
         """Compartments of two families below and above a fault, and on one side of each other that is on both
@@ -432,7 +434,7 @@ class Throws:
         return 0.5
 
 
-def _tamed(values: np.ndarray, is_known: np.ndarray) -> np.ndarray:
+def _clamped(values: np.ndarray, is_known: np.ndarray) -> np.ndarray:
     """(V,) values, no farther beyond those that most have where they are known, (V,) bool, than these are
     apart: methods may run away beyond their points."""
     order = np.sort(values[is_known & np.isfinite(values)])

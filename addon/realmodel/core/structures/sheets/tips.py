@@ -31,7 +31,7 @@ from ...heights.mis_ties import mean_heights
 from ...settings.methods import METHODS
 from ...surfaces.rock_structure import FaultShape, fault_sides
 from .between_sheets import places_between
-from .families import Within, box_of, middles_of_parts, parts_of_lines
+from .families import CompartmentTest, box_of, middles_of_parts, parts_of_lines
 from .near_rows import SideRow, triangles_met, with_neighbors
 from .points_at_faults import expected_heights
 
@@ -205,7 +205,7 @@ def with_equal_ends(
     triangles: np.ndarray,
     heights: dict[SideRow, np.ndarray],
     ramps: Sequence[tuple[FaultShape, float]],
-    within: Within,
+    within: CompartmentTest,
 ) -> dict[SideRow, np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
     triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
@@ -277,7 +277,7 @@ class _Meeting(NamedTuple):
     triangles: np.ndarray
     faults: Sequence[FaultShape]
     beyond: Sequence[np.ndarray]
-    within: Within
+    within: CompartmentTest
 
 
 def _draw_where_passed(
@@ -492,7 +492,7 @@ def shared(sheets: dict[SideRow, Sheet]) -> dict[SideRow, Sheet]:
     return {sides: by_bytes.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
-def split_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) -> np.ndarray | None:
+def split_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: CompartmentTest) -> np.ndarray | None:
     """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
     on beyond its ends; None where there is none."""
     vertices, triangles = sheet
@@ -533,7 +533,7 @@ def _met_points(work: Work, fault: FaultShape, points: np.ndarray) -> np.ndarray
 
 
 def _lie_in(
-    work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: Within
+    work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: CompartmentTest
 ) -> np.ndarray:
     """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
     beyond its ends, in the triangles `beyond`."""
@@ -547,7 +547,7 @@ def _lie_in(
     return is_inside
 
 
-def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
+def _meet_within(corners: np.ndarray, others: np.ndarray, within: CompartmentTest) -> np.ndarray:
     """(K,) bool: the triangles (K, 3, 3) of which a part of the lines where they meet others (M, 3, 3) is in
     a compartment."""
     pairs = native_module().meeting_boxes(corners, others)

@@ -19,7 +19,7 @@ from .surface_data import Sources, SurfaceData
 
 
 @dataclass(frozen=True)
-class Situation:
+class PlaceContext:
     """Where the places of observations (N) lie, as far as it is known.
 
     covered: (N, S) bool, over or under which surfaces of the rock mass. sides: (N, F) int8, of the faults
@@ -80,9 +80,9 @@ class BlockNumbers:
         return numbers[row.ravel()] if len(numbers) else np.empty(0, np.int64)
 
 
-def derive(rock: Rock, observations: Observations, situation: Situation | None = None) -> Derived:
+def derive(rock: Rock, observations: Observations, situation: PlaceContext | None = None) -> Derived:
     """Contacts and bounds of the surfaces of a rock mass from observations of its blocks."""
-    situation = situation or Situation()
+    situation = situation or PlaceContext()
     blocks = BlockNumbers(rock, situation.bodies).of(observations.blocks)
     left_out = _Listed(observations)
     left_out.add(~observations.in_use, SWITCHED_OFF, "it is switched off")
@@ -145,7 +145,7 @@ class _Listed:
             before = row
 
 
-def _sides(situation: Situation, count: int) -> np.ndarray:
+def _sides(situation: PlaceContext, count: int) -> np.ndarray:
     return np.zeros((count, 0), np.int8) if situation.sides is None else situation.sides
 
 
@@ -157,7 +157,9 @@ def _numbered(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return first, number.ravel()
 
 
-def _without_surface(rock: Rock, situation: Situation, blocks: np.ndarray, left_out: _Listed) -> np.ndarray:
+def _without_surface(
+    rock: Rock, situation: PlaceContext, blocks: np.ndarray, left_out: _Listed
+) -> np.ndarray:
     """(N,) bool: where the surface over the block does not exist."""
     missing = np.zeros(len(blocks), bool)
     if situation.covered is not None:
@@ -170,7 +172,7 @@ def _without_surface(rock: Rock, situation: Situation, blocks: np.ndarray, left_
     return missing
 
 
-def _against_bodies(rock: Rock, situation: Situation, blocks: np.ndarray, left_out: _Listed) -> np.ndarray:
+def _against_bodies(rock: Rock, situation: PlaceContext, blocks: np.ndarray, left_out: _Listed) -> np.ndarray:
     """(N,) bool: places in a body that are observed to be in something else, and the other way round. A void
     says nothing against a block: rock is seen before it is dug, and what fills it later."""
     against = np.zeros(len(blocks), bool)
@@ -193,7 +195,7 @@ def _against_bodies(rock: Rock, situation: Situation, blocks: np.ndarray, left_o
 def _of_used(
     rock: Rock,
     observations: Observations,
-    situation: Situation,
+    situation: PlaceContext,
     blocks: np.ndarray,
     used: np.ndarray,
 ) -> tuple[tuple[list[np.ndarray], list[Sources], list[np.ndarray], list[Bounds]], np.ndarray]:
@@ -257,7 +259,7 @@ def _sources_at(place: np.ndarray, on: np.ndarray, holes: np.ndarray, depths: np
 
 
 def _statements(
-    rock: Rock, situation: Situation, blocks: np.ndarray, used: np.ndarray
+    rock: Rock, situation: PlaceContext, blocks: np.ndarray, used: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(U, S) bool twice: which surfaces lie at or above, and at or below, the places that are used."""
     count = len(rock.surfaces)
@@ -286,13 +288,13 @@ def _statements(
                 fills = situation.inside[used, body] & (blocks[used] > dug) & (blocks[used] < count)
                 below[fills, : dug + 1] = False
     if situation.across is not None:
-        twice = _said_before(situation, used)
+        twice = _repeats_previous_place(situation, used)
         above &= ~twice
         below &= ~twice
     return above, below
 
 
-def _said_before(situation: Situation, used: np.ndarray) -> np.ndarray:
+def _repeats_previous_place(situation: PlaceContext, used: np.ndarray) -> np.ndarray:
     """(U, S) bool: of places that are used, the surfaces for which each is the one before, as no fault that
     lies between the two displaces them."""
     assert situation.across is not None and situation.sides is not None and situation.displaced is not None
@@ -349,7 +351,7 @@ def with_contacts(rock: Rock, data: Sequence[SurfaceData], derived: Derived) -> 
         if surface.has_points:
             contacts = derived.contacts[number]
             is_alone = not (len(contacts) or surface_data.contacts_from or rock.is_level_set(surface))
-            if is_along_bounds := is_alone and surface.needs_points and len(bounds) > 0:
+            if has_only_bound_points := is_alone and surface.needs_points and len(bounds) > 0:
                 contacts = along_bounds(bounds)
             points = np.concatenate([surface_data.own, contacts]) if len(contacts) else surface_data.own
             surface_data = replace(
@@ -361,7 +363,7 @@ def with_contacts(rock: Rock, data: Sequence[SurfaceData], derived: Derived) -> 
                     for row, origins in derived.sources[number].items()
                 },
                 error=float(np.sum(derived.errors[number] ** 2)) / max(len(points), 1),
-                is_along_bounds=is_along_bounds,
+                has_only_bound_points=has_only_bound_points,
             )
         all_data.append(surface_data)
     return all_data
@@ -381,7 +383,7 @@ def without_contradictions(
         bounds = surface_data.bounds
         if (
             not (len(bounds) and len(surface_data.points))
-            or surface_data.is_along_bounds
+            or surface_data.has_only_bound_points
             or not rock.is_interpolated(surface)
         ):
             continue

@@ -20,10 +20,11 @@ MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh n
 class SurfaceData:
     """points: (P, 3) float64, model units, that a surface goes through: its own and picks in the order of
     their coordinates, then the contacts that follow from observations. contacts_from: how many are no such
-    contacts. sources: of picks and contacts. bounds: heights that it lies at or above, or at or below. dips:
-    all that count for it, those of the surface first. error: the mean variance of the errors of the heights
-    of its points. is_along_bounds: no contact is known of it, and its points are places on its bounds. rows:
-    (contacts_from,) int64, the numbers that points had in their file or array, for messages; None: these."""
+    contacts. sources: of picks and contacts. bounds: heights that it lies at or above, or at or below.
+    dips: all that count for it, those of the surface first. error: the mean variance of the errors of the
+    heights of its points. has_only_bound_points: no contact is known of it, and its points are places on
+    its bounds. rows: (contacts_from,) int64, the numbers that points had in their file or array, for
+    messages; None: these."""
 
     points: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
     contacts_from: int = 0
@@ -31,7 +32,7 @@ class SurfaceData:
     bounds: Bounds = field(default_factory=lambda: Bounds.at_or_above(np.empty((0, 3))))
     dips: Dips | None = None
     error: float = 0.0
-    is_along_bounds: bool = False
+    has_only_bound_points: bool = False
     rows: np.ndarray | None = None
 
     @property
@@ -45,9 +46,9 @@ class SurfaceData:
         return self.points[self.contacts_from :]
 
     @property
-    def known_points(self) -> np.ndarray:
+    def measured_points(self) -> np.ndarray:
         """(P, 3) the points that are known to be on the surface: not places on its bounds."""
-        return self.points[:0] if self.is_along_bounds else self.points
+        return self.points[:0] if self.has_only_bound_points else self.points
 
     def tied_points(self, surface: Surface) -> np.ndarray:
         """(C, 3) the points that a surface which ties passes through: all, but none of a grid or of so many
