@@ -324,7 +324,7 @@ class Origin(Imported):
     def test_a_model_far_from_it_gets_another(self):
         self.built_far_away()
         self.assertEqual(tuple(self.scene["realmodel_origin"]), (EAST + 200, NORTH + 200, 0.0))
-        self.assertIn("another origin", self.model.warnings)
+        self.assertIn("its origin was moved", self.model.warnings)
         item = bpy.data.objects["base block"]
         self.assertLess(max(abs(v) for corner in item.bound_box for v in corner), 500.0)
         ops.build()

@@ -144,6 +144,6 @@ class OutOfDate(PanelCase):
         self.built()
         self.model.rocks[0].surfaces[1].rule = "conformable"
         self.save_and_open()
-        with mock.patch.object(replacing, "nobody_waits", return_value=False):
+        with mock.patch.object(replacing, "must_finish_now", return_value=False):
             bpy.context.scene.realmodel.display = "POLYHEDRA"
         self.assertIn("out of date, and not in memory", bpy.context.scene.realmodel.view.message)

@@ -290,7 +290,7 @@ class Series(PanelCase):
         with self.assertRaises(InputRefused):
             surface_dips.of_row(row)
         self.refused(ops.build, "series 'folded beds': the data stored in the .blend file are damaged")
-        self.assertIn("cannot be read", " ".join(draw_tab(bpy.context).labels))
+        self.assertIn("are damaged", " ".join(draw_tab(bpy.context).labels))
 
 
 class FieldData(PanelCase):

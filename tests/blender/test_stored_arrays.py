@@ -99,11 +99,11 @@ class Arrays(PanelCase):
             part = self.rock["map"]["arrays"]["whole"].to_dict() | damage
             del self.rock["map"]["arrays"]["whole"]
             self.rock["map"]["arrays"]["whole"] = part if damage else {}
-            with self.assertRaisesRegex(InputRefused, "cannot be read"):
+            with self.assertRaisesRegex(InputRefused, "data stored in the .blend file are damaged"):
                 self.rock.map["whole"]
         del self.rock["map"]
         self.rock["map"] = "UEsDBA=="  # as version 6 had it, and damaged
-        with self.assertRaisesRegex(InputRefused, "cannot be read"):
+        with self.assertRaisesRegex(InputRefused, "data stored in the .blend file are damaged"):
             map_settings.of_rock(self.rock)
         self.assertEqual(self.rock.map.digest, "damaged")
 
@@ -231,5 +231,5 @@ class OfVersion6(PanelCase):
         for place in (coordinates.zero(self.scene), self.model.misfits[0].place["values"]):
             self.assertEqual(place.tolist(), collar)
         self.assertFalse(top.stored_mesh)
-        with self.assertRaisesRegex(InputRefused, "cannot be read"):
+        with self.assertRaisesRegex(InputRefused, "data stored in the .blend file are damaged"):
             surface_dips.of_row(top)  # it was damaged

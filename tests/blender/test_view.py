@@ -299,7 +299,7 @@ class WithAWindow(Stages):
 
     def setUp(self):
         super().setUp()
-        self.enterContext(mock.patch.object(replacing, "nobody_waits", lambda: False))
+        self.enterContext(mock.patch.object(replacing, "must_finish_now", lambda: False))
 
     def assert_shows(self, model):
         self.all_is_made()

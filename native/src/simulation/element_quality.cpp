@@ -325,7 +325,7 @@ ElementQuality::SkewedFaces ElementQuality::skewed(bool divided) const {
 }
 
 /// The elements divided by the diagonals at the lower ends of their sides with the lesser node (as
-/// divided() of addon/realmodel/core/simulation/tetrahedra.py): the corner with the greatest node
+/// divided() of addon/realmodel/core/simulation/elements.py): the corner with the greatest node
 /// moves first. `whole`: the element that each is a part of.
 ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
     ColumnFronts made;

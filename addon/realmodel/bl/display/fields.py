@@ -66,7 +66,8 @@ def key(scene):
     if not high > low:
         return None
     names = json.loads(scene.realmodel.view.field_surfaces or "[]")
-    surfaces = tuple((name, value) for name, value in names if low <= value <= high)
+    # Limits are 32-bit numbers: a surface at the end of the range is within them as such a number.
+    surfaces = tuple((name, value) for name, value in names if low <= np.float32(value) <= high)
     return ColorKey(f"Field of {shown_series(scene)}", limits=(low, high), colors=_colors(), names=surfaces)
 
 
