@@ -146,21 +146,6 @@ void search_first(const Search& search, std::span<const Vec3> normals, Anisotrop
     Search::improve(best, search.best(tried, rest), kWorth);
 }
 
-/// The best near one: smaller and smaller steps as long as they pay.
-/// @param near  those around one, turned and stretched by so much
-template <class Near>
-AnisotropyCandidate climbed(const Search& search, AnisotropyCandidate candidate, double degrees,
-                            double factor, const Near& near) {
-    for (const double last = degrees / 10; degrees > last;) {
-        const double before = candidate.likelihood;
-        Search::improve(candidate, search.best(near(candidate.what, degrees, factor)), 0);
-        if (candidate.likelihood > before) continue;
-        degrees /= 2;
-        factor = std::sqrt(factor);
-    }
-    return candidate;
-}
-
 void search_second(const Search& search, AnisotropyCandidate& best) {
     const Likely rest = best.what;
     std::vector<AxisRatios> tried;
@@ -169,18 +154,20 @@ void search_second(const Search& search, AnisotropyCandidate& best) {
         for (const double ratio : {0.6, 0.3})
             tried.push_back(turned(first, degrees, ratio));
     }
-    const AnisotropyCandidate candidate =
-        climbed(search, search.best(tried, rest), 12, 0.6,
-                [](const Likely& of, double step, double factor) {
-                    const AxisRatios& at = of.anisotropy;
-                    const double ratio = at.ratios[1];
-                    std::vector<Likely> out(4, of);
-                    out[0].anisotropy = turned(at, step, ratio);
-                    out[1].anisotropy = turned(at, -step, ratio);
-                    out[2].anisotropy = turned(at, 0, std::max(kLeastRatio, ratio * factor));
-                    out[3].anisotropy = turned(at, 0, std::min(1.0, ratio / factor));
-                    return out;
-                });
+    AnisotropyCandidate candidate = search.best(tried, rest);
+    double step = 12, factor = 0.6;
+    for (int round = 0; round < 8; ++round) {
+        const AxisRatios at = candidate.what.anisotropy;
+        const double ratio = at.ratios[1];
+        tried = {turned(at, step, ratio), turned(at, -step, ratio),
+                 turned(at, 0, std::max(kLeastRatio, ratio * factor)),
+                 turned(at, 0, std::min(1.0, ratio / factor))};
+        const double before = candidate.likelihood;
+        Search::improve(candidate, search.best(tried, rest), 0);
+        if (candidate.likelihood > before) continue;
+        step /= 2;
+        factor = std::sqrt(factor);
+    }
     Search::improve(best, candidate, kWorth);
 }
 
@@ -223,9 +210,16 @@ AxisRatios sorted(const AxisRatios& of) {
     return out;
 }
 
-/// The best near one, along any directions.
-AnisotropyCandidate climbed(const Search& search, const AnisotropyCandidate& from) {
-    AnisotropyCandidate candidate = climbed(search, from, 20, 0.5, near);
+/// The best near one: smaller and smaller steps as long as they pay.
+AnisotropyCandidate climbed(const Search& search, AnisotropyCandidate candidate) {
+    double step = 20, factor = 0.5;
+    while (step > 2) {
+        const double before = candidate.likelihood;
+        Search::improve(candidate, search.best(near(candidate.what, step, factor)), 0);
+        if (candidate.likelihood > before) continue;
+        step /= 2;
+        factor = std::sqrt(factor);
+    }
     candidate.what.anisotropy = sorted(candidate.what.anisotropy);
     return candidate;
 }

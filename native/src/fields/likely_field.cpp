@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/algorithms.hpp"
-#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "fields/frame_function.hpp"
 #include "fields/known_data.hpp"
@@ -108,23 +107,28 @@ std::size_t connected_components(std::span<const std::int64_t> nodes, const Latt
     const double most = std::ranges::max(anisotropy.ratios);
     for (Vec3& row : map)
         row = times(1 / most, row);
+    std::vector<Vec3> left;  // in no component yet
     const auto nx = lattice.counts[0], ny = lattice.counts[1];
-    const std::vector<Vec3> at = transformed(nodes, [&](std::int64_t n) {
+    for (const std::int64_t n : nodes) {
         const auto node = static_cast<int>(n);
-        return mapped(map, lattice.position(node % nx, node / nx % ny, node / nx / ny));
-    });
+        left.push_back(mapped(map, lattice.position(node % nx, node / nx % ny, node / nx / ny)));
+    }
     const double next = (1 + 1e-9) * length(lattice.spacing);
-    const auto size = static_cast<std::int32_t>(at.size());
-    DisjointSets components(at.size());
-    for (std::int32_t i = 0; i < size; ++i) {
-        for (std::int32_t j = 0; j < i; ++j) {
-            if (length(minus(at[i], at[j])) <= next) components.join(i, j);
+    std::size_t components = 0;
+    for (; !left.empty(); ++components) {
+        std::vector<Vec3> reached{left.back()};
+        left.pop_back();
+        while (!reached.empty()) {
+            const Vec3 from = reached.back();
+            reached.pop_back();
+            const auto near = std::partition(left.begin(), left.end(), [&](const Vec3& at) {
+                return length(minus(at, from)) > next;
+            });
+            reached.insert(reached.end(), near, left.end());
+            left.erase(near, left.end());
         }
     }
-    std::size_t count = 0;
-    for (std::int32_t i = 0; i < size; ++i)
-        count += components.find(i) == i ? 1 : 0;
-    return count;
+    return components;
 }
 
 /// Whether a field hardly changes but along one axis: where it turns back, critical points fill a

@@ -7,8 +7,6 @@
 #include <cassert>
 #include <map>
 
-#include "interpolation/variogram/likelihood.hpp"
-
 namespace realmodel::fields {
 
 namespace {
@@ -107,12 +105,15 @@ std::optional<double> Spline::log_likelihood(double error) const {
         if (factor_->left_out(i)) return std::nullopt;
         scales += elementary::log(scales_(i));
     }
+    const auto free = static_cast<double>(n - 3);
     if (!(scale() > 0) || (error > 0 && !(smoothness_.errors.value > 0))) return std::nullopt;
-    interpolation::LikelihoodTerms terms{
-        scales - 0.5 * (factor_->log_determinant() + coordinates_log_determinant_), energy(),
-        known_.size() - 3};
-    if (error > 0) terms.least_sill = error * error / smoothness_.errors.value;
-    return terms.logarithm();
+    double largest = scale(), beyond = 0;
+    if (error > 0 && error * error > smoothness_.errors.value * largest) {
+        largest = error * error / smoothness_.errors.value;
+        beyond = energy() / largest - free;
+    }
+    return -0.5 * (free * elementary::log(largest) + beyond + factor_->log_determinant() -
+                   2 * scales + coordinates_log_determinant_);
 }
 
 double Spline::energy() const {

@@ -140,24 +140,24 @@ Eigen::MatrixXd Likelihood::drift_of(const LinearData& data) const {
     return drift;
 }
 
-double LikelihoodTerms::sill() const {
+double Likelihood::LikelihoodTerms::sill() const {
     return std::max(squares / static_cast<double>(free), least_sill);
 }
 
-double LikelihoodTerms::logarithm() const {
+double Likelihood::LikelihoodTerms::logarithm() const {
     const auto count = static_cast<double>(free);
     const bool is_likeliest = sill() == squares / count;
     const double beyond = is_likeliest ? 0 : squares / sill() - count;
     return density - 0.5 * (count * elementary::log(sill()) + beyond);
 }
 
-void LikelihoodTerms::add(const LikelihoodTerms& other) {
+void Likelihood::LikelihoodTerms::add(const LikelihoodTerms& other) {
     density += other.density;
     squares += other.squares;
     free += other.free;
 }
 
-std::optional<LikelihoodTerms> Likelihood::of(const CovarianceModel& shape) const {
+std::optional<Likelihood::LikelihoodTerms> Likelihood::of(const CovarianceModel& shape) const {
     const Variogram& field = shape.variogram;
     Sheets sheets{
         points_.sheets, of_dips_, {}, {field.model, field.range, 1, 0, field.anisotropy, {}}};
@@ -206,7 +206,7 @@ std::optional<LikelihoodTerms> Likelihood::of(const CovarianceModel& shape) cons
         const double scale = data.is_point(i) ? 1 : data.difference(i).scale * baseline;
         sum += elementary::log(scale / data.unit(data.sheet(i)));
     }
-    LikelihoodTerms likelihood{sum, values.tail(count - terms).squaredNorm(), free_};
+    LikelihoodTerms likelihood{sum, values.tail(count - terms).squaredNorm(), free_, {}, 0};
     if (!std::isfinite(likelihood.squares)) return std::nullopt;
     for (const std::int32_t column : column_of_)
         likelihood.constants.push_back(column < 0 ? 0 : coefficients(column));

@@ -21,22 +21,6 @@
 
 namespace realmodel::interpolation {
 
-/// Of a random function of which data are known: how likely they are, for any sill of its.
-struct LikelihoodTerms {
-    double density;                   ///< its logarithm with the sill 1, but for the squares
-    double squares;                   ///< of what shape and drift do not explain
-    std::size_t free;                 ///< data less the terms of the drift
-    std::vector<double> constants{};  ///< of each sheet, above the first point; 0 without points
-    double least_sill = 0;            ///< no sill below it is possible
-
-    /// With which the data are most likely.
-    double sill() const;
-    /// How likely they are with this sill.
-    double logarithm() const;
-    /// Of data that do not depend on these, with the same sill.
-    void add(const LikelihoodTerms& other);
-};
-
 /// How likely heights and slopes together are with a variogram: restricted maximum likelihood,
 /// which knows nothing of the drift (Kitanidis 1983, "Statistical estimation of polynomial
 /// generalized covariance functions", Water Resources Research 19; Chiles and Delfiner 2012,
@@ -64,6 +48,20 @@ public:
     struct CovarianceModel {
         Variogram variogram;   ///< with the sill 1, of which the nugget is a share
         double thickness = 0;  ///< the variance of each thickness between sheets
+    };
+    struct LikelihoodTerms {
+        double density;                 ///< its logarithm with the sill 1, but for the squares
+        double squares;                 ///< of what shape and drift do not explain
+        std::size_t free;               ///< as of free()
+        std::vector<double> constants;  ///< of each sheet, above the first point; 0 without points
+        double least_sill = 0;          ///< no sill below it is possible
+
+        /// With which the data are most likely.
+        double sill() const;
+        /// How likely they are with this sill.
+        double logarithm() const;
+        /// Of data that do not depend on these, with the same sill.
+        void add(const LikelihoodTerms& other);
     };
     /// @return none where the data are one another's consequences with it, up to rounding
     std::optional<LikelihoodTerms> of(const CovarianceModel& shape) const;

@@ -85,7 +85,7 @@ public:
     /// Whether a shape is more likely than the best by more than so much; then it is the best.
     bool attempt(const CovarianceModel& shape, double gain = 0) {
         if (progress_ != nullptr) progress_->check();
-        const std::optional<LikelihoodTerms> terms = together(shape);
+        const std::optional<Likelihood::LikelihoodTerms> terms = together(shape);
         if (!terms || (best_ && !(terms->logarithm() > best_->logarithm() + gain))) return false;
         best_ = terms;
         shape_ = shape;
@@ -224,7 +224,7 @@ public:
 
     /// Of some of the data alone, with the shape that was found for all.
     double sill_of(const Likelihood& likelihood) const {
-        std::optional<LikelihoodTerms> terms =
+        std::optional<Likelihood::LikelihoodTerms> terms =
             likelihood.free() < kFewestFree ? std::nullopt : likelihood.of(shape_);
         if (!terms || !(terms->squares > 0)) return best_->sill();
         terms->least_sill = best_->least_sill;
@@ -260,10 +260,10 @@ public:
     }
 
 private:
-    std::optional<LikelihoodTerms> together(const CovarianceModel& shape) const {
-        std::optional<LikelihoodTerms> all;
+    std::optional<Likelihood::LikelihoodTerms> together(const CovarianceModel& shape) const {
+        std::optional<Likelihood::LikelihoodTerms> all;
         for (const Likelihood& likelihood : likelihoods_) {
-            std::optional<LikelihoodTerms> terms = likelihood.of(shape);
+            std::optional<Likelihood::LikelihoodTerms> terms = likelihood.of(shape);
             if (!terms) return std::nullopt;
             if (all) {
                 all->add(*terms);
@@ -320,7 +320,7 @@ private:
     bool has_sheets_;
     double diagonal_ = 0;   // the longest of the parts
     std::size_t free_ = 0;  // of all of them
-    std::optional<LikelihoodTerms> best_;
+    std::optional<Likelihood::LikelihoodTerms> best_;
     CovarianceModel shape_;
     double thickness_ = 0;  // of sheets, from which a search begins
 };
@@ -372,7 +372,7 @@ std::vector<LikelyVariogram> likely_variograms(std::span<const std::array<double
             const double range = likelihood.diagonal() * between(kShortest, kLongest, k, kRanges);
             for (const double nugget : kLikelyNuggets) {
                 const Variogram shape{model, range, 1, nugget, anisotropy, {}};
-                const std::optional<LikelihoodTerms> terms = likelihood.of({shape});
+                const std::optional<Likelihood::LikelihoodTerms> terms = likelihood.of({shape});
                 if (!terms || !(terms->squares > 0)) continue;
                 const double free = static_cast<double>(terms->free);
                 const double density = terms->density - free / 2 * elementary::log(terms->squares);
