@@ -17,7 +17,6 @@ OTHER = {
     "drawing",
     "exporters",
     "plots.py",
-    "proof/random_points.py",
     "results/samples.py",
     "results/sections/section_drawing.py",
     "simulation",

@@ -258,7 +258,7 @@ def test_a_surface_that_no_hole_met(write):
     files = Boreholes(write("p.csv", PICKS), write("c.csv", COLLARS))
     square = [[0, 0], [4, 0], [4, 4], [0, 4]]
     rock = Rock("r", [Surface("silt")], square, edge_length=1.0, base_elevation=0.0, boreholes=files)
-    with pytest.raises(InputRefused, match="surface 'silt': it has no points, and no borehole"):
+    with pytest.raises(InputRefused, match="surface 'silt': no points, boreholes or observations constrain"):
         build(Project("x", [rock]))
     rock.boreholes = None
     with pytest.raises(InputRefused, match="neither points nor a mesh"):

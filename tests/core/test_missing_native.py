@@ -108,9 +108,9 @@ def test_the_zip_of_extensions_as_an_add_on_names_the_other_one(tmp_path):
     (addon / "_native.py").write_text(re.search(r'NATIVE_OF_WHEEL = b"""\\\n(.*?)"""', text, re.DOTALL)[1])
     program = (
         "import sys, pathlib, realmodel\n"
-        "from realmodel.core.base import missing_native, work\n"
-        "missing_native.PACKAGE = pathlib.Path(realmodel.__file__).parent\n"  # and not where the link leads
-        "missing_native.explanation.__defaults__ = (missing_native.PACKAGE,)\n"
+        "from realmodel.core.base import packages, work\n"
+        "packages.PACKAGE = pathlib.Path(realmodel.__file__).parent\n"  # and not where the link leads
+        "packages.explanation.__defaults__ = (packages.PACKAGE,)\n"
         "for use in (work.native_module, realmodel.register):\n"
         "    try:\n"
         "        use()\n"

@@ -225,10 +225,8 @@ def test_logged_intervals_of_objects_are_those_of_a_table(write, tmp_path, endin
     again = model(Boreholes(intervals=file))
     assert len(again.blocks) == 3
     assert set(again.project.rocks[0].hole_picks) == {"A", "B", "C"}
-    tops = {surface.name: surface.points for surface in again.project.rocks[0].surfaces}
-    wanted = {surface.name: surface.points for surface in first.project.rocks[0].surfaces}
-    for name in ("R", "C"):
-        assert np.allclose(np.sort(tops[name], axis=0), np.sort(wanted[name], axis=0), atol=1e-6)
+    for tops, wanted in zip(again.rock_inputs[0].data, first.rock_inputs[0].data, strict=True):
+        assert np.allclose(np.sort(tops.points, axis=0), np.sort(wanted.points, axis=0), atol=1e-6)
 
 
 def test_points_that_name_their_hole_are_picks(model, tmp_path):

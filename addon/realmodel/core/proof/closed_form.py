@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.algebra import norm
 from ..base.errors import UsageError, place_text
 from ..base.named import keyword_only
 from ..base.triangles import Sheet
@@ -300,7 +301,7 @@ def _points(model: ModelData, places: int, random: np.random.Generator) -> np.nd
     for shape in shapes:
         rows = random.integers(0, len(shape), -(-third // len(shapes)))
         near = np.concatenate([near, _in_triangles(shape[rows], random)])
-    away = 10.0 ** random.uniform(-6, -1, (len(beside) + len(near), 1)) * np.linalg.norm(high - low)
+    away = 10.0 ** random.uniform(-6, -1, (len(beside) + len(near), 1)) * norm(high - low)
     direction = random.normal(size=(len(away), 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
     return np.concatenate([spread, np.concatenate([beside, near]) + away * direction])
@@ -369,7 +370,7 @@ def _width(model: ModelData, face: int) -> float:
     """The mean width of a face: its area by its longest extent."""
     corners = model.vertices[model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]]
     apart = corners - corners[0]
-    area = np.linalg.norm(np.cross(apart[1:-1], apart[2:]).sum(axis=0)) / 2
+    area = norm(np.cross(apart[1:-1], apart[2:]).sum(axis=0)) / 2
     return float(area / np.linalg.norm(apart, axis=1).max())
 
 
