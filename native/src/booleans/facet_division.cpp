@@ -11,11 +11,13 @@
 #include "arrangement/polygons.hpp"
 #include "base/parallel.hpp"
 #include "exact/space_points.hpp"
-#include "meshing/constrained_delaunay.hpp"
+#include "meshing/flat_mesh.hpp"
 
 namespace realmodel::booleans {
 
 namespace {
+
+using meshing::HalfEdge;
 
 /// Triangles of a polygon of any shape: a fan from its least corner. Those without extent are left
 /// out.
@@ -29,200 +31,319 @@ void add_fan(const std::vector<SpacePointId>& loop, std::vector<TriangleCorners>
     }
 }
 
-/// The places of a facet's points in a view along an axis, as CGAL's triangulation asks for them:
-/// which way they turn is decided exactly; whether an edge is Delaunay by the angles in space, and
-/// where that is a tie by numbers. So triangles near one another that have the same points get the
-/// same edges, along whichever axis they are seen.
-class PlacesInView {
+/// A triangulation of one triangle, in which points are where they would be if they lay on it. Its
+/// point numbers are its own; its fixed edges stay.
+class FacetDivision {
 public:
-    using Point_2 = SpacePointId;
-    using Segment_2 = SpaceEdge;
-    using Triangle_2 = TriangleCorners;
-    struct ByCoordinate {
-        const PlacesInView* view;
-        std::size_t axis;
-        CGAL::Comparison_result operator()(Point_2 a, Point_2 b) const {
-            return CGAL::enum_cast<CGAL::Comparison_result>(
-                exact::compare(view->places_, axis, a, b));
-        }
-    };
-    struct ByTurn {
-        const PlacesInView* view;
-        CGAL::Orientation operator()(Point_2 a, Point_2 b, Point_2 c) const {
-            return CGAL::enum_cast<CGAL::Orientation>(view->turn(a, b, c));
-        }
-    };
-    struct ByAngles {
-        const PlacesInView* view;
-        CGAL::Oriented_side operator()(Point_2 a, Point_2 b, Point_2 c, Point_2 d) const {
-            return view->should_flip({a, b, c}, d) ? CGAL::ON_POSITIVE_SIDE
-                                                   : CGAL::ON_NEGATIVE_SIDE;
-        }
-    };
-    struct Copy {
-        const Point_2& operator()(const Point_2& p) const { return p; }
-    };
-    using Compare_x_2 = ByCoordinate;
-    using Compare_y_2 = ByCoordinate;
-    using Orientation_2 = ByTurn;
-    using Side_of_oriented_circle_2 = ByAngles;
-    using Construct_point_2 = Copy;
+    FacetDivision(const SpacePoints& points, const FacetPoints& facet, Progress* progress)
+        : global_(points), progress_(progress) {
+        TriangleCorners local;
+        for (std::size_t k = 0; k < 3; ++k)
+            local[k] = enter(places_.add(points.rounded(facet.corners[k])), facet.corners[k]);
+        find_best_axis(facet.corners);
+        if (facing_ == 0) return;
+        note_corners(mesh_.add_triangle({local[0].number(), local[1].number(), local[2].number()}));
+        for (std::size_t k = 0; k < 3; ++k)
+            divide_edge(local[k], local[(k + 1) % 3], facet.on_edges[k]);
+        for (const SpacePointId p : facet.within)
+            insert(p, local);
+        for (const SpaceEdge& edge : facet.wanted)
+            insert_edge(edge);
+        improve();
+        assert(is_triangulation(facet));
+    }
 
-    /// @param names  of places: the points that lie there
-    /// @param tests_left  so many edges are tested still: rounded angles might ask for flips
-    ///                    without end
-    PlacesInView(const SpacePoints& points, const SpacePoints& places,
-                 const std::vector<SpacePointId>& names, const TriangleCorners& corners,
-                 std::size_t& tests_left)
-        : points_(points), places_(places), names_(names), tests_left_(tests_left) {
-        // the view in which the triangle is largest, of those in which it has an area
-        const auto position = [&](std::size_t k) -> const Vec3& {
-            return places.rounded(corners[k]);
-        };
-        const Vec3 normal = triangle_normal(position(0), position(1), position(2));
+    bool has_area() const { return facing_ != 0; }
+    std::vector<TriangleCorners> result() const {
+        std::vector<TriangleCorners> triangles;
+        for (const auto& [a, b, c] : mesh_.corners)
+            triangles.push_back(
+                {name(SpacePointId(a)), name(SpacePointId(b)), name(SpacePointId(c))});
+        return triangles;
+    }
+
+private:
+    /// Whether neighbors know each other, and triangles are as many as points on edges and two for
+    /// each within, and one.
+    bool is_triangulation(const FacetPoints& facet) const {
+        std::size_t outer = 0, points = 0;
+        bool agrees = true;
+        mesh_.for_each_edge([&](HalfEdge edge) {
+            const HalfEdge other = mesh_.twin(edge);
+            if (other.is_none()) {
+                ++outer;
+            } else {
+                agrees = agrees && mesh_.twin(other) == edge && from(edge) == to(other) &&
+                         to(edge) == from(other);
+            }
+        });
+        for (const SpacePointId p : names_)
+            points += p.has_value() ? 1 : 0;
+        return agrees &&
+               outer <= 3 + facet.on_edges[0].size() + facet.on_edges[1].size() +
+                            facet.on_edges[2].size() &&
+               mesh_.corners.size() == 2 * points - outer - 2;
+    }
+
+    /// The view along the axis in which the triangle is largest, among those in which it has an
+    /// area, if there are any.
+    void find_best_axis(const TriangleCorners& corners) {
         double largest = -1;
+        const Vec3 normal = triangle_normal(
+            global_.rounded(corners[0]), global_.rounded(corners[1]), global_.rounded(corners[2]));
+        const TriangleCorners local{SpacePointId(0), SpacePointId(1), SpacePointId(2)};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (std::abs(normal[axis]) <= largest) continue;
-            const int turn = exact::orient2d(places, axis, corners[0], corners[1], corners[2]);
+            const double area = std::abs(normal[axis]);
+            if (area <= largest) continue;
+            const int turn = exact::orient2d(places_, axis, local[0], local[1], local[2]);
             if (turn == 0) continue;
-            largest = std::abs(normal[axis]);
+            largest = area;
             axis_ = axis;
             facing_ = turn;
         }
     }
-
-    bool has_area() const { return facing_ != 0; }
-    std::size_t axis() const { return axis_; }
+    /// Notes which point a place is of. kNone where it is another's.
+    SpacePointId enter(SpacePointId place, SpacePointId p) {
+        names_.resize(std::max(names_.size(), index(place) + 1), kNone);
+        SpacePointId& known = names_[index(place)];
+        if (known.has_value() && known != p) return kNone;
+        known = p;
+        by_name_.emplace(p, place);
+        return place;
+    }
+    SpacePointId name(SpacePointId place) const { return names_[index(place)]; }
+    SpacePointId place_of(SpacePointId p) const {
+        const auto at = by_name_.find(p);
+        return at == by_name_.end() ? SpacePointId(kNone) : at->second;
+    }
     int turn(SpacePointId a, SpacePointId b, SpacePointId c) const {
         return facing_ * exact::orient2d(places_, axis_, a, b, c);
     }
 
-    Compare_x_2 compare_x_2_object() const { return {this, (axis_ + (facing_ > 0 ? 1 : 2)) % 3}; }
-    Compare_y_2 compare_y_2_object() const { return {this, (axis_ + (facing_ > 0 ? 2 : 1)) % 3}; }
-    Orientation_2 orientation_2_object() const { return {this}; }
-    Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {this}; }
-    Construct_point_2 construct_point_2_object() const { return {}; }
-
-private:
-    /// Whether the edge of a triangle that a point lies beyond is to be exchanged with the other
-    /// diagonal of the quadrilateral, which must be convex: the sum of the angles across from the
-    /// edge is more than half a turn. The same for the same four points in whichever triangles.
-    bool should_flip(const TriangleCorners& t, SpacePointId p) const {
-        std::size_t beyond = 3;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int side = turn(t[k], t[(k + 1) % 3], p);
-            if (side == 0 || (side < 0 && beyond < 3)) return false;
-            if (side < 0) beyond = k;
+    SpacePointId from(HalfEdge edge) const { return SpacePointId(mesh_.from(edge)); }
+    SpacePointId to(HalfEdge edge) const { return SpacePointId(mesh_.to(edge)); }
+    SpacePointId apex(HalfEdge edge) const { return SpacePointId(mesh_.apex(edge)); }
+    void note_corners(std::int32_t triangle) {
+        for (int k = 0; k < 3; ++k) {
+            const HalfEdge edge(triangle, k);
+            around_.resize(std::max(around_.size(), index(from(edge)) + 1));
+            around_[index(from(edge))] = edge;
         }
-        if (beyond == 3) return true;
-        if (tests_left_ == 0) return false;
-        --tests_left_;
-        const auto name = [&](SpacePointId place) { return names_[index(place)]; };
-        auto [a, b] = unordered(name(t[beyond]), name(t[(beyond + 1) % 3]));
-        auto [c, d] = unordered(name(t[(beyond + 2) % 3]), name(p));
+    }
+    /// The edge from a to b as the triangle to its left has it; none where there is none.
+    HalfEdge left_of(SpacePointId a, SpacePointId b) const {
+        HalfEdge left;
+        mesh_.visit_star(around_[index(a)], [&](HalfEdge edge) {
+            if (left.is_none() && to(edge) == b) left = edge;
+        });
+        return left;
+    }
+    /// Divides the triangles beside an edge at a point of it; of the first one the part before the
+    /// point keeps its number.
+    /// @return the first edge of the other part
+    HalfEdge split(HalfEdge edge, SpacePointId p) {
+        const HalfEdge other = mesh_.twin(edge);
+        const auto rest = static_cast<std::int32_t>(mesh_.corners.size());
+        mesh_.divide(edge, p.number());
+        note_corners(edge.triangle());
+        note_corners(rest);
+        if (!other.is_none()) {
+            note_corners(other.triangle());
+            note_corners(rest + 1);
+        }
+        return {rest, 0};
+    }
+
+    void divide_edge(SpacePointId from, SpacePointId to, const std::vector<SpacePointId>& between) {
+        const std::size_t axis = edge_axis(global_, name(from), name(to));
+        const SpacePointId end_of[2] = {from, to};
+        HalfEdge edge = left_of(from, to);
+        for (const SpacePointId p : between) {
+            if (progress_ != nullptr) progress_->check();
+            const SpacePointId place = enter(
+                places_.projected(axis, places_.add(global_.rounded(p)), end_of[0], end_of[1]), p);
+            if (!place.has_value()) continue;
+            assert(!edge.is_none() && this->to(edge) == to);
+            edge = split(edge, place);
+        }
+    }
+
+    /// The triangle that has a place, and the turns of its edges and that: a walk towards it
+    /// (remembering where it came from), and all triangles in their order where that goes round.
+    std::int32_t triangle_with(SpacePointId place, std::array<int, 3>& turns) const {
+        const auto has_place = [&](std::int32_t t) {
+            for (int k = 0; k < 3; ++k)
+                turns[index(k)] = turn(from({t, k}), to({t, k}), place);
+            return *std::min_element(turns.begin(), turns.end()) >= 0;
+        };
+        const std::size_t count = mesh_.corners.size();
+        auto t = static_cast<std::int32_t>(count) - 1;
+        for (std::size_t step = 0; step < count && t >= 0; ++step) {
+            if (has_place(t)) return t;
+            const auto least =
+                std::find_if(turns.begin(), turns.end(), [](int n) { return n < 0; });
+            t = mesh_.twin({t, static_cast<int>(least - turns.begin())}).triangle();
+        }
+        for (t = 0; index(t) < count; ++t) {
+            if (has_place(t)) return t;
+        }
+        return -1;
+    }
+
+    void insert(SpacePointId p, const TriangleCorners& corners) {
+        if (progress_ != nullptr) progress_->check();
+        if (place_of(p).has_value()) return;
+        const SpacePointId raw = places_.add(global_.rounded(p));
+        const SpacePointId place =
+            places_.projected(axis_, raw, corners[0], corners[1], corners[2]);
+        if (index(place) < names_.size() && name(place).has_value()) return;
+        std::array<int, 3> turns{};
+        const std::int32_t triangle = triangle_with(place, turns);
+        if (triangle < 0) return;  // outside
+        const auto zero = std::find(turns.begin(), turns.end(), 0);
+        if (zero != turns.end()) {
+            const HalfEdge edge(triangle, static_cast<int>(zero - turns.begin()));
+            if (mesh_.is_border(edge)) return;
+            enter(place, p);
+            split(edge, place);
+            return;
+        }
+        enter(place, p);
+        const auto added = static_cast<std::int32_t>(mesh_.corners.size());
+        mesh_.divide(triangle, place.number());
+        for (const std::int32_t t : {triangle, added, added + 1})
+            note_corners(t);
+    }
+
+    /// Exchanges a diagonal with the other one of its quadrilateral, if that is convex.
+    bool flip(HalfEdge left) {
+        const HalfEdge right = mesh_.twin(left);
+        if (right.is_none()) return false;
+        const SpacePointId a = from(left), b = to(left), c = apex(left), d = apex(right);
+        if (turn(d, b, c) <= 0 || turn(c, a, d) <= 0) return false;
+        mesh_.flip(left);
+        // what comes first decides where several edges could be flipped
+        mesh_.rotate(left.triangle(), 2);
+        mesh_.rotate(right.triangle(), 1);
+        note_corners(left.triangle());
+        note_corners(right.triangle());
+        return true;
+    }
+    void keep(HalfEdge edge) {
+        mesh_.fix(edge);
+        if (!mesh_.is_border(edge)) mesh_.fix(mesh_.twin(edge));
+    }
+
+    /// The edges that the line between two corners crosses, from one to the other; nothing where it
+    /// runs over a point or crosses an edge that is kept.
+    std::optional<std::vector<SpaceEdge>> crossed_edges(SpacePointId p, SpacePointId q) const {
+        HalfEdge crossed;
+        bool is_free = true;
+        mesh_.visit_star(around_[index(p)], [&](HalfEdge edge) {
+            if (!is_free || !crossed.is_none()) return;
+            const SpacePointId b = to(edge), c = apex(edge);
+            const int to_b = turn(p, q, b), to_c = turn(p, q, c);
+            for (const auto& [v, side_of_v] : {std::pair(b, to_b), std::pair(c, to_c)})
+                is_free = is_free && (side_of_v != 0 || !is_between(v, p, q));
+            if (to_b < 0 && to_c > 0) crossed = edge.next();
+        });
+        if (!is_free || crossed.is_none()) return std::nullopt;
+        std::vector<SpaceEdge> edges;
+        for (;;) {
+            if (mesh_.is_fixed(crossed)) return std::nullopt;
+            edges.push_back({from(crossed), to(crossed)});
+            const HalfEdge next = mesh_.twin(crossed);
+            if (next.is_none()) return std::nullopt;
+            const SpacePointId tip = apex(next);
+            if (tip == q) return edges;
+            const int side = turn(p, q, tip);
+            if (side == 0) return std::nullopt;
+            // of the two edges at the tip the one whose other end is on the other side
+            crossed = side > 0 ? next.next() : next.prev();
+        }
+    }
+    bool is_between(SpacePointId v, SpacePointId p, SpacePointId q) const {
+        return v != q && exact::compare(places_, p, v) * exact::compare(places_, v, q) > 0;
+    }
+
+    /// Flips what crosses an edge until nothing does (S. W. Sloan, "A fast algorithm for generating
+    /// constrained Delaunay triangulations", 1993). Nothing where it runs over a point or crosses
+    /// an edge that is kept.
+    void insert_edge(const SpaceEdge& edge) {
+        if (progress_ != nullptr) progress_->check();
+        const SpacePointId p = place_of(edge[0]), q = place_of(edge[1]);
+        if (!p.has_value() || !q.has_value() || p == q) return;
+        for (const auto& [from, to] : {std::pair(p, q), std::pair(q, p)}) {
+            const HalfEdge existing = left_of(from, to);
+            if (!existing.is_none()) return keep(existing);
+        }
+        auto crossed = crossed_edges(p, q);
+        if (!crossed) return;
+        const auto is_crossed_by = [&](SpacePointId a, SpacePointId b) {
+            if (a == p || a == q || b == p || b == q) return false;
+            return turn(p, q, a) * turn(p, q, b) < 0 && turn(a, b, p) * turn(a, b, q) < 0;
+        };
+        const std::size_t most = 100 * crossed->size() + 10000;
+        for (std::size_t i = 0; i < crossed->size() && i < most; ++i) {
+            const auto [a, b] = (*crossed)[i];
+            const HalfEdge left = left_of(a, b);
+            const SpacePointId c = apex(left), d = apex(mesh_.twin(left));
+            if (!flip(left)) {
+                crossed->push_back({a, b});
+            } else if (is_crossed_by(c, d)) {
+                crossed->push_back({c, d});
+            }
+        }
+        const HalfEdge made = left_of(p, q);
+        if (!made.is_none()) keep(made);
+    }
+    /// The cotangent of the angle at a point, between two others.
+    double cotangent(SpacePointId at, SpacePointId from, SpacePointId to) const {
+        const auto &p = global_.rounded(at), &q = global_.rounded(from), &r = global_.rounded(to);
+        const Vec3 u = minus(q, p), v = minus(r, p);
+        return dot(u, v) / length(cross(u, v));
+    }
+    /// Whether of a quadrilateral's diagonals that from a to b is against Delaunay's rule: the sum
+    /// of the angles at c and d is more than half a turn. The same for the same four points in
+    /// whichever triangles, and seen along whichever axis.
+    bool is_worse(SpacePointId a, SpacePointId b, SpacePointId c, SpacePointId d) const {
+        constexpr double kTie = 1e-6;
+        if (b < a) std::swap(a, b);
+        if (d < c) std::swap(c, d);
         const bool other_first = c < a;
         if (other_first) {
             std::swap(a, c);
             std::swap(b, d);
         }
-        constexpr double kTie = 1e-6;
-        return (cotangent(c, a, b) + cotangent(d, a, b) < -kTie) != other_first;
+        const double sum = cotangent(c, a, b) + cotangent(d, a, b);
+        return (sum < -kTie) != other_first;
     }
-    /// The cotangent of the angle at a point, between two others.
-    double cotangent(SpacePointId at, SpacePointId from, SpacePointId to) const {
-        const Vec3 u = minus(points_.rounded(from), points_.rounded(at)),
-                   v = minus(points_.rounded(to), points_.rounded(at));
-        return dot(u, v) / length(cross(u, v));
-    }
-
-    const SpacePoints& points_;
-    const SpacePoints& places_;
-    const std::vector<SpacePointId>& names_;
-    std::size_t& tests_left_;
-    std::size_t axis_ = 0;
-    int facing_ = 0;
-};
-
-/// A triangulation of one triangle, in which points are where they would be if they lay on it.
-class FacetDivision {
-    using FacetCdt = meshing::CdtOf<PlacesInView>;
-
-public:
-    FacetDivision(const SpacePoints& points, const FacetPoints& facet, Progress* progress)
-        : points_(points),
-          progress_(progress),
-          corners_{place_of(facet.corners[0]), place_of(facet.corners[1]),
-                   place_of(facet.corners[2])},
-          view_(points, places_, names_, corners_, tests_left_),
-          cdt_(view_) {
-        if (!has_area()) return;
-        for (std::size_t k = 0; k < 3; ++k)
-            insert(corners_[k], facet.corners[k]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t next = (k + 1) % 3;
-            const std::size_t axis = edge_axis(points, facet.corners[k], facet.corners[next]);
-            for (const SpacePointId p : facet.on_edges[k])
-                insert(places_.projected(axis, place_of(p), corners_[k], corners_[next]), p);
-        }
-        const auto& [a, b, c] = corners_;
-        for (const SpacePointId p : facet.within) {
-            if (vertices_.contains(p)) continue;
-            const SpacePointId place = places_.projected(view_.axis(), place_of(p), a, b, c);
-            if (view_.turn(a, b, place) > 0 && view_.turn(b, c, place) > 0 &&
-                view_.turn(c, a, place) > 0)
-                insert(place, p);
-        }
-        for (const SpaceEdge& edge : facet.wanted)
-            insert_edge(edge);
-    }
-
-    bool has_area() const { return view_.has_area(); }
-    std::vector<TriangleCorners> result() const {
-        std::vector<TriangleCorners> triangles;
-        for (const auto& face : cdt_.finite_face_handles()) {
-            const auto name = [&](int k) { return names_[index(face->vertex(k)->point())]; };
-            triangles.push_back({name(0), name(1), name(2)});
-        }
-        return triangles;
-    }
-
-private:
-    SpacePointId place_of(SpacePointId p) { return places_.add(points_.rounded(p)); }
-    /// Adds a point that is taken to lie at a place, unless another is there. Of two edges that are
-    /// near one another both may have it.
-    void insert(SpacePointId place, SpacePointId p) {
-        if (progress_ != nullptr) progress_->check();
-        names_.resize(std::max(names_.size(), index(place) + 1), kNone);
-        if (names_[index(place)].has_value()) return;
-        names_[index(place)] = p;
-        const FacetCdt::Vertex_handle vertex = cdt_.insert(place, near_);
-        near_ = vertex->face();
-        vertices_.emplace(p, vertex);
-    }
-    /// Not where it crosses one before it.
-    void insert_edge(const SpaceEdge& edge) {
-        if (progress_ != nullptr) progress_->check();
-        const auto from = vertices_.find(edge[0]), to = vertices_.find(edge[1]);
-        if (from == vertices_.end() || to == vertices_.end() || from == to) return;
-        tests_left_ = kMostTests + 64 * vertices_.size();
-        try {
-            cdt_.insert_constraint(from->second, to->second);
-        } catch (const FacetCdt::Intersection_of_constraints_exception&) {  // it stays out
+    /// Flips edges until none has a point across it within its circle (C. L. Lawson, 1977): so
+    /// triangles near one another that have the same points get the same edges.
+    void improve() {
+        for (std::size_t pass = 0; pass < 64; ++pass) {
+            bool changed = false;
+            mesh_.for_each_edge([&](HalfEdge e) {
+                if (e.index() == 0) poll(progress_, index(e.triangle()));
+                const HalfEdge other = mesh_.twin(e);
+                if (other.is_none() || mesh_.is_fixed(e)) return;
+                if (is_worse(name(from(e)), name(to(e)), name(apex(e)), name(apex(other))) &&
+                    flip(e))
+                    changed = true;
+            });
+            if (!changed) break;
         }
     }
 
-    static constexpr std::size_t kMostTests = 100'000;
-
-    const SpacePoints& points_;
+    const SpacePoints& global_;
     Progress* progress_;
     SpacePoints places_;
     std::vector<SpacePointId> names_;  ///< of places: the point that is taken to lie there
-    std::size_t tests_left_ = SIZE_MAX;
-    TriangleCorners corners_;  ///< places
-    PlacesInView view_;
-    FacetCdt cdt_;
-    FacetCdt::Face_handle near_;
-    std::map<SpacePointId, FacetCdt::Vertex_handle> vertices_;
+    std::map<SpacePointId, SpacePointId> by_name_;  ///< and back
+    meshing::FlatMesh mesh_;                        ///< of places
+    std::vector<HalfEdge> around_;                  ///< of places: an edge that leaves it
+    std::size_t axis_ = 0;
+    int facing_ = 0;
 };
 
 }  // namespace

@@ -42,15 +42,12 @@ private:
     std::size_t stamp_ = 0;
 };
 
-/// Faces of the mesher's kind are stamped too, and say whether they belong to the region.
-/// @tparam Traits  what points are, and the predicates that are asked of them
-template <class Traits>
-using CdtOf = CGAL::Constrained_Delaunay_triangulation_2<
-    Traits,
-    CGAL::Triangulation_data_structure_2<NumberedVertex<Traits>,
-                                         CGAL::Delaunay_mesh_face_base_2<Traits>>,
+// Faces of the mesher's kind are stamped too, and say whether they belong to the region.
+using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel,
+    CGAL::Triangulation_data_structure_2<NumberedVertex<Kernel>,
+                                         CGAL::Delaunay_mesh_face_base_2<Kernel>>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
-using Cdt = CdtOf<Kernel>;
 
 /// What becomes of a point that is there already: refused, or it is the same vertex, which keeps
 /// the lesser number.
