@@ -186,8 +186,8 @@ struct ValueSource {
 /// the lower number: it does not matter then in which order points were inserted. from, to: the
 /// numbers of the ends of the edge, ascending.
 struct NodeLocation {
-    FaceHandle face, other;  ///< other: of an edge
-    bool is_on_edge = false, is_on_hull = false;
+    FaceHandle face;
+    bool is_on_hull = false;
     std::int32_t from = 0, to = 0;
 };
 
@@ -196,16 +196,15 @@ NodeLocation place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face
     NodeLocation place;
     place.face = face;
     if (kind == Delaunay::FACE) return place;
-    place.is_on_edge = true;
-    place.other = face->neighbor(at);
+    const FaceHandle other = face->neighbor(at);
     const auto number = [](FaceHandle f, int i) { return f->vertex(i)->number; };
     place.from = std::min(number(face, Delaunay::cw(at)), number(face, Delaunay::ccw(at)));
     place.to = std::max(number(face, Delaunay::cw(at)), number(face, Delaunay::ccw(at)));
-    place.is_on_hull = delaunay.is_infinite(face) || delaunay.is_infinite(place.other);
+    place.is_on_hull = delaunay.is_infinite(face) || delaunay.is_infinite(other);
     const bool other_first = place.is_on_hull
                                  ? delaunay.is_infinite(face)
-                                 : number(place.other, place.other->index(face)) < number(face, at);
-    if (other_first) std::swap(place.face, place.other);
+                                 : number(other, other->index(face)) < number(face, at);
+    if (other_first) place.face = other;
     return place;
 }
 
