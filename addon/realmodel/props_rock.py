@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a rock mass, and of its surfaces, series, faults and bodies; most come from their
-declarations (core/settings/setting.py).
-"""
+declarations (core/settings/setting.py)."""
 
 import bpy
 from bpy.props import (

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The slider of the stage, from 0 to the number of the youngest surface: another way to set
-`scene.realmodel.stage`.
-"""
+`scene.realmodel.stage`."""
 
 import bpy
 import numpy as np

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Progress on a terminal, one bar that fills, or plain lines where the output goes to a file; Ctrl-C and
-SIGTERM.
-"""
+SIGTERM."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drawing in the viewport: contacts of surfaces and sticks of faults on a section plane or an image; and
-images in their place.
-"""
+images in their place."""
 
 import re
 

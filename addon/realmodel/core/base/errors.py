@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The types of errors and the warnings of a build. Every message is one line: where, what is wrong, what
-to do.
-"""
+to do."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Packages of others, which travel in the add-on or are installed beside it, and the message for a missing
-native module, with advice for the user's situation.
-"""
+native module, with advice for the user's situation."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Text files with lines of numbers, read in pieces so that a caller can show progress and cancel; XML
-files.
-"""
+files."""
 
 from __future__ import annotations
 

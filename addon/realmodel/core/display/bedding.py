@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The positions of the corners of blocks within their layers as deposited, for pictures; in series the
-bedding follows the field.
-"""
+bedding follows the field."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The blocks that the realizations of an ensemble have at samples: the centers of cells of a section, a
-fence, a borehole or a regular grid, and along a planned hole.
-"""
+fence, a borehole or a regular grid, and along a planned hole."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that sections, fences and boreholes are written to: polygons that know their block and its
-property, and probabilities of blocks at samples of an ensemble.
-"""
+property, and probabilities of blocks at samples of an ensemble."""
 
 from __future__ import annotations
 

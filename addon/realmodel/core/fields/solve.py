@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The field of a series from what is known of it, and fields drawn at random as their data allow, for the
-realizations of a series in an ensemble.
-"""
+realizations of a series in an ensemble."""
 
 from __future__ import annotations
 

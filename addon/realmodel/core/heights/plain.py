@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Methods for few points and on the triangulation of the points: a constant, a plane, a parallel surface,
-linear, natural neighbors.
-"""
+linear, natural neighbors."""
 
 from __future__ import annotations
 

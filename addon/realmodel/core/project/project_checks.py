@@ -61,7 +61,7 @@ def check_stage(project: Project, stage: Any) -> None:
 
 
 def check_memory(memory: Any) -> None:
-    """Raises UsageError for a limit of memory that is no number of bytes."""
+    """Raises UsageError for a memory limit that is not a number of bytes."""
     if memory is None:
         return
     if isinstance(memory, bool) or not hasattr(memory, "__index__") or int(memory) <= 0:

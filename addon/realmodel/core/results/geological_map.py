@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The geological map of a model: polygons in plan of the blocks that crop out on top, which share their
-borders.
-"""
+borders."""
 
 from __future__ import annotations
 
@@ -166,8 +165,8 @@ def _simple_rings(walk: list[int]) -> list[list[int]]:
 
 
 def _contains(points: np.ndarray, outline: np.ndarray, ring: np.ndarray) -> bool:
-    """Whether a ring lies in another one that it does not cross: one of its vertices that is no vertex of
-    that, or the middle of an edge, is inside."""
+    """Whether a ring lies inside an outline that it does not cross: tested at a vertex that is not one of the
+    outline's, or at the middle of an edge."""
     free_vertices = ring[~np.isin(ring, outline)]
     place = points[free_vertices[0]] if len(free_vertices) else (points[ring[0]] + points[ring[1]]) / 2
     a, b = points[outline], points[np.roll(outline, -1)]

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Values of a built model for color scales: thickness of layers, attributes of the library, fields of
-series.
-"""
+series."""
 
 from __future__ import annotations
 

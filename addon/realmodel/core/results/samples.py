@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Samples of a model, the centers of cells of a section, a fence, a borehole or a regular grid, and the
-probabilities of blocks there.
-"""
+probabilities of blocks there."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Volumes of blocks: what each surface eroded and each body took, and the uncertainty that follows from
-interpolated heights.
-"""
+interpolated heights."""
 
 from __future__ import annotations
 

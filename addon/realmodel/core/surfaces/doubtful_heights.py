@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Warnings about points that cannot be meant for a region, and about surfaces that miss a point by much or
-cut older layers beyond their points.
-"""
+cut older layers beyond their points."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A rock mass with faults: its compartments, the sheets of the surfaces of each, and the sides on which
-points lie.
-"""
+points lie."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What files of objects hold of a model: its blocks, what lies on the sides of their triangles, its surfaces,
-and the boreholes of its project.
-"""
+and the boreholes of its project."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Logged intervals of boreholes, which block is where along a hole, and their other columns such as
-grades.
-"""
+grades."""
 
 from __future__ import annotations
 

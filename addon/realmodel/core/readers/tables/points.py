@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scattered points from tables of text, CSV and similar formats with or without a header, and from arrays
-of NumPy.
-"""
+of NumPy."""
 
 from __future__ import annotations
 

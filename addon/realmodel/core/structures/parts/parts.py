@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts into which faults and bodies divide the space of a project, and the compartments of its rock
-masses.
-"""
+masses."""
 
 from __future__ import annotations
 

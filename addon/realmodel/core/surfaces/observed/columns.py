@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The order of blocks along boreholes and columns, and what a place in a block says of the surfaces over
-and under it.
-"""
+and under it."""
 
 from __future__ import annotations
 

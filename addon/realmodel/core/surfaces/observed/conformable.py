@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces that are conformable, which a series of sheets interpolates together, and what the surfaces of
-a series know of one another.
-"""
+a series know of one another."""
 
 from __future__ import annotations
 
