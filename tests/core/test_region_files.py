@@ -15,7 +15,7 @@ from outlines import PROJECT_OF_REGION
 from realmodel.core import BuildFailed, InputRefused, MapLayer, build, load_project
 from realmodel.core.base.packages import vendored
 from realmodel.core.readers import read_region, read_shapes
-from realmodel.core.readers.any_format import map_companions
+from realmodel.core.readers.map_input import map_companions
 
 try:
     shapefile = vendored("shapefile", "pyshp", "this test")

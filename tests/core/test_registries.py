@@ -28,7 +28,7 @@ from realmodel.core import (
 )
 from realmodel.core.exporters.formats import FORMATS
 from realmodel.core.heights.methods import FUNCTIONS
-from realmodel.core.readers.any_format import read_mesh
+from realmodel.core.readers.mesh_input import read_mesh
 from realmodel.core.settings.meshers import MESHERS
 from realmodel.core.settings.method_options import checked
 from realmodel.core.settings.methods import METHODS, OPTIONS

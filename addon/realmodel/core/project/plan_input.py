@@ -17,7 +17,7 @@ from ..base.errors import InputRefused, place_text
 from ..base.units import MODEL_UNIT
 from ..base.work import NativeError, refused_as
 from ..readers import read_shapes
-from ..readers.any_format import map_companions, require_polygons
+from ..readers.map_input import map_companions, require_polygons
 from ..readers.maps.shapes import Shapes
 from ..readers.maps.wkt import parse_wkt
 from ..settings.data_files import MapLayer, is_wkt

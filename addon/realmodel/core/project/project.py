@@ -14,7 +14,7 @@ import numpy as np
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
-from ..readers.any_format import companions
+from ..readers.point_input import companions
 from ..readers.tables.observations import Observations
 from ..settings.crs import checked_crs
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, ObservationFile, PointFile

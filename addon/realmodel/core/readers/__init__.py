@@ -6,10 +6,12 @@ of boreholes, blocks at places, in meters, as arrays in memory or in files; dama
 their line.
 """
 
-from .any_format import is_mesh_file, read_mesh, read_point_file, read_region, read_shapes
 from .borehole_input import read_boreholes
+from .map_input import read_region, read_shapes
+from .mesh_input import is_mesh_file, read_mesh
 from .meshes.off import read_off
 from .object_input import objects_in
+from .point_input import read_point_file
 from .tables.boreholes import Picks
 from .tables.dips import gradient_of, names_units, normal_of, read_dips, read_dips_of_rock, read_space_dips
 from .tables.observations import read_observed_places

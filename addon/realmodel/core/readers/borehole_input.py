@@ -11,8 +11,8 @@ from ..base.errors import InputRefused
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT, factors
 from ..settings.data_files import Boreholes
-from .any_format import refuse_keys
 from .object_input import is_object_file, read_hole_objects
+from .point_input import refuse_keys
 from .tables.boreholes import Picks, read_borehole_tables
 from .tables.hole_tables import COLLARS, INTERVALS, SURVEY, other_units_in
 from .tables.unit_names import UnitNames

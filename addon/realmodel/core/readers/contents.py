@@ -10,11 +10,12 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..settings.data_files import MapLayer
-from .any_format import OF_POINTS, read_shapes
 from .formats import OBJECTS, RASTER, SHAPES, format_of
+from .map_input import read_shapes
 from .maps.geopackage import UNREADABLE, connect
 from .maps.shapes import NothingSelected
 from .object_input import objects_in, read_object
+from .point_input import OF_POINTS
 from .tables.points import KNOWN, body_rows, open_table
 from .tables.table_layout import Expected
 

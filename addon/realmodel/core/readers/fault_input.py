@@ -17,10 +17,11 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import MapLayer, PointFile
 from ..settings.directions import checked_direction
 from ..settings.method_options import OptionRefused
-from .any_format import OFTEN_NO_VALUE, in_model, read_point_file, read_shapes, refuse_keys
 from .formats import RASTER, SHAPES, STICKS, format_of
+from .map_input import read_shapes
 from .maps.shapes import Heights, Shapes
 from .maps.wkt import parse_wkt
+from .point_input import OFTEN_NO_VALUE, in_model, read_point_file, refuse_keys
 from .tables.points import KNOWN, body_rows, open_table
 from .tables.sticks import begins_as_sticks, read_sticks
 from .tables.table_layout import Expected, plain_name

@@ -12,7 +12,7 @@ from ..base.algebra import begins_run
 from ..base.errors import InputRefused, counted
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import MapFile
-from .any_format import read_shapes
+from .map_input import read_shapes
 from .maps.shapes import Heights, Shapes, of_name
 from .tables.table_layout import names_shown
 

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangulated surfaces from files; the format follows from the content."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..base.errors import InputRefused
+from ..base.mapped_arrays import MakeRows, Rows
+from ..base.text import Step, no_step
+from ..settings.data_files import MeshFile
+from .formats import MESH, OBJECTS, endings, format_of, labels
+from .meshes.triangle_mesh import TriangleMesh, mesh_of_faces
+from .object_input import read_object
+from .objects.geo_object import SURFACE
+
+
+def is_mesh_file(file: str | Path) -> bool:
+    """Whether a file is one of a mesh, by its content or else by its ending. Raises InputRefused where it
+    cannot be read."""
+    return format_of(file, MESH) is not None
+
+
+def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
+    """Reads a mesh in any format that is known. A MeshFile may name the object in a file of several. rows:
+    where it is kept, if its format is read in pieces; else it is in memory. Raises InputRefused naming file
+    and line."""
+    layer = file.layer if isinstance(file, MeshFile) else None
+    file = Path(file.file if isinstance(file, MeshFile) else file)
+    file_format = format_of(file, OBJECTS, MESH)
+    if file_format is not None and file_format.holds == OBJECTS:
+        surface = read_object(file, layer, (SURFACE,))
+        assert surface.triangles is not None
+        return mesh_of_faces(file, surface.vertices, surface.triangles)
+    if layer is not None:
+        what = f"it is not a file of objects ({', '.join(endings(OBJECTS))}), so it has no '{layer}'"
+        raise InputRefused(what, file=file, advice="take 'layer' out")
+    if file_format is None:
+        what = f"neither its content nor its extension is that of a mesh ({labels(MESH, OBJECTS)})"
+        raise InputRefused(what, file=file)
+    return file_format.read(file, step, rows) if file_format.in_pieces else file_format.read(file, step)
