@@ -214,8 +214,6 @@ def test_curves_are_refused(tmp_path):
     [
         ("a.dbf", b"\x03\x7a\x01\x01" + bytes(40), r"a part of a shapefile; name the \.shp"),
         ("a.shx", b"\0\0\x27\x0a" + bytes(96), r"a part of a shapefile; name the \.shp"),
-        ("a.fgb", b"fgb\x03fgb\0" + bytes(40), "neither GeoJSON.*export it in one of these"),
-        ("a.kml", b"<?xml version='1.0'?><kml/>", "neither GeoJSON.*export it in one of these"),
     ],
 )
 def test_files_of_other_kinds(write, name, content, words):

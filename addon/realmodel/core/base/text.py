@@ -23,7 +23,7 @@ LINES_AT_ONCE = 20_000
 BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 
 BOM = codecs.BOM_UTF8
-_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 Step = Callable[[float], None]
 
@@ -98,7 +98,7 @@ def reading(file: Path) -> Iterator[None]:
 def content_of(file: Path) -> Content:
     """The content of a file, in pieces; text in UTF-16 as UTF-8, as a whole. Raises InputRefused."""
     content = FileBytes(Path(file))
-    return read_bytes(file) if content[:2] in _UTF_16 else content
+    return read_bytes(file) if content[:2] in UTF_16 else content
 
 
 def text_content(file: Path) -> Content:
@@ -168,7 +168,7 @@ def read_bytes(file: Path) -> bytes:
     """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
     with reading(file):
         raw = Path(file).read_bytes()
-    if raw[:2] in _UTF_16:
+    if raw[:2] in UTF_16:
         try:
             return raw.decode("utf-16").encode()
         except UnicodeDecodeError as error:

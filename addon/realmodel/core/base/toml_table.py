@@ -221,7 +221,7 @@ def _syntax_refused(file: Path, text: str, error: tomllib.TOMLDecodeError) -> In
     return InputRefused(f"not valid TOML: {what[:1].lower()}{what[1:]}", file=file, line=line)
 
 
-class Table:
+class TomlTable:
     """One table of a document, read key by key. `item`: its name in messages."""
 
     def __init__(self, document: TomlDocument, content: dict, path: tuple, item: str):
@@ -293,7 +293,7 @@ class Table:
             raise self.refuse(f"'{key}' must be a finite number, not {value}", key)
         return float(value)
 
-    def tables(self, key: str, item: str) -> list[Table]:
+    def tables(self, key: str, item: str) -> list[TomlTable]:
         """The tables of `[[key]]`; at least one is needed. `item` names each by its number from 1."""
         value = self._value(key, False)
         if not value:
@@ -304,7 +304,7 @@ class Table:
             raise self.refuse(f"'{key}' must be tables [[{key}]], not {_kind(value)}", key)
         outer = f"{self.item}, " if self.item else ""
         return [
-            Table(self.document, entry, (*self.path, key, number), f"{outer}{item} {number + 1}")
+            TomlTable(self.document, entry, (*self.path, key, number), f"{outer}{item} {number + 1}")
             for number, entry in enumerate(value)
         ]
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.algebra import is_number
 from ..base.errors import InputRefused
-from ..base.toml_table import Source, Table, TomlDocument
+from ..base.toml_table import Source, TomlDocument, TomlTable
 from ..readers import is_mesh_file
 from ..settings.data_files import MESH_READING, READING, MapLayer, MeshFile, PointFile, is_wkt
 from ..settings.method_options import checked
@@ -33,7 +33,7 @@ def load_project(path: str | Path) -> Project:
     """
     path = Path(path)
     document = TomlDocument(path)
-    top = Table(document, document.content, (), "")
+    top = TomlTable(document, document.content, (), "")
     version = top.integer("format", required=True)
     if version != FORMAT:
         raise top.refuse(f"unknown format {version}", "format", f"this version reads format {FORMAT}")
@@ -47,7 +47,7 @@ def load_library(path: str | Path) -> Library:
     """Reads a library file. Raises InputRefused with the line of the error."""
     path = Path(path)
     document = TomlDocument(path)
-    top = Table(document, document.content, (), "")
+    top = TomlTable(document, document.content, (), "")
     top.allow_only(("property",))
     properties: dict[int, Property] = {}
     for table in top.tables("property", "property") if "property" in top else []:
@@ -62,7 +62,7 @@ def load_library(path: str | Path) -> Library:
 class _Key:
     """A key of a table: its name and setting, its value, and the folder at which paths begin."""
 
-    def __init__(self, table: Table, name: str, setting: Setting, folder: Path):
+    def __init__(self, table: TomlTable, name: str, setting: Setting, folder: Path):
         self.table, self.name, self.setting, self.folder = table, name, setting, folder
         self.value = table.content.get(name)
 
@@ -76,7 +76,7 @@ class _Key:
     def path(self) -> Path:
         return self.folder / self.text()
 
-    def inner(self) -> Table:
+    def inner(self) -> TomlTable:
         """The table that is its value."""
         inner = self._table(self.value, ())
         inner.item = f"{self.table.item}, {self.name}"
@@ -90,14 +90,14 @@ class _Key:
             return value
         return self.folder / self._table({"file": value}, (number, *at)).text("file", required=True)
 
-    def _table(self, content: Any, at: tuple) -> Table:
-        return Table(self.table.document, content, (*self.table.path, self.name, *at), self.table.item)
+    def _table(self, content: Any, at: tuple) -> TomlTable:
+        return TomlTable(self.table.document, content, (*self.table.path, self.name, *at), self.table.item)
 
 
 Read = Callable[[_Key], Any]
 
 
-def _values(table: Table, entry: type, folder: Path, other: Read) -> dict:
+def _values(table: TomlTable, entry: type, folder: Path, other: Read) -> dict:
     """The values of the fields of a dataclass by the keys of a table that are there. other: reads the kinds
     that are not in READ."""
     values = {}
@@ -118,7 +118,7 @@ def _unchecked(key: _Key) -> Any:
     return key.value
 
 
-def _made(kind: type, table: Table, folder: Path) -> Any:
+def _made(kind: type, table: TomlTable, folder: Path) -> Any:
     """A file with its options, or several files."""
     table.allow_only(settings_of(kind))
     return kind(**_values(table, kind, folder, _unchecked))
@@ -129,7 +129,7 @@ def _entries(key: _Key) -> list:
     return [_entry(key, table) for table in key.table.tables(key.name, key.name)]
 
 
-def _entry(key: _Key, table: Table) -> Any:
+def _entry(key: _Key, table: TomlTable) -> Any:
     entry_name = f"{key.name} '{table.text('name', required=True)}'"
     table.item = f"{key.table.item}, {entry_name}" if key.table.item else entry_name
     table.allow_only(settings_of(key.setting.of))
@@ -137,7 +137,7 @@ def _entry(key: _Key, table: Table) -> Any:
     return key.setting.of(**values, source=Source(table.document, table.path))
 
 
-def _with_reading(table: Table, values: dict) -> dict:
+def _with_reading(table: TomlTable, values: dict) -> dict:
     """The values of an entry, where its files have the keys that say how they are read."""
     reading = {key: table.content[key] for key in READING if key in table}
     files = {key: values[key] for key in ("points", "mesh", "trace") if key in values}

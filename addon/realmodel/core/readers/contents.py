@@ -11,6 +11,7 @@ import numpy as np
 from ..base.errors import InputRefused
 from ..settings.data_files import MapLayer
 from .formats import OBJECTS, RASTER, SHAPES, format_of
+from .gdal_files import gdal_layers, read_gdal_shapes
 from .map_input import read_shapes
 from .maps.geopackage import UNREADABLE, connect
 from .maps.shapes import NothingSelected
@@ -59,6 +60,8 @@ def layer_names(file: Path) -> list[str]:
         return []
     if file_format.holds == OBJECTS:
         return [obj.name for obj in objects_in(file)]
+    if file_format.read is read_gdal_shapes:
+        return gdal_layers(file)
     try:
         with closing(connect(file)) as base:
             return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]

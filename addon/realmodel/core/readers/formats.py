@@ -10,7 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..base.text import reading
+from ..base.text import UTF_16, reading
+from .gdal_files import (
+    RASTER_ENDINGS,
+    SHAPE_ENDINGS,
+    begins_as_gdal_raster,
+    begins_as_gdal_shapes,
+    read_gdal_raster,
+    read_gdal_shapes,
+)
 from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
@@ -93,10 +101,22 @@ FORMATS = (
     FileFormat("OBJ", (".obj",), MESH, begins_as_obj, read_obj, by_ending=True),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     FileFormat(
+        "rasters of GDAL", RASTER_ENDINGS, RASTER, begins_as_gdal_raster, read_gdal_raster, by_ending=True
+    ),
+    FileFormat(
+        "shapes of GDAL",
+        SHAPE_ENDINGS,
+        SHAPES,
+        begins_as_gdal_shapes,
+        read_gdal_shapes,
+        by_ending=True,
+        has_layers=True,
+    ),
+    FileFormat(
         "table of text",
         (".csv", ".xyz", ".txt", ".dat", ".tsv"),
         TABLE,
-        lambda _head, _size: True,
+        lambda head, _size: b"\0" not in head or head.startswith(UTF_16),
         read_point_rows,
     ),
 )
@@ -111,7 +131,8 @@ def format_of(file: str | Path, *holds: str) -> FileFormat | None:
         size = opened.seek(0, os.SEEK_END)
     able = [entry for entry in FORMATS if entry.holds in holds]
     by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)
-    return next((entry for entry in able if entry.begins(head, size)), next(by_ending, None))
+    tables = (entry for entry in able if entry.holds == TABLE)  # of which the refusal is then
+    return next((entry for entry in able if entry.begins(head, size)), next(by_ending, next(tables, None)))
 
 
 def endings(*holds: str) -> tuple[str, ...]:

@@ -46,7 +46,9 @@ def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
     ):
         return
     file = Path(layer.file)
-    if file.suffix.lower() == ".shp":
+    if shapes.system:
+        system = shapes.system
+    elif file.suffix.lower() == ".shp":
         named = (file.with_suffix(ending) for ending in (".prj", ".PRJ"))
         system = next((path.read_text("latin-1") for path in named if path.is_file()), "")
     elif file.suffix.lower() == ".gpkg":

@@ -116,11 +116,7 @@ def _read(
         if not selection.takes(attributes) or row[at] is None:
             continue
         feature, before = f"feature {number}", shapes.counts()
-        try:
-            _geometry(bytes(row[at]), feature, shapes)
-        except (ValueError, struct.error, IndexError, TypeError) as error:
-            what = f"its geometry cannot be read: {error}"
-            raise InputRefused(what, file=file, item=f"layer '{table}', {feature}") from error
+        add_geometry(_without_header(bytes(row[at]), feature, file, table), feature, shapes, file, table)
         if shapes.attributes is not None:
             shapes.attributes[feature] = attributes
         if heights and heights.attribute is not None:
@@ -133,20 +129,34 @@ def _quoted(name: str) -> str:
     return '"' + name.replace('"', '""') + '"'
 
 
-def _geometry(blob: bytes, feature: str, shapes: Shapes) -> None:
-    """A geometry as a GeoPackage has it: a header, then well-known binary."""
-    if blob[:2] != b"GP":
-        raise ValueError("it does not begin with GP")
-    flags = blob[3]
+def add_geometry(blob: bytes | None, feature: str, shapes: Shapes, file: Path, layer: str) -> None:
+    """Adds a geometry in well-known binary (OGC 06-103r4); None is an empty one. Raises InputRefused."""
+    if blob is None:
+        return
+    try:
+        _WellKnownBinary(blob, 0).geometry(feature, shapes, 0)
+    except (ValueError, struct.error, IndexError, TypeError) as error:
+        raise _unreadable(error, feature, file, layer) from error
+
+
+def _unreadable(error: object, feature: str, file: Path, layer: str) -> InputRefused:
+    what = f"its geometry cannot be read: {error}"
+    return InputRefused(what, file=file, item=f"layer '{layer}', {feature}")
+
+
+def _without_header(blob: bytes, feature: str, file: Path, layer: str) -> bytes | None:
+    """The well-known binary of a geometry of a GeoPackage; None of an empty one. Raises InputRefused."""
+    flags = blob[3] if len(blob) > 3 else 0
     envelope = flags >> 1 & 7
+    if blob[:2] != b"GP":
+        raise _unreadable("it does not begin with GP", feature, file, layer)
     if flags & 0x20:
-        raise ValueError("an extended geometry")
-    if flags & 0x10 or envelope >= len(_ENVELOPES):  # empty, or not known
-        if flags & 0x10:
-            return
-        raise ValueError("an unknown envelope")
-    reader = _WellKnownBinary(blob, 8 + _ENVELOPES[envelope])
-    reader.geometry(feature, shapes, 0)
+        raise _unreadable("an extended geometry", feature, file, layer)
+    if flags & 0x10:
+        return None
+    if envelope >= len(_ENVELOPES):
+        raise _unreadable("an unknown envelope", feature, file, layer)
+    return blob[8 + _ENVELOPES[envelope] :]
 
 
 class _WellKnownBinary:

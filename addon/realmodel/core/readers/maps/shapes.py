@@ -32,13 +32,15 @@ class Polygon:
 class Shapes:
     """The shapes of one file: polygons, lines (N, 2) and points (2,), the latter two with their names in
     messages. Read with heights, positions have three numbers, the third NaN where the file gives none.
-    attributes: of features, by their names in messages, where they are wanted."""
+    attributes: of features, by their names in messages, where they are wanted. system: their coordinate
+    system, as the reader is told it, "" where other files say it."""
 
     polygons: list[Polygon] = field(default_factory=list)
     lines: list[tuple[str, np.ndarray]] = field(default_factory=list)
     points: list[tuple[str, np.ndarray]] = field(default_factory=list)
     has_heights: bool = False
     attributes: dict[str, Mapping] | None = None
+    system: str = ""
 
     @classmethod
     def wanted(cls, heights: Heights | None) -> Shapes:
