@@ -12,7 +12,7 @@ from ..bl.scene import live
 from ..core import InputRefused
 from ..core.base.errors import counted
 from ..props_planned import MOST
-from .reporting import InBackground, Reporting, a_model, an_outline_object, not_building
+from .reporting import InBackground, Reporting, a_model, an_ensemble, an_outline_object, not_building
 
 
 class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
@@ -62,16 +62,11 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
         self.report({"INFO"}, f"Made {counted(len(found.volumes), 'realization')}")
 
 
-def _an_ensemble(context):
-    has_ensemble = ensembles.table(context.scene) is not None
-    return None if has_ensemble else "there is no ensemble; make one first"
-
-
 class REALMODEL_OT_ensemble_remove(Reporting, bpy.types.Operator):
     """Remove the ensemble with its section and its table; the model stays"""
 
     bl_label = "Remove Ensemble"
-    needs = (_an_ensemble, not_building)
+    needs = (an_ensemble, not_building)
 
     def act(self, context):
         ensembles.remove(context.scene)

@@ -10,7 +10,7 @@ from ..bl.scene import live, quality
 from ..core import InputRefused, UsageError
 from ..core.drawing import DRAWINGS, save_drawing
 from .files import Exporting, format_filter, format_menu
-from .reporting import InBackground, Reporting, a_model, a_surface, not_building
+from .reporting import InBackground, Reporting, a_model, a_surface, not_building, some_holes
 
 
 def _a_result(context):
@@ -96,11 +96,6 @@ def unregister():
     quality.forget()
 
 
-def any_holes(context):
-    has_holes = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
-    return None if has_holes else "there are no boreholes; import some first"
-
-
 def a_table(context):
     count = len(context.scene.realmodel.left_out_holes)
     return None if count else "no holes were left out yet; press Leave Out Holes first"
@@ -111,7 +106,7 @@ class REALMODEL_OT_cross_validate_holes(InBackground, bpy.types.Operator):
     in the right block, and how far off are its contacts? Esc cancels"""
 
     bl_label = "Leave Out Holes"
-    needs = (not_building, a_model, any_holes)
+    needs = (not_building, a_model, some_holes)
 
     folds: IntProperty(
         name="Groups",

@@ -13,7 +13,7 @@ from ..core import InputRefused
 from ..core.base.errors import counted
 from ..core.exporters import PLANNED_HOLE
 from .files import Exporting, format_filter, format_menu
-from .reporting import InBackground, Reporting, a_model, not_building
+from .reporting import InBackground, Reporting, a_model, an_ensemble, not_building
 
 _LONGER = 1.1  # a new hole goes so far below the model
 
@@ -21,11 +21,6 @@ _LONGER = 1.1  # a new hole goes so far below the model
 def a_planned_hole(context):
     has_hole = planned_holes.active(context.scene) is not None
     return None if has_hole else "there is no planned hole; add one first"
-
-
-def an_ensemble(context):
-    has_ensemble = bool(context.scene.realmodel.ensemble.table)
-    return None if has_ensemble else "there is no ensemble; make one first (Ensemble)"
 
 
 class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):

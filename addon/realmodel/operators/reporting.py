@@ -91,6 +91,16 @@ def any_surface(context):
     )
 
 
+def some_holes(context):
+    has_holes = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
+    return None if has_holes else "there are no boreholes; import some first (Import Field Data)"
+
+
+def an_ensemble(context):
+    has_ensemble = bool(context.scene.realmodel.ensemble.table)
+    return None if has_ensemble else "there is no ensemble; make one first (Ensemble)"
+
+
 def a_model(context):
     return None if len(context.scene.realmodel.results) else "there is no model yet; press Build first"
 

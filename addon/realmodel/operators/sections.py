@@ -16,7 +16,14 @@ from ..core.exporters import SECTION
 from ..core.results.sections.section_drawing import MOST_EXAGGERATION
 from .drawing import InViewport
 from .files import Exporting, format_filter, format_menu
-from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property
+from .reporting import (
+    Reporting,
+    a_model,
+    a_section_plane,
+    an_outline_object,
+    place_property,
+    some_holes,
+)
 
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
@@ -115,11 +122,6 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
         made = sections.add(context.scene, fence, "Fence", self.flat)
         made[sections.LINE] = line
         _show(self, context, made)
-
-
-def some_holes(context):
-    has_holes = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
-    return None if has_holes else "there are no boreholes; import some first (Import Field Data)"
 
 
 def chosen_holes(context):

@@ -97,7 +97,9 @@ def _margins(area, scale):
     """What the toolbar at the left, the sidebar at the right, and the panel of the last operator in the lower
     left corner cover, in points."""
     regions = {region.type: region for region in area.regions if min(region.width, region.height) > 1}
-    low = regions["HUD"].y + regions["HUD"].height - regions["WINDOW"].y if "HUD" in regions else 0
+    low = 0
+    if "HUD" in regions and "WINDOW" in regions:
+        low = regions["HUD"].y + regions["HUD"].height - regions["WINDOW"].y
     low = max(low, 0)  # it may have been moved out of the window
     if 2 * low > area.height:  # unfolded: a legend above it would have no room
         low = 0

@@ -122,9 +122,8 @@ def _deviation(
         return None, None
     a, b, c = (vertices[triangles[finite, k], :2] for k in range(3))
     area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    mean = (
-        float(np.average(corners[finite].mean(axis=1), weights=area)) if area.any() else float(corners.mean())
-    )
+    means = corners[finite].mean(axis=1)
+    mean = float(np.average(means, weights=area)) if area.any() else float(means.mean())
     return mean, float(np.nanmax(deviation))
 
 
