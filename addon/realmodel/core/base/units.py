@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
-from .errors import number_list
+from .errors import InputRefused, number_list
 
 MODEL_UNIT = "m"  # of a project without units
 # Metres in each, exactly. Coordinates of old surveys in the United States are in survey feet.
@@ -204,6 +204,54 @@ def factors(units: str | Mapping | None, model_unit: str = MODEL_UNIT) -> tuple[
     """Of plan coordinates and of heights, whose units are the same, or {"xy": ..., "z": ...}."""
     units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     return factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
+
+
+def stated_units(
+    file: Path,
+    chosen: str | Mapping | None,
+    stated: str | Mapping | None,
+    said: str | None,
+    model_unit: str = MODEL_UNIT,
+) -> tuple[str | Mapping | None, list[str]]:
+    """The units to read a file in, as of `factors`, and warnings. chosen: by the user, who is right. stated: by
+    the file, which is obeyed, also texts that name no unit. said: by a header that is often that of a template,
+    and is not obeyed. Raises InputRefused where a unit that is stated is not known and none is chosen."""
+    if stated is None:
+        if chosen is not None or said in (None, model_unit):
+            return chosen, []
+        what = f"its header says {said}; it is read in the unit of the model, {model_unit}"
+        return None, [f'{file}: {what}: write units = "{said}" if the header is right']
+    parts = stated.values() if isinstance(stated, Mapping) else [stated]
+    unknown = [text for text in parts if text is not None and text not in METERS]
+    if chosen is not None:
+        if not unknown and factors(chosen, model_unit) == factors(stated, model_unit):
+            return chosen, []
+        what = f"it says that its lengths are in {units_text(stated)}"
+        return chosen, [f"{file}: {what}; it is read in {units_text(chosen)}, as 'units' says"]
+    if unknown:
+        advice = f"say it in 'units': there are {', '.join(METERS)}"
+        raise InputRefused(f"its unit of length, '{unknown[0]}', is not known", file=file, advice=advice)
+    if factors(stated, model_unit) == (1.0, 1.0):
+        return None, []
+    return stated, [f"{file}: its lengths are in {units_text(stated)}, according to the file"]
+
+
+def known_or_text(text: str | None) -> str | None:
+    """The unit that a file states, as unit_of has it, or its text where that is not known; None: it states
+    none."""
+    plain = (text or "").strip()
+    return unit_of(plain) or (None if plain.lower() in _NO_UNIT else plain)
+
+
+_NO_UNIT = ("", "none", "unknown", "unitless", "undefined", "-", "?", "n/a", "unit")
+
+
+def units_text(units: str | Mapping) -> str:
+    """Units as of `factors`, for a message: "ft", "m (x, y) and ft (z)"."""
+    if not isinstance(units, Mapping):
+        return units
+    axes = {"x, y": units.get("xy"), "z": units.get("z")}
+    return " and ".join(f"{unit} ({axis})" for axis, unit in axes.items() if unit is not None)
 
 
 def number_text(value: float) -> str:

@@ -52,13 +52,13 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
 
 
 def layer_names(file: Path) -> list[str]:
-    """The layers of a GeoPackage, the objects of an OMF or geoh5 file; none of other files. Raises
-    InputRefused."""
+    """What `layer` may name in a file: the layers of a GeoPackage, the objects of a file of objects; none of other
+    files. Raises InputRefused."""
     file_format = format_of(file, OBJECTS, SHAPES)
+    if file_format is not None and file_format.holds == OBJECTS:
+        return list(dict.fromkeys(obj.name for obj in objects_in(file)))
     if file_format is None or not file_format.has_layers:
         return []
-    if file_format.holds == OBJECTS:
-        return [obj.name for obj in objects_in(file)]
     try:
         with closing(connect(file)) as base:
             return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]

@@ -15,16 +15,18 @@ from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
 from .maps.wkt import begins_as_wkt_file, read_wkt
-from .meshes.dxf_mesh import begins_as_dxf, read_dxf
+from .objects.dxf import begins_as_dxf, read_dxf
 from .meshes.gmsh_mesh import begins_as_msh, read_msh
 from .meshes.landxml import begins_as_landxml, read_landxml
 from .meshes.leapfrog import begins_as_leapfrog, read_leapfrog
+from .meshes.obj_mesh import begins_as_obj, read_obj
 from .meshes.off import begins_as_off, read_off
 from .meshes.ply_mesh import begins_as_ply, read_ply
 from .meshes.stl_mesh import begins_as_stl, read_stl
-from .meshes.surface_meshes import begins_as_obj, begins_as_tsurf, read_obj, read_tsurf
 from .meshes.vtk_mesh import begins_as_vtk_xml, read_vtk_xml
+from .objects.geo_object import as_a_whole
 from .objects.geoh5_file import begins_as_geoh5, open_geoh5
+from .objects.gocad import begins_as_gocad, read_gocad
 from .objects.omf_file import begins_as_omf, open_omf
 from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
 from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
@@ -45,9 +47,8 @@ class FileFormat:
 
     holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
-    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. in_pieces: read takes
-    where its arrays are kept, for files that are larger than the memory. has_layers: `layer` names one of
-    several things in a file.
+    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer` names
+    one of several layers of shapes in a file.
     """
 
     label: str
@@ -56,7 +57,6 @@ class FileFormat:
     begins: Callable[[bytes, int], bool]
     read: Callable[..., Any]
     by_ending: bool = False
-    in_pieces: bool = False
     has_layers: bool = False
 
 
@@ -68,8 +68,8 @@ FORMATS = (
     FileFormat("CPS-3", (".cps3", ".cps"), RASTER, is_cps3_grid, read_cps3_grid),
     FileFormat("IRAP classic", (".gri", ".irap"), RASTER, is_irap_grid, read_irap_grid),
     FileFormat("NumPy array", (".npy",), ARRAY, begins_as_array, read_point_array),
-    FileFormat("OMF", (".omf",), OBJECTS, begins_as_omf, open_omf, has_layers=True),
-    FileFormat("geoh5", (".geoh5",), OBJECTS, begins_as_geoh5, open_geoh5, has_layers=True),
+    FileFormat("OMF", (".omf",), OBJECTS, begins_as_omf, open_omf),
+    FileFormat("geoh5", (".geoh5",), OBJECTS, begins_as_geoh5, open_geoh5),
     FileFormat("GeoPackage", (".gpkg",), SHAPES, is_geopackage, read_geopackage, has_layers=True),
     FileFormat("shapefile", (".shp",), SHAPES, is_shapefile, read_shapefile),
     FileFormat(
@@ -81,16 +81,32 @@ FORMATS = (
         by_ending=True,
     ),
     FileFormat("well-known text", (".wkt",), SHAPES, begins_as_wkt_file, read_wkt),
-    FileFormat("OFF", (".off",), MESH, begins_as_off, read_off, by_ending=True, in_pieces=True),
-    FileFormat("PLY", (".ply",), MESH, begins_as_ply, read_ply, by_ending=True, in_pieces=True),
-    FileFormat("GOCAD TSurf", (".ts",), MESH, begins_as_tsurf, read_tsurf, by_ending=True),
-    FileFormat("VTK XML", (".vtp", ".vtu"), MESH, begins_as_vtk_xml, read_vtk_xml, by_ending=True),
-    FileFormat("Gmsh", (".msh",), MESH, begins_as_msh, read_msh, by_ending=True),
-    FileFormat("Leapfrog", (".msh",), MESH, begins_as_leapfrog, read_leapfrog),
-    FileFormat("LandXML", (".xml", ".landxml"), MESH, begins_as_landxml, read_landxml, by_ending=True),
-    FileFormat("DXF", (".dxf",), MESH, begins_as_dxf, read_dxf, by_ending=True),
-    FileFormat("STL", (".stl",), MESH, begins_as_stl, read_stl, by_ending=True),
-    FileFormat("OBJ", (".obj",), MESH, begins_as_obj, read_obj, by_ending=True),
+    FileFormat("OFF", (".off",), MESH, begins_as_off, read_off, by_ending=True),
+    FileFormat("PLY", (".ply",), MESH, begins_as_ply, read_ply, by_ending=True),
+    FileFormat(
+        "GOCAD",
+        (".ts", ".vs", ".pl", ".wl", ".gocad"),
+        OBJECTS,
+        begins_as_gocad,
+        as_a_whole(read_gocad),
+        by_ending=True,
+    ),
+    FileFormat(
+        "VTK XML", (".vtp", ".vtu"), OBJECTS, begins_as_vtk_xml, as_a_whole(read_vtk_xml), by_ending=True
+    ),
+    FileFormat("Gmsh", (".msh",), OBJECTS, begins_as_msh, as_a_whole(read_msh), by_ending=True),
+    FileFormat("Leapfrog", (".msh",), OBJECTS, begins_as_leapfrog, as_a_whole(read_leapfrog)),
+    FileFormat(
+        "LandXML",
+        (".xml", ".landxml"),
+        OBJECTS,
+        begins_as_landxml,
+        as_a_whole(read_landxml),
+        by_ending=True,
+    ),
+    FileFormat("DXF", (".dxf",), OBJECTS, begins_as_dxf, as_a_whole(read_dxf), by_ending=True),
+    FileFormat("STL", (".stl",), OBJECTS, begins_as_stl, as_a_whole(read_stl), by_ending=True),
+    FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     FileFormat(
         "table of text",
