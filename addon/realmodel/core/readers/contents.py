@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..settings.data_files import MapLayer
-from .formats import OBJECTS, RASTER, SHAPES, format_of
+from .formats import MESH, OBJECTS, RASTER, SHAPES, format_of
 from .map_input import read_shapes
 from .maps.geopackage import UNREADABLE, connect
 from .maps.shapes import NothingSelected
@@ -24,9 +24,9 @@ _NOTHING = "\0"  # no attribute is called so, and none has it
 
 def column_names(file: Path, layer: str | None = None) -> list[str]:
     """The names of the columns of a table, or numbers from 1 where it has no header; or of the attributes of
-    the features of a layer, or the points of an object; none of a raster. Raises InputRefused."""
+    the features of a layer, or the points of an object; none of a raster or a mesh. Raises InputRefused."""
     holds = _holds(file)
-    if holds == RASTER:
+    if holds in (RASTER, MESH):
         return []
     if holds == OBJECTS:
         return list(read_object(file, layer, OF_POINTS).columns)
@@ -67,7 +67,7 @@ def layer_names(file: Path) -> list[str]:
 
 
 def _holds(file: Path) -> str | None:
-    file_format = format_of(file, RASTER, OBJECTS, SHAPES)
+    file_format = format_of(file, RASTER, OBJECTS, MESH, SHAPES)
     return None if file_format is None else file_format.holds
 
 

@@ -21,7 +21,7 @@ from .meshes.landxml import begins_as_landxml, read_landxml
 from .meshes.leapfrog import begins_as_leapfrog, read_leapfrog
 from .meshes.obj_mesh import begins_as_obj, read_obj
 from .meshes.off import begins_as_off, read_off
-from .meshes.ply_mesh import begins_as_ply, read_ply
+from .meshes.ply_mesh import begins_as_ply, begins_as_ply_points, read_ply, read_ply_points
 from .meshes.stl_mesh import begins_as_stl, read_stl
 from .meshes.vtk_mesh import begins_as_vtk_xml, read_vtk_xml
 from .objects.geo_object import as_a_whole
@@ -82,6 +82,7 @@ FORMATS = (
     ),
     FileFormat("well-known text", (".wkt",), SHAPES, begins_as_wkt_file, read_wkt),
     FileFormat("OFF", (".off",), MESH, begins_as_off, read_off, by_ending=True),
+    FileFormat("PLY points", (".ply",), OBJECTS, begins_as_ply_points, as_a_whole(read_ply_points)),
     FileFormat("PLY", (".ply",), MESH, begins_as_ply, read_ply, by_ending=True),
     FileFormat(
         "GOCAD",

@@ -9,7 +9,7 @@ from ..base.errors import InputRefused
 from ..base.mapped_arrays import MakeRows, Rows
 from ..base.text import Step, no_step
 from ..settings.data_files import MeshFile
-from .formats import MESH, OBJECTS, endings, format_of, labels
+from .formats import MESH, OBJECTS, format_of, labels
 from .meshes.triangle_mesh import TriangleMesh
 from .object_input import objects_in, read_object
 from .objects.geo_object import SURFACE
@@ -43,7 +43,7 @@ def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows 
             surface.warnings,
         )
     if layer is not None:
-        what = f"it is not a file of objects ({', '.join(endings(OBJECTS))}), so it has no '{layer}'"
+        what = f"it is not a file of objects, so it has no '{layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     if file_format is None:
         what = f"neither its content nor its extension is that of a mesh ({labels(MESH, OBJECTS)})"
