@@ -186,12 +186,7 @@ def _utf_16(head: bytes) -> str | None:
     if head[:2] in _UTF_16:
         return "utf-16"
     for encoding, high, low in (("utf-16-le", head[1::2], head[::2]), ("utf-16-be", head[::2], head[1::2])):
-        if (
-            len(high) > 7
-            and not high.strip(b"\0")
-            and low.isascii()
-            and low.decode().strip("\r\n\t").isprintable()
-        ):
+        if len(high) > 7 and not any(high) and min(low) >= ord("\t"):
             return encoding
     return None
 
