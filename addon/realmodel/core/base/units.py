@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
@@ -164,11 +164,11 @@ def unknown_unit(text: str) -> bool:
 
 
 def unit_text_of_column(name: str) -> str:
-    """What stands where the name of a column has its unit: in brackets behind it, else the last of several
-    words if that is a unit: "Elevation_ft", "Depth (m)"; "" where there is none."""
+    """The unit in the name of a column, as it is written, in brackets or as the last of several words:
+    "Elevation_ft", "Depth (m)"; "" where there is none."""
     plain = name.strip().strip("\"'").strip()
     if bracket := _IN_BRACKETS.search(plain):
-        return bracket[1]
+        return bracket[1] if unit_of(bracket[1]) or unknown_unit(bracket[1]) else ""
     word = _TWO_WORDS.search(plain) or _LAST_WORD.search(plain)
     # "in" and "mi" end names of other meanings
     is_unit = word is not None and (unit_of(word[1]) not in (None, "in", "mi") or unknown_unit(word[1]))
@@ -195,6 +195,40 @@ def other_units(file: Path, columns: Mapping[str, str | None], model_unit: str =
     ]
 
 
+def stated_units(
+    file: Path, coordinates: Sequence[tuple[str, str, str | None]], model_unit: str = MODEL_UNIT
+) -> tuple[list[str | None], list[str]]:
+    """The unit in which each coordinate or column of a file is read, None for that of the model, and
+    warnings, sentences. coordinates: of each its name, the text of the file that names its unit ("":
+    nothing), and its unit by the key `units` (None: the key is not given). The key decides; without it the
+    file does, with a warning where that is another unit than the model's. Raises InputRefused where the
+    unit of the file is not known."""
+    units: list[str | None] = []
+    names: dict[tuple[str, str | None], list[str]] = {}
+    for name, text, unit in coordinates:
+        said = unit_of(text)
+        if text and said is None and unit is None:
+            what = f"the unit '{text.strip()}' of '{name}' is not known"
+            raise InputRefused(
+                what, file=file, advice=f"set units, one of {', '.join(METERS)}, or convert it"
+            )
+        units.append(unit or said)
+        read = unit or model_unit
+        if said is not None and said != read and not (said == "ft" and unit == "us-ft"):
+            names.setdefault((said, unit), []).append(f"'{name}'")
+    warnings = []
+    unsaid = [f"'{name}'" for (name, *_), unit in zip(coordinates, units, strict=True) if unit is None]
+    if unsaid and any(unit is None for _, unit in names):
+        warnings.append(
+            f"{file}: it does not say the unit of {number_list(unsaid)}, read as {model_unit}: set units"
+        )
+    for (said, unit), listed in names.items():
+        used = f"converted to {model_unit}" if unit is None else f"but the unit is {unit} by 'units'"
+        other = "if that is wrong, set units" if unit is None else "correct one of them if it is wrong"
+        warnings.append(f"{file}: the header says {said} for {number_list(listed)}, {used}: {other}")
+    return units, warnings
+
+
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
     """The factor from a unit to the model's unit; 1 where none is given."""
     return 1.0 if unit is None else float(METERS[unit] / METERS[model_unit])
@@ -204,54 +238,6 @@ def factors(units: str | Mapping | None, model_unit: str = MODEL_UNIT) -> tuple[
     """Of plan coordinates and of heights, whose units are the same, or {"xy": ..., "z": ...}."""
     units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     return factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
-
-
-def stated_units(
-    file: Path,
-    chosen: str | Mapping | None,
-    stated: str | Mapping | None,
-    said: str | None,
-    model_unit: str = MODEL_UNIT,
-) -> tuple[str | Mapping | None, list[str]]:
-    """The units to read a file in, as of `factors`, and warnings. chosen: by the user, who is right. stated: by
-    the file, which is obeyed, also texts that name no unit. said: by a header that is often that of a template,
-    and is not obeyed. Raises InputRefused where a unit that is stated is not known and none is chosen."""
-    if stated is None:
-        if chosen is not None or said in (None, model_unit):
-            return chosen, []
-        what = f"its header says {said}; it is read in the unit of the model, {model_unit}"
-        return None, [f'{file}: {what}: write units = "{said}" if the header is right']
-    parts = stated.values() if isinstance(stated, Mapping) else [stated]
-    unknown = [text for text in parts if text is not None and text not in METERS]
-    if chosen is not None:
-        if not unknown and factors(chosen, model_unit) == factors(stated, model_unit):
-            return chosen, []
-        what = f"it says that its lengths are in {units_text(stated)}"
-        return chosen, [f"{file}: {what}; it is read in {units_text(chosen)}, as 'units' says"]
-    if unknown:
-        advice = f"say it in 'units': there are {', '.join(METERS)}"
-        raise InputRefused(f"its unit of length, '{unknown[0]}', is not known", file=file, advice=advice)
-    if factors(stated, model_unit) == (1.0, 1.0):
-        return None, []
-    return stated, [f"{file}: its lengths are in {units_text(stated)}, according to the file"]
-
-
-def known_or_text(text: str | None) -> str | None:
-    """The unit that a file states, as unit_of has it, or its text where that is not known; None: it states
-    none."""
-    plain = (text or "").strip()
-    return unit_of(plain) or (None if plain.lower() in _NO_UNIT else plain)
-
-
-_NO_UNIT = ("", "none", "unknown", "unitless", "undefined", "-", "?", "n/a", "unit")
-
-
-def units_text(units: str | Mapping) -> str:
-    """Units as of `factors`, for a message: "ft", "m (x, y) and ft (z)"."""
-    if not isinstance(units, Mapping):
-        return units
-    axes = {"x, y": units.get("xy"), "z": units.get("z")}
-    return " and ".join(f"{unit} ({axis})" for axis, unit in axes.items() if unit is not None)
 
 
 def number_text(value: float) -> str:

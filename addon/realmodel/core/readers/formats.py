@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..base.text import reading
+from ..base.text import as_utf8, reading
 from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
@@ -33,6 +33,7 @@ from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, re
 from .rasters.geotiff import is_tiff, read_geotiff
 from .rasters.irap_grid import is_irap_grid, read_irap_grid
 from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
+from .tables.dialects import DIALECTS
 from .tables.points import begins_as_array, read_point_array, read_point_rows
 from .tables.sticks import begins_as_sticks, read_sticks
 
@@ -109,6 +110,7 @@ FORMATS = (
     FileFormat("STL", (".stl",), OBJECTS, begins_as_stl, as_a_whole(read_stl), by_ending=True),
     FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
+    *(FileFormat(d.label, d.endings, TABLE, d.begins, read_point_rows) for d in DIALECTS),
     FileFormat(
         "table of text",
         (".csv", ".xyz", ".txt", ".dat", ".tsv"),
@@ -124,7 +126,7 @@ def format_of(file: str | Path, *holds: str) -> FileFormat | None:
     Raises InputRefused where it cannot be read."""
     file = Path(file)
     with reading(file), file.open("rb") as opened:
-        head = opened.read(_HEAD)
+        head = as_utf8(opened.read(_HEAD))
         size = opened.seek(0, os.SEEK_END)
     able = [entry for entry in FORMATS if entry.holds in holds]
     by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)

@@ -9,7 +9,6 @@ from xml.etree import ElementTree
 
 from ...base.errors import InputRefused
 from ...base.text import Step, local_name, no_step, parse_xml, read_bytes
-from ...base.units import known_or_text
 from ..objects.geo_object import ObjectName, point_object
 from .triangle_mesh import surface_object
 
@@ -27,7 +26,7 @@ def read_landxml(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     for element in root.iter():
         kind = local_name(element)
         if kind in ("Metric", "Imperial"):
-            unit = known_or_text(element.get("linearUnit")) or unit
+            unit = element.get("linearUnit") or unit
         elif kind == "Surface":
             objects.append(_surface(file, element, unit))
     objects = [obj for obj in objects if obj is not None]

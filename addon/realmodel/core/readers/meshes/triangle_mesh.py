@@ -16,9 +16,8 @@ from ...base.algebra import begins_run
 from ...base.errors import InputRefused, counted
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeRows, Rows, in_memory, in_pieces
 from ...base.triangles import concave_divided, fanned
-from ...base.units import stated_units
 from ...settings.data_files import MeshFile
-from ..objects.geo_object import SURFACE, GeoObject, ObjectName, Values
+from ..objects.geo_object import SURFACE, GeoObject, ObjectName, Values, object_units
 
 _MOST_VERTICES = np.iinfo(np.int32).max
 
@@ -29,8 +28,8 @@ class TriangleMesh:
     within themselves where a fan would leave them.
 
     face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
-    unit: of its lengths (units.METERS), where the file says one, or {"xy": ..., "z": ...}; said_unit: one that
-    may not be meant. warnings: sentences.
+    unit: of its lengths, as the file names it, or {"xy": ..., "z": ...}; None: it states none. said_unit: one of
+    units.METERS that may not be meant. warnings: sentences.
     """
 
     vertices: np.ndarray
@@ -46,9 +45,9 @@ class TriangleMesh:
         """The vertices in the model's unit, z upward, and warnings. given: the import options of the user;
         where they have no unit, the unit of the file is used. gather: where the vertices are kept."""
         warnings = [f"{given.file}: {text}" for text in self.warnings]
-        units, said = stated_units(Path(given.file), given.units, self.unit, self.said_unit, model_unit)
-        given, warnings = replace(given, units=units), [*warnings, *said]
-        plan_scale, height_scale = given.scale(model_unit)
+        (plan, height), of_units = object_units(given, self, model_unit)
+        warnings += of_units
+        plan_scale, height_scale = replace(given, units={"xy": plan, "z": height}).scale(model_unit)
         if (plan_scale, height_scale) == (1.0, 1.0):
             return self.vertices, warnings
         scale = np.array([plan_scale, plan_scale, height_scale])

@@ -7,12 +7,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.text import Step, no_step
+from ...base.units import stated_units
+from ...settings.data_files import MeshFile, PointFile
+
+if TYPE_CHECKING:
+    from ..meshes.triangle_mesh import TriangleMesh
 
 POINTS, LINES, SURFACE, HOLE = "points", "lines", "surface", "borehole"
 
@@ -124,6 +129,24 @@ def _joined(pieces: list[GeoObject]) -> GeoObject:
     is_whole = all(piece.face_of_triangle is None for piece in pieces)
     owners = None if is_whole else np.concatenate(faces)
     return replace(joined, triangles=np.concatenate(triangles), face_of_triangle=owners)
+
+
+def object_units(
+    given: PointFile | MeshFile, obj: GeoObject | TriangleMesh, model_unit: str
+) -> tuple[tuple[str | None, str | None], list[str]]:
+    """The units of x and y, and of z, in which an object or a mesh is read, None for that of the model, and
+    warnings. Raises InputRefused where it states one that is not known."""
+    of_key = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
+    file, plan, height = Path(given.file), of_key.get("xy"), of_key.get("z")
+    if obj.unit is None:
+        if given.units is not None or obj.said_unit in (None, model_unit):
+            return (plan, height), []
+        what = f"its header says {obj.said_unit}; it is read in the unit of the model, {model_unit}"
+        return (None, None), [f'{file}: {what}: write units = "{obj.said_unit}" if the header is right']
+    texts = obj.unit if isinstance(obj.unit, Mapping) else {"xy": obj.unit, "z": obj.unit}
+    coordinates = [("x and y", texts.get("xy") or "", plan), ("z", texts.get("z") or "", height)]
+    (plan, height), warnings = stated_units(file, coordinates, model_unit)
+    return (plan, height), warnings
 
 
 def as_a_whole(read: Callable[[Path, Step], Iterable[ObjectName]]) -> Callable:
