@@ -340,7 +340,7 @@ class _Values:
                 )
             elif value != _END_OF_LINE and (count > 1 or value % 1):
                 self.warnings.append(
-                    f"{what}, which often means no data: it is used as a value; if it is none, set nodata = {value:g}"
+                    f"{what}, which often means no data: it is used; if it is none, set nodata = {value:g}"
                 )
         return values
 

@@ -117,7 +117,7 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
     wanted = wanted_columns(table, given.columns)
     rows = _read_rows(table, given, wanted, step, gather)
     if len(rows.points):
-        doubts = () if given.columns is not None else _doubts(table, wanted, rows.points[:, 2])
+        doubts = () if given.columns is not None else _doubts(table, wanted, rows.points[:, 2], given.z_axis)
         names = table.layout.names or ()
         named = tuple(names[column] for column in wanted) if max(wanted) < len(names) else ()
         of_names = [unit_text_of_column(name) for name in named] or [""] * 3
@@ -206,7 +206,7 @@ def _require_xyz_first(table: TextTable) -> None:
         raise InputRefused(f"{what}, and no header names x, y and z", file=table.file, advice=advice)
 
 
-def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray) -> tuple[str, ...]:
+def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str) -> tuple[str, ...]:
     """Sentences about columns that were guessed, or whose names say something else than they are read as."""
     names, called = table.layout.names or (), _named(table)
     doubts = []
@@ -220,22 +220,23 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray) -> tuple[str
                 doubts.append(f"{listed} may be {axis}, and '{names[column]}' is used: {_SAY_COLUMNS}")
         if {called[wanted[0]], called[wanted[1]]} & {*_DEGREES["x"], *_DEGREES["y"]}:
             doubts.append(
-                f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, heights "
-                "are not: project them (to UTM, say) in a GIS, or name other columns by 'columns'"
+                f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, "
+                "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
             )
-        if called[wanted[2]] in _DEPTHS and (z > 0).sum() * 2 > len(z):
+        if z_axis == "up" and called[wanted[2]] in _DEPTHS and (z > 0).sum() * 2 > len(z):
             doubts.append(
                 f"'{names[wanted[2]]}' is read as elevations, upward: if it has depths, set z_axis = \"down\""
             )
     elif len(names) == width > 2 and not any(map(is_number, names)):
         listed = ", ".join(f"'{name}'" for name in names[:3])
         doubts.append(
-            f"no column is named x, y or z: the first three, {listed}, are used; if that is wrong, {_SAY_COLUMNS}"
+            f"no column is named x, y or z: the first three, {listed}, are used; if that is wrong, "
+            f"{_SAY_COLUMNS}"
         )
     elif width > 3:
         doubts.append(
-            f"no header names its {width} columns: the first three are used as x, y and z; if that is wrong, set "
-            "columns = [1, 2, 3] with their numbers"
+            f"no header names its {width} columns: the first three are used as x, y and z; if that is "
+            "wrong, set columns = [1, 2, 3] with their numbers"
         )
     return tuple(doubts)
 
