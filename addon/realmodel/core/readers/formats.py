@@ -36,6 +36,7 @@ from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
 from .tables.dialects import DIALECTS
 from .tables.points import begins_as_array, read_point_array, read_point_rows
 from .tables.sticks import begins_as_sticks, read_sticks
+from .tables.workbook import begins_as_workbook
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
@@ -111,6 +112,7 @@ FORMATS = (
     FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     *(FileFormat(d.label, d.endings, TABLE, d.begins, read_point_rows) for d in DIALECTS),
+    FileFormat("Excel", (".xlsx", ".xlsm"), TABLE, begins_as_workbook, read_point_rows, has_layers=True),
     FileFormat(
         "table of text",
         (".csv", ".xyz", ".txt", ".dat", ".tsv"),

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ import numpy as np
 from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import JoinPieces, in_memory, in_pieces
 from ...base.no_value import NO_VALUE
-from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
+from ...base.text import BOM, Content, FileBytes, Step, encoding_of, no_step, pieces_of, text_content
 from ...base.units import unit_text_of_column
 from ...base.work import NativeError, native_module, on_threads
 from ...settings.data_files import PointFile, list_of
@@ -35,6 +36,7 @@ from .table_layout import (
     plain_name,
     table_layout,
 )
+from .workbook import begins_as_workbook, sheet_text
 
 _MOST_THREADS = 8
 _NO_ROW = re.compile(rb"\s*(?:[#!%>]|//|$)")
@@ -113,7 +115,7 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
 
     Raises InputRefused naming file and line.
     """
-    table = table_of(given)
+    table = table_of(given, step=step)
     wanted = wanted_columns(table, given.columns)
     rows = _read_rows(table, given, wanted, step, gather)
     if len(rows.points):
@@ -130,10 +132,19 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
     raise InputRefused(what, file=table.file)
 
 
-def table_of(given: PointFile, *wanted: str | int) -> TextTable:
+def table_of(given: PointFile, *wanted: str | int, step: Step = no_step) -> TextTable:
     """The open table of a file of points. wanted: further columns. Raises InputRefused."""
     columns = (*(given.columns or ()), *wanted, *given.where)
-    return open_table(Path(given.file), Expected(given.separator, columns, KNOWN), given.layer)
+    return open_table(Path(given.file), Expected(given.separator, columns, KNOWN), given.layer, step)
+
+
+def _has_columns(expected: Expected, cells: list[str]) -> bool:
+    """Whether the cells of a row are the names of the columns that are expected: those asked for, or else as
+    many as are needed."""
+    names = [name.lower() for name in expected.wanted if isinstance(name, str)]
+    if names:
+        return set(names) <= {cell.lower() for cell in cells}
+    return sum(_plain(cell) in expected.known for cell in cells) >= expected.columns
 
 
 @dataclass(frozen=True)
@@ -149,10 +160,15 @@ class TextTable:
         return column_number(self.file, self.layout, name)
 
 
-def open_table(file: Path, expected: Expected, sheet: str | None = None) -> TextTable:
-    """A table of text, or the sheet of a workbook, by name where there are several. Raises InputRefused where
-    there are no rows."""
-    raw = text_content(file)
+def open_table(file: Path, expected: Expected, sheet: str | None = None, step: Step = no_step) -> TextTable:
+    """A table of text, or the sheet of a workbook: by its name, or else the only one with the columns that
+    are expected. Raises InputRefused where there are no rows."""
+    raw: Content
+    if begins_as_workbook(FileBytes(file)[:100]):
+        raw = sheet_text(file, sheet, partial(_has_columns, expected), step)
+        expected = replace(expected, separator="\t")
+    else:
+        raw = text_content(file)
     dialect = next((entry for entry in DIALECTS if entry.begins(raw[:4096], len(raw))), None)
     if dialect is not None and dialect.not_rows is not None:
         raw = dialect.not_rows.sub(b"#", raw[:])
@@ -161,9 +177,13 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None) -> Text
     return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected, dialect))
 
 
+def _plain(name: str) -> str:
+    return re.sub(r"[\s_.-]+", "_", plain_name(name))
+
+
 def _named(table: TextTable) -> list[str]:
     """The names of the columns, for comparing."""
-    return [re.sub(r"[\s_.-]+", "_", plain_name(name)) for name in table.layout.names or ()]
+    return [_plain(name) for name in table.layout.names or ()]
 
 
 def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> list[int]:
