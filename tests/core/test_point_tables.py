@@ -257,7 +257,8 @@ def test_guessed_columns_are_a_warning(write):
         ((100, 120, -9999, -9999), 2, "2 points have the height -9999, far from all others"),
         ((100, 120, 1e30), 1, "1 point has the height 1e+30"),
         ((-3000, -2950, -999.25), 1, "1 point has the height -999.25"),
-        ((-1400.5, -200, -999.25), 0, "1 point has the height -999.25, which often means no data: it is used"),
+        ((-1400.5, -200, -999.25), 1, "1 point has the height -999.25, which often means no data, and"),
+        ((-1400, -200, -999, -999), 0, "2 points have the height -999, which often means no data: it is used"),
         ((9990, 9999, 10010), 0, None),  # among the others
         ((-1400, -200, -999), 0, None),
         ((-9999, -9999), 0, None),  # there is no other

@@ -332,13 +332,14 @@ class _Values:
             what = f"{self._file}: {number} the {called} {value:.9g}"
             near = min(abs(value - low), abs(value - high))
             is_far = near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
-            if is_far or value == self.nodata:
+            # of a number such as -999.25 it is less likely that it is a value
+            if is_far or value == self.nodata or value % 1 or abs(value) > 1e19:
                 values.append(value)
                 self.warnings.append(
                     f"{what}, {'far from all others, ' if is_far else ''}which often means no data, and left "
                     'out: if it is a value, set nodata = "none"'
                 )
-            elif value != _END_OF_LINE and (count > 1 or value % 1):
+            elif value != _END_OF_LINE and count > 1:
                 self.warnings.append(
                     f"{what}, which often means no data: it is used; if it is none, set nodata = {value:g}"
                 )

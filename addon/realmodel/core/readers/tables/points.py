@@ -39,6 +39,7 @@ from .table_layout import (
 from .workbook import begins_as_workbook, sheet_text
 
 _MOST_THREADS = 8
+_GROUPED = r"[+-]?(\d{{1,3}}(?:{0}\d{{3}})+)({1}\d*)?"  # by a sign between thousands, and a decimal mark
 _NO_ROW = re.compile(rb"\s*(?:[#!%>]|//|$)")
 _SAY_COLUMNS = 'set columns = ["X", "Y", "Z"]'
 # Names of coordinates, and what may stand before or behind them.
@@ -61,6 +62,10 @@ _BESIDE = (
     *("utm", "coord", "coordinate", "coordinates", "coords", "point", "rd", "pos", "position", "map", "grid"),
     *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat", "mga", "lv95", "gk"),
     *("world", "local", "projected", "nat_grid", "nap", "nn", "nhn", "asl", "amsl", "msl", "wert", "l93"),
+)
+_SYSTEM = re.compile(
+    r"(?:utm|mga|lv|gda|epsg|zone|l|gk|cc|rt|osgb|ch|etrs|wgs|nad|nzgd|sweref|dhdn|ed|itrf)?\d+[a-z]{0,2}"
+    r"|lambert|dhdn|osgb|bng|nztm|amersfoort|stereo\d*|swissgrid|gauss|krueger|krüger|tm"
 )
 AXES = {
     axis: (
@@ -178,7 +183,9 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None, step: S
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"[\s_.-]+", "_", plain_name(name))
+    """The name of a column, for comparing, without those of coordinate systems."""
+    words = re.split(r"[\s_.-]+", plain_name(name))
+    return "_".join([word for word in words if not _SYSTEM.fullmatch(word)] or words)
 
 
 def _named(table: TextTable) -> list[str]:
@@ -234,7 +241,8 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str)
     width = next((n for n, entry in enumerate(row) if entry.startswith("#")), len(row))
     if not KNOWN.isdisjoint(called):
         for axis, column in zip("xyz", wanted, strict=True):
-            same = [names[n] for n, name in enumerate(called) if name in AXES[axis]]
+            likely = (n for n, name in enumerate(called) if name in AXES[axis] and len(name) > 1)
+            same = [names[n] for n in sorted({column, *likely})]
             if len(same) > 1:
                 listed = number_list([f"'{name}'" for name in same])
                 doubts.append(f"{listed} may be {axis}, and '{names[column]}' is used: {_SAY_COLUMNS}")
@@ -243,7 +251,8 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str)
                 f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, "
                 "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
             )
-        if z_axis == "up" and called[wanted[2]] in _DEPTHS and (z > 0).sum() * 2 > len(z):
+        words = re.findall(r"[^\W\d_]+", names[wanted[2]].lower())
+        if z_axis == "up" and not set(words).isdisjoint(_DEPTHS) and (z > 0).sum() * 2 > len(z):
             doubts.append(
                 f"'{names[wanted[2]]}' is read as elevations, upward: if it has depths, set z_axis = \"down\""
             )
@@ -283,7 +292,7 @@ def _read_rows(
     native = native_module()
     filters, missing = _filters(table, point_file)
     mark = point_file.decimal or "."
-    if point_file.decimal is None and table.layout.separator != ",":
+    if point_file.decimal is None:
         numeric = [column for column, (numbers, _) in filters if numbers]
         if decimal_comma(_head_entries(table, [*columns, *numeric])):
             mark = ","
@@ -291,8 +300,16 @@ def _read_rows(
         try:
             return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
-            undecided = point_file.decimal is None and mark == "." and table.layout.separator != ","
-            if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
+            plain = _without_thousands(table, columns, point_file.decimal)
+            if error.kind == "not_a_number" and plain is not None:
+                table, mark = plain
+                continue
+            if (
+                point_file.decimal is None
+                and mark == "."
+                and error.kind == "not_a_number"
+                and _has_decimal_commas(table, columns, error)
+            ):
                 mark = ","
                 continue
             raise _refused(table, columns, mark, error) from error
@@ -407,6 +424,35 @@ def body_rows(table: TextTable) -> Iterator[list[str]]:
     body = table.raw[table.layout.body :]
     lines = (line for line in body.split(b"\n") if not _NO_ROW.match(line))
     return (table.layout.fields(line.decode(table.encoding, "replace").strip("\r")) for line in lines)
+
+
+def _without_thousands(
+    table: TextTable, columns: Sequence[int], decimal: str | None
+) -> tuple[TextTable, str] | None:
+    """The table without separators of thousands, and its decimal mark, where its numbers can be read in
+    one way only: 451,234.5 or 5.932.425; else None."""
+    entries = [entry for entry in _head_entries(table, columns) if entry]
+    ways = []
+    for mark in ".,":
+        for sign in (",", ".", "'", "’", " ", "\xa0", "\u202f"):
+            grouped = re.compile(_GROUPED.format(re.escape(sign), re.escape(mark)))
+            in_groups = [match for match in map(grouped.fullmatch, entries) if match]
+            others = len(entries) - len(in_groups)
+            is_sure = sign not in ",." or any(match[1].count(sign) > 1 or match[2] for match in in_groups)
+            if sign == mark or not in_groups or not is_sure or decimal not in (None, mark):
+                continue
+            if others == sum(is_number(entry, mark) and not grouped.fullmatch(entry) for entry in entries):
+                ways.append((sign, mark))
+    if len(ways) != 1:
+        return None
+    (sign, mark), encoding = ways[0], table.encoding
+    between = re.compile(rb"(?<=\d)%b(?=\d{3}(?!\d))" % re.escape(sign.encode(encoding)))
+    body = table.raw[table.layout.body :]
+    if sign == table.layout.separator:  # within quotes alone
+        body = re.sub(rb'"[^"\n]*"', lambda match: between.sub(b"", match[0]), body)
+    else:
+        body = between.sub(b"", body)
+    return replace(table, raw=table.raw[: table.layout.body] + body), mark
 
 
 def _has_decimal_commas(table: TextTable, columns: Sequence[int], error: NativeError) -> bool:

@@ -21,6 +21,7 @@ _COMMENTS = ("#", "!", "%", ">", "//")
 _SIGNS = "#!%/"
 _COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
+_GROUPED = re.compile(r"[+-]?\d{1,3}(?:([,.'’\xa0\u202f ])\d{3})(?:\1\d{3})*(?:[.,]\d*)?")
 _COMMENT = re.compile(r"(^|(?<=[\s,;|]))#.*$")
 _TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
 _NAMES_SHOWN = 12
@@ -63,10 +64,10 @@ def is_number(entry: str, decimal: str = ".") -> bool:
     return bool(pattern.fullmatch(entry) or NOT_FINITE.fullmatch(entry))
 
 
-def is_any_number(entry: str, separator: str) -> bool:
-    """Whether a text is a number, with a decimal point, or with a decimal comma where commas do not
-    separate."""
-    return is_number(entry) or (separator != "," and is_number(entry, ","))
+def is_any_number(entry: str) -> bool:
+    """Whether an entry of a row is a number, with a decimal point or comma, or in groups of thousands. Where
+    commas separate, an entry that has one stands in quotes."""
+    return is_number(entry) or is_number(entry, ",") or bool(_GROUPED.fullmatch(entry))
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def table_layout(
     first, headings, count = len(lines), [], 0
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
-        numbers = sum(is_any_number(entry, separator) for entry in entries)
+        numbers = sum(is_any_number(entry) for entry in entries)
         if numbers and not (
             numbers < expected.numbers and any(plain_name(entry) in known_names for entry in entries)
         ):
@@ -158,7 +159,7 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
     for text in texts:
         for separator in _SEPARATORS:
             entries = fields(_COMMENT.sub("", text), separator)
-            counted = sum(is_any_number(entry, separator) for entry in entries)
+            counted = sum(is_any_number(entry) for entry in entries)
             if len(entries) >= columns and counted >= numbers:
                 return separator
     for separator in _SEPARATORS:
