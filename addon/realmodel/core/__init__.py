@@ -35,6 +35,7 @@ from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
+from .readers.point_input import PointData, read_points
 from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
 from .results.contours import Contour
@@ -96,6 +97,7 @@ __all__ = [
     "ObservedContact",
     "OutputFailed",
     "PlannedHole",
+    "PointData",
     "PointFile",
     "Project",
     "Property",
@@ -132,6 +134,7 @@ __all__ = [
     "load_project",
     "mesh_region",
     "open_tiles",
+    "read_points",
     "save_mesh",
     "triangulate_polygon",
 ]

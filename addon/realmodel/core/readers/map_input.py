@@ -67,7 +67,7 @@ def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
 def _read(layer: MapLayer, step: Step, heights: Heights | None) -> Shapes:
     file = Path(layer.file)
     file_format = format_of(file, SHAPES)
-    if layer.layer is not None and (file_format is None or not file_format.has_layers):
+    if layer.layer is not None and (file_format is None or not file_format.layers):
         what = f"it is not a GeoPackage, so it has no layer '{layer.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     if file.suffix.lower() in _BESIDE_SHAPEFILE:

@@ -50,6 +50,15 @@ def read_geopackage(layer: MapLayer, step: Step = no_step, heights: Heights | No
         raise InputRefused(what, file=file, advice=advice if changed else None) from error
 
 
+def geopackage_layers(file: Path) -> list[str]:
+    """The layers of features. Raises InputRefused."""
+    try:
+        with closing(connect(file)) as base:
+            return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]
+    except UNREADABLE as error:
+        raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
+
+
 def system_of(file: Path, layer: str | None) -> str:
     """What a GeoPackage says of the coordinate system of a layer, or of its only one; "" where nothing."""
     with suppress(*UNREADABLE), closing(connect(file)) as base:

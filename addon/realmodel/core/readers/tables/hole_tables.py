@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ...base.errors import InputRefused
+from ...base.no_value import NO_VALUE
 from ...base.text import Step
 from ...base.units import other_units
 from .points import TextTable, open_table
@@ -89,8 +90,6 @@ OBSERVED = {
     "error": ("height_error",),
 }
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
-# What stands in a column where there is no value; in small letters.
-NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
 _LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
