@@ -80,7 +80,7 @@ def _named(blocks: dict[tuple[str, str], list]) -> dict[str, tuple[list, bool]]:
         some = [
             faces
             for (label, group), faces in blocks.items()
-            if name == (label if has_objects else group) or name and name in (group, *group.split())
+            if name == (label if has_objects else group) or (name and name in (group, *group.split()))
         ]
         named[name] = some, name not in whole
     return named

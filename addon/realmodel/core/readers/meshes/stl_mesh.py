@@ -43,7 +43,7 @@ def read_stl(file: str | Path, step: Step = no_step) -> list[ObjectName]:
         if _is_text(raw):
             solids = _solids(raw)
         else:
-            solids = [(raw[:5].lower() == b"solid" and _name(raw[5:80]) or "", _facets(raw))]
+            solids = [((raw[:5].lower() == b"solid" and _name(raw[5:80])) or "", _facets(raw))]
     except UNREADABLE as error:
         raise unreadable(file, "STL", error) from error
     step(0.5)

@@ -25,9 +25,7 @@ from ..meshes.triangle_mesh import mesh_of_corners, object_of_mesh
 from .dxf_tags import BINARY, Entity, read_entities
 from .geo_object import LINES, POINTS, SURFACE, GeoObject, ObjectName, point_object
 
-_BEGINNING = re.compile(
-    rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE
-)
+_BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
 _CLOSED_M, _IS_3D, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 8, 16, 32, 64
 _NOT_READ = ("3DSOLID", "ARC", "BODY", "CIRCLE", "ELLIPSE", "REGION", "SOLID", "SPLINE", "SURFACE", "TRACE")
@@ -190,7 +188,7 @@ def _axes(entity: Entity) -> np.ndarray:
     "arbitrary axis algorithm" of the reference. Raises ValueError."""
     normal = np.array([entity.number(code, default) for code, default in ((210, 0), (220, 0), (230, 1))])
     length = math.sqrt(float(normal @ normal))
-    if not length > 0.0 or (normal[:2] == 0).all() and normal[2] > 0:
+    if not length > 0.0 or ((normal[:2] == 0).all() and normal[2] > 0):
         return np.eye(3)
     normal /= length
     beside = [0.0, 1.0, 0.0] if (np.abs(normal[:2]) < 1 / 64).all() else [0.0, 0.0, 1.0]
@@ -272,7 +270,7 @@ def _mesh_faces(entity: Entity) -> list[list[_Place]]:
     places = list(zip(entity.all_of(10), entity.all_of(20), entity.all_of(30), strict=True))
     numbers, is_list = [], False
     for code, value in entity.pairs:
-        is_list = code == 93 or is_list and code != 94
+        is_list = code == 93 or (is_list and code != 94)
         if is_list and code == 90:
             numbers.append(int(value))
     faces, at = [], 0
