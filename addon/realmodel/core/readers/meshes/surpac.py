@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.text import Step, no_step, read_text
+from ...base.text import FileBytes, Step, no_step, read_text
 from ..objects.geo_object import LINES, ObjectName, point_object
 from .triangle_mesh import surface_object
 
@@ -28,7 +28,7 @@ def read_dtm(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
     """The sets of triangles of a .dtm: of one, by the name of the file, of several, by their numbers and those of
     their objects. Raises InputRefused naming file and line."""
     file = Path(file)
-    if b"\0" in file.open("rb").read(4096):
+    if b"\0" in FileBytes(file)[:4096]:
         raise InputRefused("a binary .dtm of Surpac is not read", file=file, advice="save it as text (ASCII)")
     places = np.array([place for _, _, place in _records(_strings_of(file))]).reshape(-1, 3)
     sets: dict[str, list[list[int]]] = {}
