@@ -35,6 +35,7 @@ from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
+from .readers.mesh_data import MeshData, read_mesh
 from .readers.point_input import PointData, read_points
 from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
@@ -85,6 +86,7 @@ __all__ = [
     "MapArea",
     "MapFile",
     "MapLayer",
+    "MeshData",
     "MeshEstimate",
     "MeshFile",
     "Misfit",
@@ -134,6 +136,7 @@ __all__ = [
     "load_project",
     "mesh_region",
     "open_tiles",
+    "read_mesh",
     "read_points",
     "save_mesh",
     "triangulate_polygon",

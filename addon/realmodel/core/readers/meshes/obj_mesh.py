@@ -12,7 +12,7 @@ from pathlib import Path
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step, text_lines
 from ..objects.geo_object import ObjectName, point_object
-from .triangle_mesh import UNREADABLE, mesh_of_faces, surface_object
+from .triangle_mesh import UNREADABLE, surface_object
 
 _COMMENT = re.compile(r"(?:^|\s)#.*")
 
@@ -35,7 +35,6 @@ def read_obj(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     vertices: list[tuple[float, ...]] = []
     blocks: dict[tuple[str, str], list[tuple[tuple[int, ...], int]]] = {}  # by object and group: faces, lines
     label, group = "", ""
-    block = blocks.setdefault(("", ""), [])
     for number, line in _lines(file, step):
         key, *words = line.split()
         try:
@@ -46,17 +45,16 @@ def read_obj(file: str | Path, step: Step = no_step) -> list[ObjectName]:
                 corners = [int(word.partition("/")[0]) for word in words]
                 # from 1; below zero from the last vertex so far
                 face = tuple([c - 1 if c > 0 else len(vertices) + c if c else -1 for c in corners])
-                block.append((face, number))
+                blocks.setdefault((label, group), []).append((face, number))
             elif key in ("o", "g"):
                 name = " ".join(words)
                 label, group = (name, "") if key == "o" else (label, name)
-                block = blocks.setdefault((label, group), [])
         except UNREADABLE as error:
             raise InputRefused(f"'{line:.40}' cannot be read", file=file, line=number) from error
-    blocks = {names: faces for names, faces in blocks.items() if faces}
     if not blocks:
-        mesh_of_faces(file, vertices, []) if not vertices else None
-        return [point_object("", vertices)]
+        if not vertices:
+            raise InputRefused("the mesh has no faces", file=file)
+        return [point_object(file.stem, vertices)]
     return [
         surface_object(
             file,

@@ -29,7 +29,7 @@ _BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
 _CLOSED_M, _IS_3D, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 8, 16, 32, 64
 _NOT_READ = ("3DSOLID", "ARC", "BODY", "CIRCLE", "ELLIPSE", "REGION", "SOLID", "SPLINE", "SURFACE", "TRACE")
-_MOST_INSERTS, _DEEPEST = 1_000_000, 32
+_MOST_INSERTS, _DEEPEST = 100_000, 32
 _Place = tuple[float, float, float]
 
 
@@ -139,6 +139,8 @@ class _Drawing:
                     yield entity, None, layer, within
                 elif (shape := _shape(entity)) is not None:
                     yield entity, shape if change is None else _moved(shape, change), layer, within
+            except InputRefused:
+                raise
             except (ValueError, KeyError, IndexError, OverflowError) as error:
                 what = f"a {entity.name} that cannot be read"
                 raise InputRefused(what, file=self._file, line=entity.line) from error
