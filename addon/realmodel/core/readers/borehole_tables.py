@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.errors import UsageError
 from ..base.table import Table
-from ..base.units import MODEL_UNIT, factors
+from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from ..settings.method_options import OptionRefused
 from .borehole_input import read_repaired
@@ -48,9 +48,9 @@ def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **ke
     >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
     """
     given = _given(file, keys)
-    plan, height = factors(given.units, units)
     tables = read_repaired(given, units)
-    scale = np.array([plan, plan, height])
+    scale = tables.scale(units)
+    height = scale[2]
     return BoreholeTables(
         _collars(tables, scale),
         _survey(tables, height),

@@ -14,7 +14,7 @@ import numpy as np
 from ...base.algebra import norm
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT, factors
+from ...base.units import MODEL_UNIT
 from ...settings.data_files import Boreholes
 from .hole_data import read_hole_rows
 from .hole_tables import NO_VALUE, Row
@@ -299,10 +299,8 @@ def read_interval_values(
     """The columns of the table of intervals of some boreholes that do not say where an interval is, in the
     order of the table. A column is of numbers where all its values are numbers. Rows without a depth, and
     of holes without a collar, are left out. Raises InputRefused naming file and line."""
-    assert given.intervals is not None
-    plan, height = factors(given.units, model_unit)
-    scale = np.array([plan, plan, height])
-    tables = read_hole_rows(given, step, ("hole", "from", "to"))
+    tables = read_hole_rows(given, model_unit, step, ("hole", "from", "to"))
+    scale = tables.scale(model_unit)
     holes, read, ends, depths = Holes(tables), [], [], []
     names: list[str] = []
     refused: InputRefused | None = None
