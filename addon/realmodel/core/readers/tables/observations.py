@@ -16,6 +16,7 @@ from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...notebook import ShortRepr
 from ...settings.data_files import ObservationFile
+from .hole_problems import LEFT_OUT, HoleProblem
 from .hole_tables import OBSERVED, Row, rows
 from .unit_names import UnitNames
 
@@ -245,6 +246,21 @@ def unknown_block(
     """What is left out as its name, `code`, means no block. where: it in messages."""
     text = f"{where}: this is no block, surface or body, or several blocks; give its meaning in names"
     return LeftOut("unknown_block", text, code, hole, depth, place)
+
+
+def left_out_of(problems: Sequence[HoleProblem]) -> list[LeftOut]:
+    """The intervals and picks among the problems of tables that are left out."""
+    return [
+        LeftOut(
+            problem.kind,
+            problem.text,
+            problem.code,
+            problem.hole,
+            None if np.isnan(problem.depth) else problem.depth,
+        )
+        for problem in problems
+        if problem.code is not None and problem.action == LEFT_OUT
+    ]
 
 
 # Why observations are not used, by the kind of their warning: found in their tables, or from their places.
