@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...base.errors import counted
 from .hole_data import HoleTables
 from .hole_problems import LEFT_OUT, REPAIRED, USED, ProblemList
 from .hole_tables import Row
@@ -78,7 +79,9 @@ def _interval(row: Row, units: UnitNames, problems: ProblemList) -> _Interval | 
     lacking = [name for name in ("from", "to") if not row.has(name)]
     if not lacking:
         return _Interval(row, row.number("from"), row.number("to"), code, units.block(code) or code)
-    if "block" not in row.columns or not units.says_nothing(code):
+    if len(row.entries) <= row.columns.get("block", 0):
+        problems.note("no_row", LEFT_OUT, row, f"it has {counted(len(row.entries), 'value')}")
+    elif "block" not in row.columns or not units.says_nothing(code):
         depth = next((row.number(name) for name in ("from", "to") if row.has(name)), None)
         said = problems.taken(row, lacking[0])
         problems.note("no_depth", LEFT_OUT, row, said or f"'{lacking[0]}' has no value", depth, code)

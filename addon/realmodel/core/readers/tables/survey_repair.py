@@ -176,16 +176,17 @@ def _without_slips(stations: list[Row], angle: str, sign: float, problems: Probl
 
     stations = list(stations)
     for n, row in enumerate(stations):
-        beside = _beside(stations, n)
-        if not beside or not row.has("azimuth"):
+        dip = row.number("dip")
+        if sign * dip >= 0 or not row.has("azimuth"):
             continue
+        beside = _beside(stations, n)
         dips = [other.number("dip") for other in beside]
-        other_sign = all(dip * row.number("dip") < 0 for dip in dips)
-        mended = row.with_values({"dip": -row.number("dip")})
+        mended = row.with_values({"dip": -dip})
         bends = [_bends(station, beside, towards) for station in (row, mended)]
-        if other_sign and sign * row.number("dip") < 0 and bends[0] > _SHARP and bends[1] < 0.5 * bends[0]:
-            what = f"dip is {row.number('dip'):g}, and {dips[0]:g} beside it"
-            problems.note("dip_sign", REPAIRED, row, what, row.number("depth"))
+        if dips and max(sign * dip for dip in dips) > 0 and bends[0] > _SHARP and bends[1] < 0.5 * bends[0]:
+            problems.note(
+                "dip_sign", REPAIRED, row, f"dip is {dip:g}, and {dips[0]:g} beside it", row.number("depth")
+            )
             stations[n] = mended
     return stations
 
@@ -197,12 +198,16 @@ def _one_each(stations: list[Row], angle: str, sign: float, problems: ProblemLis
         return _towards(row, angle, sign)
 
     single: list[Row] = []
-    for depth in dict.fromkeys(row.number("depth") for row in stations):
-        alike = [row for row in stations if row.number("depth") == depth]
-        beside = _beside(stations, stations.index(alike[0]))
-        best = min(alike, key=lambda row: _bends(row, beside, towards))
+    alike: dict[float, list[Row]] = {}
+    for row in stations:
+        alike.setdefault(row.number("depth"), []).append(row)
+    for depth, rows in alike.items():
+        best = rows[0]
+        if len(rows) > 1:
+            beside = _beside(stations, stations.index(best))
+            best = min(rows, key=lambda row: _bends(row, beside, towards))
         single.append(best)
-        for row in alike:
+        for row in rows:
             if row is best:
                 continue
             if _bends(row, [best], towards) > 1e-6:
@@ -210,14 +215,15 @@ def _one_each(stations: list[Row], angle: str, sign: float, problems: ProblemLis
                 problems.note("two_directions", LEFT_OUT, row, what, depth)
             else:
                 problems.note("double", REPAIRED, row, f"the station of line {best.line} again", depth)
-    while True:
-        turns = [n for n in range(1, len(single)) if _bends(single[n], [single[n - 1]], towards) > _OPPOSITE]
-        if not turns:
-            return single
-        n = turns[0]
-        if _bends(single[n], single[n + 1 : n + 2], towards) < _SHARP and n == 1 and len(single) > 2:
-            n = 0
-        problems.note(
-            "station", LEFT_OUT, single[n], "the hole would turn back here", single[n].number("depth")
-        )
+    while len(single) > 1:
+        ways = np.array([towards(row) for row in single])
+        turns = np.flatnonzero(np.degrees(dogleg_angles(ways[:-1], ways[1:])) > _OPPOSITE)
+        if not len(turns):
+            break
+        n = int(turns[0]) + 1
+        if n == 1 and len(single) > 2 and _bends(single[1], single[2:3], towards) < _SHARP:
+            n = 0  # the others go on
+        depth = single[n].number("depth")
+        problems.note("station", LEFT_OUT, single[n], "the hole would turn back here", depth)
         del single[n]
+    return single
