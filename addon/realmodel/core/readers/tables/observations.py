@@ -267,8 +267,8 @@ def left_out_of(problems: Sequence[HoleProblem]) -> list[LeftOut]:
 IN_TABLES = {
     "overlap": "intervals or polygons of different blocks overlap, and what both claim is not used",
     "from_to": "intervals end above where they begin, and are not used",
-    "no_depth": "intervals have no depth, or observations no place, and are not used",
-    "no_collar": "intervals are of holes whose collars are not known, and are not used",
+    "no_depth": "intervals or picks have no depth, or observations no place, and are not used",
+    "no_collar": "intervals or picks are of holes whose collars are not known, and are not used",
     "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
     "dip_unit": "dips are of no surface or block of the rock mass, and are not used: give their meaning",
     "dip_series": "dips of a series are of no surface of it, or of a block beside one, and are not used",
