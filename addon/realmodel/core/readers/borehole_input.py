@@ -13,8 +13,9 @@ from ..base.units import MODEL_UNIT, factors
 from ..settings.data_files import Boreholes
 from .object_input import is_object_file, read_hole_objects
 from .point_input import refuse_keys
-from .tables.boreholes import Picks, read_borehole_tables
-from .tables.hole_tables import COLLARS, INTERVALS, SURVEY, other_units_in
+from .tables.boreholes import Picks, picks_of_tables
+from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
+from .tables.hole_tables import other_units_in
 from .tables.unit_names import UnitNames
 
 
@@ -36,11 +37,9 @@ def read_boreholes(
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
-        picks = read_borehole_tables(given, step, scale, units, plan_step)
-        files = (given.collars, given.survey, given.picks, given.intervals)
-        for file, columns in zip(files, (COLLARS, SURVEY, COLLARS, INTERVALS), strict=True):
-            if file is not None:
-                picks.warnings += other_units_in(given, Path(file), columns, model_unit)
+        tables = read_repaired(given, model_unit, step)
+        picks = picks_of_tables(tables, scale, units, plan_step)
+        picks.warnings += tables.warnings
         return picks
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
@@ -49,3 +48,12 @@ def read_boreholes(
     picks = read_hole_objects(given, scale, units, plan_step)
     step(1.0)
     return picks
+
+
+def read_repaired(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step) -> HoleTables:
+    """The tables of some boreholes. Raises InputRefused naming file and line."""
+    tables = read_hole_rows(given, step)
+    for kind, columns in MEANINGS.items():
+        if (file := getattr(given, kind)) is not None:
+            tables.warnings += other_units_in(given, Path(file), columns, model_unit)
+    return tables

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -115,15 +115,41 @@ class Reading(Protocol):
 
 
 @dataclass(frozen=True)
+class Header:
+    """names: of the columns as they are written, none without a header. line: its number, 1 without one.
+    columns: the numbers of the columns from 0, by their meaning."""
+
+    file: Path
+    names: Sequence[str]
+    line: int
+    columns: dict[str, int]
+
+
+@dataclass(frozen=True)
 class Row:
-    table: TextTable
+    header: Header
     line: int
     entries: list[str]
-    columns: dict[str, int]
-    decimal: str
+    decimal: str = "."
+
+    @property
+    def file(self) -> Path:
+        return self.header.file
+
+    @property
+    def columns(self) -> dict[str, int]:
+        return self.header.columns
 
     def refuse(self, what: str, advice: str | None = None) -> InputRefused:
-        return InputRefused(what, file=self.table.file, line=self.line, advice=advice)
+        return InputRefused(what, file=self.file, line=self.line, advice=advice)
+
+    def with_values(self, **values: float | str) -> Row:
+        """The same with other values in some of its columns, by their meaning."""
+        entries = list(self.entries)
+        for column, value in values.items():
+            text = value if isinstance(value, str) else repr(float(value)).replace(".", self.decimal)
+            entries[self.columns[column.strip("_")]] = text
+        return replace(self, entries=entries)
 
     def text(self, column: str) -> str:
         at = self.columns[column]
@@ -143,7 +169,7 @@ class Row:
 
     def called(self, column: str) -> str:
         """The name of a column in the header, in small letters; empty without a header."""
-        names, at = self.table.layout.names or (), self.columns[column]
+        names, at = self.header.names, self.columns[column]
         return plain_name(names[at]) if at < len(names) else ""
 
     def number(self, column: str, advice: str | None = None) -> float:
@@ -167,9 +193,10 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
     table = _opened(given, file, known)
-    columns = _columns(given, table, known, needed)
-    separator = table.layout.separator
-    body = table.raw[table.layout.body :].decode(table.encoding)
+    layout = table.layout
+    header = Header(file, layout.names or (), layout.name_line or 1, _columns(given, table, known, needed))
+    separator = layout.separator
+    body = table.raw[layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
     if given.decimal is None and separator != ",":
         entries = list(_parts(body, separator))
@@ -183,9 +210,7 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
         stripped = line.strip()
         if not stripped or stripped.startswith("#"):
             continue
-        yield Row(
-            table, table.layout.body_line + number, table.layout.fields(line.rstrip("\r")), columns, decimal
-        )
+        yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
 
 
 def other_units_in(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
