@@ -6,15 +6,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.text import no_step
 from ..base.units import MODEL_UNIT
-from ..readers.borehole_input import read_boreholes
-from ..readers.tables.hole_tables import COLLARS, INTERVALS, normalized_name, rows
+from ..readers.borehole_input import read_boreholes, read_repaired
+from ..readers.tables.hole_tables import normalized_name
 from ..readers.tables.unit_names import UnitNames
 from ..settings.data_files import Boreholes
 
@@ -80,7 +79,7 @@ class HoleLogs:
 def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
     """The logs and picks of boreholes, read as a project reads them, in order of their names. Raises
     InputRefused naming file and line."""
-    names = _unit_names(_codes(given))
+    names = _unit_names(_codes(given, units))
     picks = read_boreholes(given, units, no_step, UnitNames(names, names))
     logs: list[Log] = []
     for observations in picks.observations:
@@ -102,14 +101,11 @@ def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
     return HoleLogs(logs, picks.points, orders, picks.warnings)
 
 
-def _codes(given: Boreholes) -> list[str]:
+def _codes(given: Boreholes, units: str) -> list[str]:
     """What the tables write in the columns of units."""
-    codes: list[str] = []
-    for file, known, column in ((given.intervals, INTERVALS, "block"), (given.picks, COLLARS, "surface")):
-        if file is not None:
-            table = rows(given, Path(file), known, ("hole", column), no_step)
-            codes += [row.text(column) for row in table if row.has(column)]
-    return codes
+    tables = read_repaired(given, units)
+    named = (*((row, "block") for row in tables.intervals or ()), *((row, "surface") for row in tables.picks or ()))
+    return [row.text(column) for row, column in named if row.has(column)]
 
 
 def _unit_names(codes: Iterable[str]) -> list[str]:
