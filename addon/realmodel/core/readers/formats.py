@@ -20,6 +20,7 @@ from .gdal_files import (
     read_gdal_raster,
     read_gdal_shapes,
 )
+from .holes.ags import begins_as_ags, read_ags
 from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import geopackage_layers, is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
@@ -53,7 +54,7 @@ from .tables.workbook import begins_as_workbook, sheet_names
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
-MESH, STICKS, TABLE = "mesh", "sticks", "table"
+MESH, STICKS, TABLE, HOLES = "mesh", "sticks", "table", "holes"
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,8 @@ class FileFormat:
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
     by_ending: a file whose beginning tells nothing is one, too, if its name ends so. layers(file): the
     names among which `layer` chooses, of layers of shapes or sheets; None: a file has only one. What names
-    objects holds OBJECTS.
+    objects holds OBJECTS. downward_dip: of boreholes, which dips go down where
+    the format says it.
     """
 
     label: str
@@ -74,6 +76,7 @@ class FileFormat:
     read: Callable[..., Any]
     by_ending: bool = False
     layers: Callable[[Path], list[str]] | None = None
+    downward_dip: str | None = None
 
 
 FORMATS = (
@@ -130,6 +133,7 @@ FORMATS = (
     FileFormat("DXF", (".dxf",), OBJECTS, begins_as_dxf, as_a_whole(read_dxf), by_ending=True),
     FileFormat("STL", (".stl",), OBJECTS, begins_as_stl, as_a_whole(read_stl), by_ending=True),
     FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
+    FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     *(FileFormat(d.label, d.endings, TABLE, d.begins, read_point_rows) for d in DIALECTS),
     FileFormat("Excel", (".xlsx", ".xlsm"), TABLE, begins_as_workbook, read_point_rows, layers=sheet_names),
