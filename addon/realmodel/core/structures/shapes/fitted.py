@@ -18,6 +18,7 @@ from ...base.work import Work, native_module
 from ...heights import Task, heights
 from ...project.structure_entries import Fault
 from ...readers.fault_input import FaultLines, read_fault_trace
+from ...settings.dips import Dips, SpaceDips
 from ...settings.directions import COMPASS, checked_direction, degrees_text, unit_vector
 from ...settings.meshers import AUTO
 from ...settings.methods import checked_options
@@ -27,6 +28,7 @@ from .ground import Top, heights_on, levels_of, plan_of
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
 _TRIED = 100  # points of a path: so many are tried as the first one, and parts of the path are turned round
+_NARROW = 0.1  # of their length: of points that are so narrow a strip dips say better how it is turned
 _NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
@@ -168,30 +170,75 @@ def _shares(stick: np.ndarray) -> np.ndarray:
     return way / way[-1]
 
 
-def fit_points(work: Work, points: np.ndarray, extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
+def fit_points(
+    work: Work,
+    points: np.ndarray,
+    extend: float = 0.0,
+    extend_sideways: bool = True,
+    dips: SpaceDips | None = None,
+) -> Sheet:
     """The smooth surface through scattered points, over the plane that fits them best.
 
     points: (P, 3). The plane is that of the least squares of distances; on it the points' convex outline is
     meshed, and their distances from the plane are interpolated (discrete smooth interpolation). extend: how
-    far the outline goes on beyond the points; with extend_sideways False up and down the dip only. Returns
-    vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
+    far the outline goes on beyond the points; with extend_sideways False up and down the dip only. dips: of
+    the surface, checked; the direction of their normals does not matter. Where the points show no plane, it
+    is that of the dips. Returns vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
     points = points[ascending(*points.T)]  # the order of rows must not decide a result
     middle = points.mean(axis=0)
-    spread, axes = principal_axes(points)
-    if len(points) < 3 or spread[1] <= _IN_LINE * spread[0]:
-        what = "its points lie in one line: they show no surface"
-        raise InputRefused(what, advice="give points on the whole fault, or sticks")
-    along, down, normal = plane_axes(axes[2])
-    local = np.column_stack([dot(points - middle, axis) for axis in (along, down, normal)])
+    dips = None if dips is None or not dips.in_use.any() else dips
+    axes = plane_axes(_plane_normal(points, dips))
+    local = np.column_stack([dot(points - middle, axis) for axis in axes])
+    slopes = None if dips is None else _slopes(dips, middle, axes)
     outline = _outline(local[:, :2], extend, extend_sideways)
-    nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
+    nodes, triangles = mesh_rings(work, [outline], _edges(local, outline))
     options = checked_options(_METHOD, {})
-    task = Task(work, np.ascontiguousarray(local), nodes, options, triangles)
+    task = Task(work, np.ascontiguousarray(local), nodes, options, triangles, dips=slopes)
     interpolation = heights(_METHOD, task)
+    along, down, normal = axes
     vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + interpolation.z[:, None] * normal
     return Sheet(vertices, triangles)
+
+
+def _plane_normal(points: np.ndarray, dips: SpaceDips | None) -> np.ndarray:
+    """(3,) the normal of the plane over which the surface through points lies: of the points, or of dips
+    where these lie in about one line, which is in the plane."""
+    spread, axes = principal_axes(points)
+    shows_plane = len(points) > 2 and spread[1] > (_IN_LINE if dips is None else _NARROW) * spread[0]
+    if shows_plane:
+        return axes[2]
+    if dips is None:
+        what = "its points lie in one line: they show no surface"
+        raise InputRefused(what, advice="give points on the whole fault, its dips, or sticks")
+    normals = dips.normals[dips.in_use]
+    normals = normals / norm(normals)[:, None]
+    normal = (normals * np.where(dot(normals, normals[0]) < 0, -1.0, 1.0)[:, None]).mean(axis=0)
+    if spread[0] > 0:
+        normal = normal - dot(normal, axes[0]) * axes[0]
+    if norm(normal) < _NARROW:
+        raise InputRefused("its dips are at right angles to its points", advice="correct the dips")
+    return _unit(normal)
+
+
+def _slopes(dips: SpaceDips, middle: np.ndarray, axes: Sequence[np.ndarray]) -> Dips | None:
+    """Dips as slopes over a plane; those at right angles to it say nothing there."""
+    places, normals = dips.positions[dips.in_use] - middle, dips.normals[dips.in_use]
+    plan = np.column_stack([dot(places, axis) for axis in axes[:2]])
+    along, down, up = (dot(normals, axis) for axis in axes)
+    has_slope = np.abs(up) > _NARROW * norm(normals)
+    if not has_slope.any():
+        return None
+    gradients = -np.column_stack([along, down])[has_slope] / up[has_slope, None]
+    return Dips(plan[has_slope], gradients).merged()[0]
+
+
+def _edges(local: np.ndarray, outline: np.ndarray) -> MeshOptions:
+    """The mesh of an outline: finer where points are; of a few equal triangles where all are in one place."""
+    if np.ptp(local[:, :2], axis=0).any():
+        return MeshOptions(AUTO, points=local[:, :2])
+    return MeshOptions(float(np.ptp(outline, axis=0).max()) / _ROUND)
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
