@@ -7,13 +7,14 @@ top, below the oldest surface is the basement. Each group of conformable surface
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...base.algebra import norm
-from ...base.errors import InputRefused
+from ...base.algebra import dot, norm
+from ...base.errors import InputRefused, number_list
 from ...settings.dips import SpaceDips
 from ..project import Project, Rock, Surface
 from ..project_checks import check_project
@@ -22,6 +23,7 @@ from ..structure_entries import Fault
 
 ERODE, ONLAP, FAULT = "erode", "onlap", "fault"
 _RULES = {ERODE: "erosional", ONLAP: "conformable"}
+_LOOKED_AT = 200  # points of a surface that are compared with those of another
 _BASEMENT, _TOP, _ROCK = "basement", "top", "rock"
 
 
@@ -66,6 +68,7 @@ class Box:
 def project_of_groups(groups: Sequence[PeerGroup], box: Box, name: str, basement: str | None) -> Project:
     """The project of groups, the youngest first. basement: the name of what is below the oldest surface, if
     it has one. Raises InputRefused."""
+    groups = [_by_age(group) for group in groups]
     beds = [group for group in groups if group.relation != FAULT]
     youngest_first = [surface for group in beds for surface in group.surfaces]
     if not youngest_first:
@@ -90,6 +93,35 @@ def project_of_groups(groups: Sequence[PeerGroup], box: Box, name: str, basement
     project = Project(name, [rock], faults=_faults(groups, box))
     check_project(project)
     return project
+
+
+def _by_age(group: PeerGroup) -> PeerGroup:
+    """A group with its surfaces as points and dips say, the youngest first, as GemPy sorts them by their
+    values; with a warning where they are listed otherwise."""
+    surfaces, dips = group.surfaces, group.dips
+    if group.relation == FAULT or len(surfaces) < 2 or not len(dips):
+        return group
+    ranks = [
+        sum(_above(one.points, other.points, dips) for other in surfaces if other is not one)
+        for one in surfaces
+    ]
+    order = sorted(range(len(surfaces)), key=lambda number: -ranks[number])
+    if order == list(range(len(surfaces))):
+        return group
+    by_age = [surfaces[number] for number in order]
+    names = number_list(repr(surface.name) for surface in by_age)
+    text = f"group '{group.name}': its points and dips say that the order is {names}, youngest first; it is used"
+    warnings.warn(f"{text} instead of that of the list", stacklevel=3)
+    return replace(group, surfaces=by_age)
+
+
+def _above(points: np.ndarray, others: np.ndarray, dips: SpaceDips) -> float:
+    """1 where points lie on the younger side of others, by the nearest dips; -1 on the older; 0 undecided."""
+    points, others = (places[:: -(-len(places) // _LOOKED_AT)] for places in (points, others))
+    apart = points[:, None] - others[None]
+    away = apart[np.arange(len(points)), norm(apart).argmin(axis=1)]
+    normals = dips.normals[norm(points[:, None] - dips.positions[None]).argmin(axis=1)]
+    return float(np.sign(np.sign(dot(away, normals)).sum()))
 
 
 def _faults(groups: Sequence[PeerGroup], box: Box) -> list[Fault]:

@@ -187,13 +187,19 @@ def fit_points(
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
     points = points[ascending(*points.T)]  # the order of rows must not decide a result
-    middle = points.mean(axis=0)
     dips = None if dips is None or not dips.in_use.any() else dips
-    axes = plane_axes(_plane_normal(points, dips))
+    if dips is not None and not _shows_plane(points, _NARROW):
+        points, axes, slopes = *_ruled(points, dips, extend), None
+    elif _shows_plane(points, _IN_LINE):
+        axes = plane_axes(principal_axes(points)[1][2])
+        slopes = None if dips is None else _slopes(dips, points.mean(axis=0), axes)
+    else:
+        what = "its points lie in one line: they show no surface"
+        raise InputRefused(what, advice="give points on the whole fault, its dips, or sticks")
+    middle = points.mean(axis=0)
     local = np.column_stack([dot(points - middle, axis) for axis in axes])
-    slopes = None if dips is None else _slopes(dips, middle, axes)
     outline = _outline(local[:, :2], extend, extend_sideways)
-    nodes, triangles = mesh_rings(work, [outline], _edges(local, outline))
+    nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
     options = checked_options(_METHOD, {})
     task = Task(work, np.ascontiguousarray(local), nodes, options, triangles, dips=slopes)
     interpolation = heights(_METHOD, task)
@@ -202,24 +208,31 @@ def fit_points(
     return Sheet(vertices, triangles)
 
 
-def _plane_normal(points: np.ndarray, dips: SpaceDips | None) -> np.ndarray:
-    """(3,) the normal of the plane over which the surface through points lies: of the points, or of dips
-    where these lie in about one line, which is in the plane."""
-    spread, axes = principal_axes(points)
-    shows_plane = len(points) > 2 and spread[1] > (_IN_LINE if dips is None else _NARROW) * spread[0]
-    if shows_plane:
-        return axes[2]
-    if dips is None:
-        what = "its points lie in one line: they show no surface"
-        raise InputRefused(what, advice="give points on the whole fault, its dips, or sticks")
+def _shows_plane(points: np.ndarray, narrow: float) -> bool:
+    spread = principal_axes(points)[0]
+    return len(points) > 2 and bool(spread[1] > narrow * spread[0])
+
+
+def _ruled(
+    points: np.ndarray, dips: SpaceDips, extend: float
+) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Points in about one line, with copies of them at both sides in the plane that their dips show, so that
+    the surface goes on sideways as it is; and the axes of that plane."""
+    spread, (line, _, _) = principal_axes(points)
     normals = dips.normals[dips.in_use]
     normals = normals / norm(normals)[:, None]
     normal = (normals * np.where(dot(normals, normals[0]) < 0, -1.0, 1.0)[:, None]).mean(axis=0)
+    far = max(extend, float(spread[0]))
+    if far == 0:
+        advice = "say with extend = ... how far it goes"
+        raise InputRefused("its points are in one place: they show no surface", advice=advice)
     if spread[0] > 0:
-        normal = normal - dot(normal, axes[0]) * axes[0]
-    if norm(normal) < _NARROW:
-        raise InputRefused("its dips are at right angles to its points", advice="correct the dips")
-    return _unit(normal)
+        normal = normal - dot(normal, line) * line
+        if norm(normal) < _NARROW:
+            raise InputRefused("its dips are at right angles to its points", advice="correct the dips")
+    axes = plane_axes(_unit(normal))
+    moves = [far * axes[0], far * axes[1]] if spread[0] == 0 else [far * np.cross(axes[2], line)]
+    return np.concatenate([points, *(points + side * move for move in moves for side in (-1, 1))]), axes
 
 
 def _slopes(dips: SpaceDips, middle: np.ndarray, axes: Sequence[np.ndarray]) -> Dips | None:
@@ -232,13 +245,6 @@ def _slopes(dips: SpaceDips, middle: np.ndarray, axes: Sequence[np.ndarray]) -> 
         return None
     gradients = -np.column_stack([along, down])[has_slope] / up[has_slope, None]
     return Dips(plan[has_slope], gradients).merged()[0]
-
-
-def _edges(local: np.ndarray, outline: np.ndarray) -> MeshOptions:
-    """The mesh of an outline: finer where points are; of a few equal triangles where all are in one place."""
-    if np.ptp(local[:, :2], axis=0).any():
-        return MeshOptions(AUTO, points=local[:, :2])
-    return MeshOptions(float(np.ptp(outline, axis=0).max()) / _ROUND)
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
