@@ -95,7 +95,7 @@ class ClosedForm:
             return np.ones(len(points), bool)
         vertices, triangles = self.region
         level = Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
-        return np.isfinite(heights_at(work, level, points[:, :2]))
+        return np.isfinite(_heights_in_columns(work, level, points))
 
     def youngest_heights(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the heights of the youngest surface over or under points (N, 3), NaN where it has none."""
@@ -128,10 +128,16 @@ class ClosedForm:
         for sheet, compartments in of_sheet.items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
-                plan = points[here, :2]
-                is_new = begins_run(plan)  # points above one another have one height
-                heights[here] = heights_at(work, sheet, plan[is_new])[np.cumsum(is_new) - 1]
+                heights[here] = _heights_in_columns(work, sheet, points[here])
         return heights
+
+
+def _heights_in_columns(work: Work, sheet: Sheet, points: np.ndarray) -> np.ndarray:
+    """(N,) the heights of a sheet over or under points (N, 3); asked once for those above one another that
+    follow each other."""
+    plan = points[:, :2]
+    is_new = begins_run(plan)
+    return heights_at(work, sheet, plan[is_new])[np.cumsum(is_new) - 1]
 
 
 def closed_forms(model: ModelData) -> list[ClosedForm]:

@@ -68,7 +68,7 @@ class Box:
 def project_of_groups(groups: Sequence[PeerGroup], box: Box, name: str, basement: str | None) -> Project:
     """The project of groups, the youngest first. basement: the name of what is below the oldest surface, if
     it has one. Raises InputRefused."""
-    groups = [_by_age(group) for group in groups]
+    groups = list(map(_by_age, groups))
     beds = [group for group in groups if group.relation != FAULT]
     youngest_first = [surface for group in beds for surface in group.surfaces]
     if not youngest_first:
@@ -111,7 +111,7 @@ def _by_age(group: PeerGroup) -> PeerGroup:
     by_age = [surfaces[number] for number in order]
     names = number_list(repr(surface.name) for surface in by_age)
     text = f"group '{group.name}': its points and dips say that the order is {names}, youngest first; it is used"
-    warnings.warn(f"{text} instead of that of the list", stacklevel=3)
+    warnings.warn(f"{text} instead of that of the list", stacklevel=4)
     return replace(group, surfaces=by_age)
 
 
