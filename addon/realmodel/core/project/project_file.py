@@ -27,7 +27,8 @@ FORMAT = 1
 
 
 def load_project(path: str | Path) -> Project:
-    """The project of a file, or of a folder with a project.toml. Raises InputRefused, naming the line, for anything that is not as it must be.
+    """The project of a file, or of a folder with a project.toml. Raises InputRefused, naming the line, for
+    anything that is not as it must be.
 
     The files that it names have to exist; they are read when the model is built.
     """

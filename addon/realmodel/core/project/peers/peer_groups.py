@@ -110,8 +110,8 @@ def _by_age(group: PeerGroup) -> PeerGroup:
         return group
     by_age = [surfaces[number] for number in order]
     names = number_list(repr(surface.name) for surface in by_age)
-    text = f"group '{group.name}': its points and dips say that the order is {names}, youngest first; it is used"
-    warnings.warn(f"{text} instead of that of the list", stacklevel=4)
+    text = f"group '{group.name}': by its points and dips the order is {names}, youngest first; it is used"
+    warnings.warn(f"{text}, not that of the list", stacklevel=4)
     return replace(group, surfaces=by_age)
 
 
