@@ -70,7 +70,7 @@ def draw(picture, path):
     blocks, sections = [], []
     for number in range(picture.realizations):
         realization = realizer.realization(number)
-        blocks.append(realization.blocks_at(samples.places))
+        blocks.append(realization.block_at(samples.places))
         sections.append(realization.section(*picture.plane))
     names = [block.name for block in model.blocks]
     shares = [(np.array(blocks) == number).mean(axis=0) for number in range(len(names))]

@@ -56,7 +56,7 @@ class EnsembleInTheScene(PanelCase):
         origin = np.array(self.scene.get("realmodel_origin", (0, 0, 0)))
         centers = np.array([face.center for face in mesh.polygons]) + origin
         blocks = self.blocks()
-        found = np.array([each.blocks_at(centers) for each in models])
+        found = np.array([each.block_at(centers) for each in models])
         self.assertLess((found != blocks).mean(), 0.01)  # single precision at borders of blocks
         self.assertGreater((blocks != blocks[0]).any(axis=0).sum(), 10)
 

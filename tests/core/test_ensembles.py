@@ -280,16 +280,16 @@ def test_realizations_that_reach_below_the_base_are_cut_there():
     assert np.isfinite(ensemble(replace(project(), rocks=[low]), 20).volumes).all()
 
 
-def test_blocks_at_points():
+def test_block_at_points():
     base = build(project(), cells="blocks")
     points = np.array([[50, 50, -1], [50, 50, 1], [50, 50, 100], [500, 50, 1.0]])
-    assert base.blocks_at(points).tolist() == [-1, 0, -1, -1]
-    assert base.blocks_at(np.empty((0, 3))).tolist() == []
+    assert base.block_at(points).tolist() == [-1, 0, -1, -1]
+    assert base.block_at(np.empty((0, 3))).tolist() == []
     for wrong in (points[0], points[:, :2], [[0.0, 0.0, np.nan]], "here"):
         with pytest.raises(UsageError, match="points must be an array"):
-            base.blocks_at(wrong)
+            base.block_at(wrong)
     with pytest.raises(UsageError, match="ask the whole model"):
-        base.clip((1, 0, 0), (50, 50, 0)).blocks_at(points)
+        base.clip((1, 0, 0), (50, 50, 0)).block_at(points)
 
 
 def test_an_ensemble_says_what_its_realizations_say():
@@ -304,7 +304,7 @@ def test_an_ensemble_says_what_its_realizations_say():
     assert found.surface_mean[0] == pytest.approx(z.mean(axis=0))
     assert found.surface_deviation[0] == pytest.approx(z.std(axis=0, ddof=1), abs=1e-9)
     assert found.probability[:, 0] == pytest.approx(
-        np.mean([m.blocks_at(places) == 0 for m in every], axis=0)
+        np.mean([m.block_at(places) == 0 for m in every], axis=0)
     )
     assert found.probability[0, 0] == 1 and found.probability[2, 0] == 0
     assert found.entropy()[[0, 2]].tolist() == [0, 0]

@@ -116,7 +116,7 @@ def test_tilted_blocks_of_a_rift():
             expected.append(next((n for n, top in zip(cover, above[1:], strict=True) if z < top), None))
         else:
             expected.append(next((n for n, top in zip(names, tops, strict=False) if z < top), names[-1]))
-    found = model.blocks_at(points)
+    found = model.block_at(points)
     found = [model.blocks[number].name if number >= 0 else None for number in found]
     wrong = [n for n in np.flatnonzero(kept) if found[n] != expected[n]]
     assert sum(kept) > 2000

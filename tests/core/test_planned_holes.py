@@ -71,7 +71,7 @@ def test_a_hole_in_any_direction_is_in_the_blocks_of_the_closed_form(model, coll
     inside = ((places[:, :2] > 1e-6) & (places[:, :2] < 10 - 1e-6)).all(
         axis=1
     )  # beside walls a rounding decides
-    assert found[inside].tolist() == model.blocks_at(places[inside]).tolist()
+    assert found[inside].tolist() == model.block_at(places[inside]).tolist()
     assert (np.diff([each.begin for each in hole.intervals]) > 0).all()
 
 
@@ -184,7 +184,7 @@ def test_holes_of_a_faulted_model_are_in_its_compartments():
     hole = model.planned_hole(collar, azimuth=60, dip=25, length=1.2 * float(np.linalg.norm(high - low)))
     assert len(hole.contacts) > 4
     depths = np.array([0.5 * (each.begin + each.end) for each in hole.intervals])
-    wanted = model.blocks_at(hole.axis.places(depths)).tolist()
+    wanted = model.block_at(hole.axis.places(depths)).tolist()
     assert [each.block for each in hole.intervals] == wanted
     names = {each.surface for each in hole.contacts}
     assert names & {fault.name for fault in model.project.faults}
@@ -207,7 +207,7 @@ def test_a_hole_through_a_recumbent_fold_meets_blocks_again(monkeypatch, cells):
         blocks = [each.block for each in hole.intervals]
         assert len(blocks) > len(set(blocks))
         depths = np.array([0.5 * (each.begin + each.end) for each in hole.intervals])
-        assert blocks == model.blocks_at(hole.axis.places(depths)).tolist()
+        assert blocks == model.block_at(hole.axis.places(depths)).tolist()
         between = [each for each in hole.contacts if min(each.above, each.below) >= 0]
         assert {each.surface for each in between} <= set(model.surface_names)
         assert all(each.deviation is None for each in between)

@@ -76,7 +76,7 @@ def assert_blocks(model, count=4000, seed=5):
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     points = random.uniform(low - 0.05 * (high - low), high + 0.05 * (high - low), (count, 3))
     blocks = np.append(model.cell_block, -1)[cells_at(model, points)]
-    expected = model.blocks_at(points)
+    expected = model.block_at(points)
     wrong = np.flatnonzero(blocks != expected)
     assert len(wrong) == 0, [(points[n].tolist(), blocks[n], expected[n]) for n in wrong[:5]]
     volumes = np.bincount(model.cell_block, model.cell_volumes, len(model.blocks))

@@ -112,7 +112,7 @@ def test_boreholes(tmp_path):
 
 def whole_blocks(model, places):
 
-    return model.blocks_at(places).tolist()
+    return model.block_at(places).tolist()
 
 
 usual = settings(

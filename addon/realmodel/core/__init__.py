@@ -27,6 +27,8 @@ from .model.model import Model
 from .model.planned_hole import PlannedHole
 from .model.surface_set import SurfaceSet, build_surfaces
 from .project.library import Library, Property
+from .project.peers.from_gempy import from_gempy
+from .project.peers.from_loop import from_loop
 from .project.project import Project, Rock, Surface
 from .project.project_file import load_library, load_project
 from .project.series import Series
@@ -136,6 +138,8 @@ __all__ = [
     "estimate",
     "estimate_mesh",
     "fill_with_strata",
+    "from_gempy",
+    "from_loop",
     "interpolate",
     "intersect",
     "load_library",

@@ -61,7 +61,7 @@ def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 
     """The sums of one realization. places: (N, 3)."""
     model = realizer.realization(number, threads=threads)
     changes = differences(realizer.model, model, threads)
-    blocks = model.blocks_at(places, threads=threads)
+    blocks = model.block_at(places, threads=threads)
     return Sums(
         np.array([[block.volume for block in model.blocks]]),
         changes,

@@ -15,7 +15,7 @@ from ..cells.model_data import ModelData
 from ..exporters import MODEL, SURFACES, check_tolerance
 from ..exporters.report import Report, model_report
 from ..fields import ScalarField
-from ..proof.closed_form import blocks_at
+from ..proof.closed_form import block_at, grid
 from ..proof.left_out_holes import cross_validate_holes
 from ..proof.misfits import misfits
 from ..proof.observed import observed
@@ -191,7 +191,8 @@ class Model(ModelData):
     fence = cutting.fence
     fence_through_holes = cutting.fence_through_holes
     borehole = borehole
-    blocks_at = blocks_at
+    block_at = block_at
+    grid = grid
     planned_hole = planned_hole
     observed = observed
     misfits = misfits

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.atomic import make_folder
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
@@ -39,6 +40,7 @@ from .plan_input import files_of_sizes, is_several, layer_files, map_layer
 from .series import Series
 from .structure_entries import MESH, POINTS, Body, Fault, Shaped, library_id
 
+PROJECT_FILE = "project.toml"  # of a project that is a folder
 BASE_BLOCK = "base block"  # the name of the block on the base, where its surface gives it none
 # The shapes of a surface on which a setting has an effect: not on a ready mesh, nor on a level set.
 OF_SHEETS, OF_POINTS = ("sheet",), ("sheet", "level set")
@@ -453,6 +455,21 @@ class Project(Compared):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
         return [Path(file) for file in files if file is not None]
+
+    def save(self, folder: str | Path) -> Path:
+        """Writes the project into a folder, which is made if needed: project.toml, whose path is returned,
+        and beside it the arrays as tables and meshes. load_project of it, or of the folder, is the same
+        project. Files that were there under these names are replaced; all appear whole or none does.
+
+        Raises UsageError where a file that the project names was not read yet (the project of its built
+        model has all), InputRefused for a project that could not be built, OutputFailed.
+        """
+        from .project_writer import save_project  # it knows projects
+
+        path = Path(folder) / PROJECT_FILE
+        make_folder(folder)
+        save_project(self, path)
+        return path
 
     def names_of_units(self, rock: Rock) -> list[str]:
         """What a name in a table of a rock mass may mean: its blocks and surfaces, and the bodies."""

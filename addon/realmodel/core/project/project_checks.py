@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError
 from ..settings.data_files import MapFile, MapLayer
-from ..settings.dips import Dips, SpaceDips
+from ..settings.dips import DipFile, Dips, SpaceDips
 from ..settings.meshers import AUTO, local_lengths
 from ..settings.method_options import OptionRefused, check_fields, is_name
 from ..settings.methods import (
@@ -157,9 +157,13 @@ def _check_sheets(rock: Rock, series: Series, members: list[int], refuse: Refuse
 
 
 def _check_dips_of_series(series: Series, refuse: Refuse) -> None:
-    check_table_file(series.dip_file, "dips", refuse)
-    allowed = (SpaceDips,) if series.kind == FIELD else (SpaceDips, Dips)
-    if series.dip_file is None and series.dips is not None and not isinstance(series.dips, allowed):
+    if series.kind == FIELD or not isinstance(series.dips, Dips):
+        _check_space_dips(series.dips, series.dip_file, refuse)
+
+
+def _check_space_dips(dips: Any, dip_file: DipFile | None, refuse: Refuse) -> None:
+    check_table_file(dip_file, "dips", refuse)
+    if dip_file is None and dips is not None and not isinstance(dips, SpaceDips):
         raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
 
 
@@ -206,6 +210,7 @@ def _check_fault(project: Project, fault: Fault) -> None:
     refuse = fault.refused
     _check_structure_shape(fault, refuse, ("trace", "points", "mesh"))
     check_values(fault, refuse)
+    _check_space_dips(fault.dips, fault.dip_file, refuse)
     for key in keys_without_effect(fault, fault.shape_kind):
         if FAULT[key].shapes == OF_TRACES:
             raise refuse(f"'{key}' has no effect, as its shape is no trace", key, "add trace = ...")

@@ -20,18 +20,21 @@ from ..settings.setting import Setting, declarations, settings_of
 from .entry import check_file, errors_located, is_file
 from .library import PROPERTY, Library, Property, check_property
 from .plan_input import is_place_elsewhere
-from .project import PROJECT, Project
+from .project import PROJECT, PROJECT_FILE, Project
 from .project_checks import check_project
 
 FORMAT = 1
 
 
 def load_project(path: str | Path) -> Project:
-    """The project of a file. Raises InputRefused, naming the line, for anything that is not as it must be.
+    """The project of a file, or of a folder with a project.toml. Raises InputRefused, naming the line, for
+    anything that is not as it must be.
 
     The files that it names have to exist; they are read when the model is built.
     """
     path = Path(path)
+    if path.is_dir():
+        path /= PROJECT_FILE
     document = TomlDocument(path)
     top = TomlTable(document, document.content, (), "")
     version = top.integer("format", required=True)

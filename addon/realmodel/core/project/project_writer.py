@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -35,9 +35,8 @@ _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
 def save_project(project: Project, path: str | Path) -> list[Path]:
     """Writes a project whose shapes are arrays to a project file; returns all files written.
 
-    Its library goes to NAME_library.toml beside it, each mesh to an OFF and the points of each surface to a
-    CSV file, named after the project file, the rock mass and the surface; faults and bodies to OFF files. All
-    appear whole or none does.
+    Its library goes to NAME_library.toml beside it, each mesh to an OFF file, points and dips to CSV files,
+    named after the project file, the rock mass and the surface, or the fault. All appear whole or none does.
     Raises UsageError for another ending than .toml, InputRefused for a project that could not be built,
     OutputFailed.
     """
@@ -156,9 +155,6 @@ def _require_read(entry: Any) -> None:
     files = [getattr(entry, name, None) for name in ("input_file", "dip_file")]
     if any(files) or isinstance(getattr(entry, "trace", None), str):
         raise UsageError(f"{entry.item}: its file has not been read; build the model first")
-    if isinstance(entry, (Fault, Body)) and entry.vertices is None and getattr(entry, "trace", None) is None:
-        what = "no surface is fitted to its points yet; build the model first"
-        raise UsageError(f"{entry.item}: {what}")
 
 
 def _as_written(entry: Any) -> Any:
@@ -166,11 +162,11 @@ def _as_written(entry: Any) -> Any:
     if isinstance(entry, Rock):
         return replace(entry, names={})  # what they mean is in the observations
     if (isinstance(entry, Surface) and entry.has_points) or (
-        isinstance(entry, Fault) and entry.trace is not None
+        isinstance(entry, Fault) and entry.vertices is None
     ):
         return entry
     if isinstance(entry, Fault):
-        entry = replace(entry, points=None, stick=None, extend=0.0)
+        entry = replace(entry, points=None, dips=None, stick=None, extend=0.0)
     if isinstance(entry, (Surface, Fault, Body)):
         return replace(entry, mesh=entry.triangulation())  # type: ignore[arg-type]  # in the place of a file
     return entry
@@ -183,7 +179,9 @@ def _library(field: _Value) -> str:
 def _points(field: _Value) -> str | None:
     if not len(field.value):
         return None
-    return toml_value(field.files.write(field.names, ".csv", points_text(field.value)))
+    is_sticks = np.ndim(field.value[0]) > 1
+    text = sticks_text(field.value) if is_sticks else points_text(field.value)
+    return toml_value(field.files.write(field.names, ".csv", text))
 
 
 def _mesh(field: _Value) -> str:
@@ -195,10 +193,10 @@ def _table_file(field: _Value) -> str | None:
     table, rock = field.value, field.rock
     if not len(table):
         return None
-    assert rock is not None
     if isinstance(table, SpaceDips):
         text = space_dips_text(table)
     else:
+        assert rock is not None
         text = _named_dips_text(rock, table) if isinstance(table, Dips) else observations_text(rock)
     return toml_value(field.files.write((*field.names, field.key), ".csv", text))
 
@@ -281,6 +279,16 @@ def _text(value: str) -> str:
 def points_text(points: ArrayLike) -> bytes:
     """Points (P, 3) as CSV."""
     return b"x,y,z\n" + _rows(np.asarray(points, np.float64), ",")
+
+
+def sticks_text(sticks: Sequence[ArrayLike]) -> bytes:
+    """Fault sticks, (N, 3) each, as CSV, numbered from 1."""
+    body = [
+        b"%d,%s\n" % (number, row)
+        for number, stick in enumerate(sticks, 1)
+        for row in _rows(np.asarray(stick, np.float64), ",").splitlines()
+    ]
+    return b"stick,x,y,z\n" + b"".join(body)
 
 
 def dips_text(dips: Dips) -> bytes:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.data_files import MeshFile, PointFile, is_wkt
+from ..settings.dips import DIPS, DipFile, SpaceDips, dip_file_of
 from ..settings.directions import checked_direction
 from ..settings.method_options import OptionRefused, surface
 from ..settings.setting import Setting, declared, described, settings_of
@@ -93,8 +94,10 @@ class Fault(Shaped):
 
     Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
     or `points` through which a surface is fitted: scattered (P, 3), sticks as a list of arrays (N, 3), or a
-    file of either (.pol, or a table; `stick` names the column of the sticks' names). `extend`: how far
-    the mesh is continued beyond its border, or the fitted surface beyond its points, model units.
+    file of either (.pol, or a table; `stick` names the column of the sticks' names); scattered ones may have
+    `dips`, a file, a DipFile or SpaceDips, of which the fitted surface has the attitudes: with one of them a
+    single point is enough. `extend`: how far the mesh is continued beyond its border, or the fitted surface
+    beyond its points, model units.
 
     Or its shape is a `trace`, the line in which it cuts the ground, with a `dip` in degrees below the
     horizontal: points (N, 2) or (N, 3), several such lines, well-known text, or a file or PointFile of lines.
@@ -137,6 +140,7 @@ class Fault(Shaped):
         check=_checked_stick,
         shapes=("points",),
     )
+    dips: SpaceDips | DipFile | str | Path | None = described(replace(DIPS, shapes=("points",)))
     extend: float = declared(
         0.0,
         kind="length",
@@ -184,6 +188,11 @@ class Fault(Shaped):
     def shape_kind(self) -> str:
         """The kind of its shape, "trace", "points" or "mesh", by which settings have an effect."""
         return "trace" if self.trace is not None else "points" if self.points is not None else "mesh"
+
+    @property
+    def dip_file(self) -> DipFile | None:
+        """The file of its dips and how it is read; None where they are arrays, or there are none."""
+        return None if isinstance(self.dips, SpaceDips) else dip_file_of(self.dips)
 
     def trace_line(self) -> np.ndarray:
         """(N, 3) the trace, once it is read as one line (traces.read_trace)."""

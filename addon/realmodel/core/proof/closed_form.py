@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.algebra import norm
+from ..base.algebra import begins_run, norm
 from ..base.errors import UsageError, place_text
 from ..base.named import keyword_only
 from ..base.triangles import Sheet
@@ -95,7 +95,7 @@ class ClosedForm:
             return np.ones(len(points), bool)
         vertices, triangles = self.region
         level = Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
-        return np.isfinite(heights_at(work, level, points[:, :2]))
+        return np.isfinite(_heights_in_columns(work, level, points))
 
     def youngest_heights(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the heights of the youngest surface over or under points (N, 3), NaN where it has none."""
@@ -128,8 +128,16 @@ class ClosedForm:
         for sheet, compartments in of_sheet.items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
-                heights[here] = heights_at(work, sheet, points[here, :2])
+                heights[here] = _heights_in_columns(work, sheet, points[here])
         return heights
+
+
+def _heights_in_columns(work: Work, sheet: Sheet, points: np.ndarray) -> np.ndarray:
+    """(N,) the heights of a sheet over or under points (N, 3); asked once for those above one another that
+    follow each other."""
+    plan = points[:, :2]
+    is_new = begins_run(plan)
+    return heights_at(work, sheet, plan[is_new])[np.cumsum(is_new) - 1]
 
 
 def closed_forms(model: ModelData) -> list[ClosedForm]:
@@ -179,16 +187,16 @@ def _forms(entries: Sequence[RockInput], structures: Structures, number: dict[in
 
 
 @keyword_only
-def blocks_at(model: ModelData, points: ArrayLike, *, threads: int = 0) -> np.ndarray:
-    """(N,) int64 the number of the block at each point (N, 3), model units; -1 where there is none.
+def block_at(model: ModelData, points: ArrayLike, *, threads: int = 0) -> np.ndarray:
+    """(N,) int32 the number of the block at each point (N, 3), model units; -1 where there is none.
 
     By the closed form of docs/dev/geometry.md, not by the cells: many points are fast. Heights of a surface
     are rounded as its triangles give them: a point that lies on it within a rounding may get either side.
     threads: 0 for all that there are. Raises UsageError where points are no (N, 3) of finite numbers, and
     for a half: ask the whole model.
 
-    >>> model.blocks_at([(3.5, 1.0, 1.0), (3.5, 1.0, 4.0), (3.5, 1.0, 9.0)])
-    array([ 0,  2, -1])
+    >>> model.block_at([(3.5, 1.0, 1.0), (3.5, 1.0, 4.0), (3.5, 1.0, 9.0)])
+    array([ 0,  2, -1], dtype=int32)
     """
     if model.is_cut:
         raise UsageError("a cut model has no closed form: ask the whole model")
@@ -198,7 +206,31 @@ def blocks_at(model: ModelData, points: ArrayLike, *, threads: int = 0) -> np.nd
         raise UsageError("points must be an array (N, 3) of numbers") from error
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         raise UsageError(f"points must be an array (N, 3) of finite numbers, not {points.shape}")
-    return run(lambda work: blocks_of_all(work, closed_forms(model), points), threads=check_threads(threads))
+    threads = check_threads(threads)
+    blocks = run(lambda work: blocks_of_all(work, closed_forms(model), points), threads=threads)
+    return blocks.astype(np.int32)
+
+
+@keyword_only
+def grid(model: ModelData, shape: Sequence[int], *, threads: int = 0) -> np.ndarray:
+    """(nx, ny, nz) int32 the number of the block at the center of each cell of a regular grid of the model's
+    box, as `block_at` says; -1 where there is none. The first cell is the lowest in x, y and z.
+
+    shape: how many cells along x, y and z. threads: 0 for all that there are. Raises UsageError.
+
+    >>> model.grid((2, 1, 3))[:, 0].tolist()
+    [[0, 0, 2], [0, 0, 2]]
+    """
+    counts = np.asarray(shape)
+    if counts.shape != (3,) or counts.dtype.kind not in "iu" or (counts < 1).any():
+        raise UsageError(f"a grid has three numbers of cells, along x, y and z, not {shape!r}")
+    if not len(model.vertices):
+        return np.full(counts, AIR, np.int32)
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    centers = [a + (np.arange(n) + 0.5) * ((b - a) / n) for a, b, n in zip(low, high, counts, strict=True)]
+    x, y, z = np.meshgrid(*centers, indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    return block_at(model, points, threads=threads).reshape(counts)
 
 
 def blocks_of_all(work: Work, forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:

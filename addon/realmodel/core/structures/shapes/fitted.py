@@ -18,6 +18,7 @@ from ...base.work import Work, native_module
 from ...heights import Task, heights
 from ...project.structure_entries import Fault
 from ...readers.fault_input import FaultLines, read_fault_trace
+from ...settings.dips import Dips, SpaceDips
 from ...settings.directions import COMPASS, checked_direction, degrees_text, unit_vector
 from ...settings.meshers import AUTO
 from ...settings.methods import checked_options
@@ -27,6 +28,7 @@ from .ground import Top, heights_on, levels_of, plan_of
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
 _TRIED = 100  # points of a path: so many are tried as the first one, and parts of the path are turned round
+_NARROW = 0.1  # of their length: of points that are so narrow a strip dips say better how it is turned
 _NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
@@ -168,30 +170,81 @@ def _shares(stick: np.ndarray) -> np.ndarray:
     return way / way[-1]
 
 
-def fit_points(work: Work, points: np.ndarray, extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
+def fit_points(
+    work: Work,
+    points: np.ndarray,
+    extend: float = 0.0,
+    extend_sideways: bool = True,
+    dips: SpaceDips | None = None,
+) -> Sheet:
     """The smooth surface through scattered points, over the plane that fits them best.
 
     points: (P, 3). The plane is that of the least squares of distances; on it the points' convex outline is
     meshed, and their distances from the plane are interpolated (discrete smooth interpolation). extend: how
-    far the outline goes on beyond the points; with extend_sideways False up and down the dip only. Returns
-    vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
+    far the outline goes on beyond the points; with extend_sideways False up and down the dip only. dips: of
+    the surface, checked; the direction of their normals does not matter. Where the points show no plane, it
+    is that of the dips. Returns vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
     points = points[ascending(*points.T)]  # the order of rows must not decide a result
-    middle = points.mean(axis=0)
-    spread, axes = principal_axes(points)
-    if len(points) < 3 or spread[1] <= _IN_LINE * spread[0]:
+    dips = None if dips is None or not dips.in_use.any() else dips
+    if dips is not None and not _shows_plane(points, _NARROW):
+        points, axes, slopes = *_ruled(points, dips, extend), None
+    elif _shows_plane(points, _IN_LINE):
+        axes = plane_axes(principal_axes(points)[1][2])
+        slopes = None if dips is None else _slopes(dips, points.mean(axis=0), axes)
+    else:
         what = "its points lie in one line: they show no surface"
-        raise InputRefused(what, advice="give points on the whole fault, or sticks")
-    along, down, normal = plane_axes(axes[2])
-    local = np.column_stack([dot(points - middle, axis) for axis in (along, down, normal)])
+        raise InputRefused(what, advice="give points on the whole fault, its dips, or sticks")
+    middle = points.mean(axis=0)
+    local = np.column_stack([dot(points - middle, axis) for axis in axes])
     outline = _outline(local[:, :2], extend, extend_sideways)
     nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
     options = checked_options(_METHOD, {})
-    task = Task(work, np.ascontiguousarray(local), nodes, options, triangles)
+    task = Task(work, np.ascontiguousarray(local), nodes, options, triangles, dips=slopes)
     interpolation = heights(_METHOD, task)
+    along, down, normal = axes
     vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + interpolation.z[:, None] * normal
     return Sheet(vertices, triangles)
+
+
+def _shows_plane(points: np.ndarray, narrow: float) -> bool:
+    spread = principal_axes(points)[0]
+    return len(points) > 2 and bool(spread[1] > narrow * spread[0])
+
+
+def _ruled(
+    points: np.ndarray, dips: SpaceDips, extend: float
+) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Points in about one line, with copies of them at both sides in the plane that their dips show, so that
+    the surface goes on sideways as it is; and the axes of that plane."""
+    spread, (line, _, _) = principal_axes(points)
+    normals = dips.normals[dips.in_use]
+    normals = normals / norm(normals)[:, None]
+    normal = (normals * np.where(dot(normals, normals[0]) < 0, -1.0, 1.0)[:, None]).mean(axis=0)
+    far = max(extend, float(spread[0]))
+    if far == 0:
+        advice = "say with extend = ... how far it goes"
+        raise InputRefused("its points are in one place: they show no surface", advice=advice)
+    if spread[0] > 0:
+        normal = normal - dot(normal, line) * line
+        if norm(normal) < _NARROW:
+            raise InputRefused("its dips are at right angles to its points", advice="correct the dips")
+    axes = plane_axes(_unit(normal))
+    moves = [far * axes[0], far * axes[1]] if spread[0] == 0 else [far * np.cross(axes[2], line)]
+    return np.concatenate([points, *(points + side * move for move in moves for side in (-1, 1))]), axes
+
+
+def _slopes(dips: SpaceDips, middle: np.ndarray, axes: Sequence[np.ndarray]) -> Dips | None:
+    """Dips as slopes over a plane; those at right angles to it say nothing there."""
+    places, normals = dips.positions[dips.in_use] - middle, dips.normals[dips.in_use]
+    plan = np.column_stack([dot(places, axis) for axis in axes[:2]])
+    along, down, up = (dot(normals, axis) for axis in axes)
+    has_slope = np.abs(up) > _NARROW * norm(normals)
+    if not has_slope.any():
+        return None
+    gradients = -np.column_stack([along, down])[has_slope] / up[has_slope, None]
+    return Dips(plan[has_slope], gradients).merged()[0]
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

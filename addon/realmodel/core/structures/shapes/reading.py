@@ -25,8 +25,9 @@ from ...heights.interpolate import checked_points
 from ...project.project import Project
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import displaced_surfaces
-from ...readers import read_mesh
+from ...readers import read_mesh, read_space_dips
 from ...readers.fault_input import read_fault_points
+from ...settings.dips import SpaceDips
 from ...surfaces.rock_input import RockInput
 from .continued import extended
 from .fitted import fit_points, fit_sticks, read_trace, trace_surface
@@ -63,7 +64,7 @@ def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarnin
             if fault.point_file is not None:
                 points, texts = read_fault_points(fault.point_file, fault.stick, units)
             warnings += [BuildWarning(f"{fault.item}: {text}", "points") for text in texts]
-            vertices, triangles = _fitted(work, fault, points)
+            vertices, triangles = _fitted(work, fault, points, _dips_of(fault, units))
         else:
             vertices, triangles = _mesh_of(fault, units, warnings)
             crossing = crossing_triangles(work, Sheet(vertices, triangles))
@@ -80,11 +81,18 @@ def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarnin
         vertices=vertices,
         triangles=triangles,
         points=None,
+        dips=None,
         stick=None,
         extend=0.0,
         mesh=None,
         shape_file=shape_file,
     )
+
+
+def _dips_of(fault: Fault, units: str) -> SpaceDips | None:
+    dips = fault.dips if fault.dip_file is None else read_space_dips(fault.dip_file, units)
+    assert dips is None or isinstance(dips, SpaceDips)
+    return None if dips is None else dips.checked()
 
 
 def _read_traced(
@@ -125,10 +133,14 @@ def _tops(project: Project, inputs: list[RockInput], fault: Fault) -> list[Top]:
     return tops
 
 
-def _fitted(work: Work, fault: Fault, points: np.ndarray | Sequence[np.ndarray]) -> Sheet:
+def _fitted(
+    work: Work, fault: Fault, points: np.ndarray | Sequence[np.ndarray], dips: SpaceDips | None
+) -> Sheet:
     sideways = not fault.dies_out
     if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
-        return fit_points(work, checked_points(points), fault.extend, sideways)
+        return fit_points(work, checked_points(points), fault.extend, sideways, dips)
+    if dips is not None:
+        raise InputRefused("'dips' has no effect, as its points are sticks", advice="take it out")
     sticks = [checked_points(stick, f"stick {number}") for number, stick in enumerate(points, 1)]
     sheet = fit_sticks(sticks, fault.extend, sideways)
     crossing = crossing_triangles(work, sheet)
