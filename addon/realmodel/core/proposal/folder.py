@@ -96,6 +96,7 @@ def _project_lines(project: ProposedProject, files: _Files) -> list[str]:
         "[[rock]]",
         f"name = {toml_value(rock.name)}",
         *_rock_lines(rock, proposal.reasons, files),
+        *(line for series in rock.series for line in ("", "[[rock.series]]", *_keys(series))),
         "",
         *_order_comment(proposal),
     ]
@@ -124,6 +125,7 @@ def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:
     if len(rock.holes):
         lines.append(f"holes = {region_text(rock.holes)}")
     lines += [
+        *_comment(f"Interpolation: {why['method']}"),
         *_comment(f"The edge length of the triangles: {why['edge_length']}"),
         f"edge_length = {toml_value(rock.edge_length)}",
         *_comment(f"The base: {why['base_elevation']}"),
@@ -164,10 +166,16 @@ def _surface_lines(surface: Surface, why: str | None, files: _Files) -> list[str
             lines.append(f"{key} = {toml_value(files.write(_GROUND, points_text(np.asarray(shape))))}")
     if surface.method is not None:
         lines.append(f"method = {toml_value(surface.method)}")
+    if surface.series is not None:
+        lines.append(f"series = {toml_value(surface.series)}")
     lines.append(f"rule = {toml_value(surface.rule)}")
     if surface.block is not None:
         lines.append(f"block = {toml_value(surface.block)}")
     return [*lines, f"property = {surface.property}"]
+
+
+def _keys(entry: Any) -> list[str]:
+    return [f"{part.key} = {toml_value(value)}" for part, value in changed_values(entry)]
 
 
 def _region_text(region: Any, files: _Files) -> str:

@@ -26,6 +26,7 @@ from .order import Evidence
 _GRID = 160  # places across a map
 _FAR = 0.1  # of the width of the map: farther along its dip a bed is not followed
 _STEPS = 25  # in which it is followed
+_NEAR = 5  # steps to the next unit at which the weight of a dip is half
 _LEVEL = 3.0  # degrees: flatter beds say nothing of what lies beneath another
 _BY_AGE, _BY_HEIGHT = 1000.0, 0.2  # weights; that of a dip is 1
 _MANY = 3  # older units beneath one: it lies across them
@@ -192,7 +193,7 @@ def _add_dips(found: MapUnits, dips: DipFile, polygons: Sequence[UnitPolygon], u
                 continue
             here, other = names[beds[0]], names[beds[others[0]]]
             upper, lower = (other, here) if sign > 0 else (here, other)
-            found.evidence.plus(upper, lower, 1.0 / (1.0 + others[0] / 5))
+            found.evidence.plus(upper, lower, 1.0 / (1.0 + others[0] / _NEAR))
             count += 1
     if count:
         found.reasons.append("dips: a unit that dips beneath another is older")

@@ -113,8 +113,8 @@ def _counted(evidence: Evidence, upper: int, lower: int) -> list[str]:
     names = evidence.names
     holes = evidence.over[upper, lower], evidence.over[lower, upper]
     if not any(holes):
-        return [f"no hole has both '{names[upper]}' and '{names[lower]}'"]
-    return [f"{holes[0]:.3g} holes have '{names[upper]}' over '{names[lower]}', {holes[1]:.3g} under it"]
+        return [f"nothing has both '{names[upper]}' and '{names[lower]}'"]
+    return [f"'{names[upper]}' over '{names[lower]}': {holes[0]:.3g} holes or dips; under it: {holes[1]:.3g}"]
 
 
 def _closure(relation: np.ndarray) -> np.ndarray:

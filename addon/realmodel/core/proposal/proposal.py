@@ -28,10 +28,9 @@ from .extent import base_below, edge_length, region_around
 from .lenses import Conflict, Lens, Sorted, lens_mesh, sort_out, spacing
 from .logs import HoleLogs, Log, read_logs
 from .maps import MapUnits, map_file_of, read_map_units, unconformities
+from .methods import with_methods
 from .order import Alternative, Evidence, UnitOrder, evidence_of, find_order
 from .rules import CUTS, RuleChoice, choose_rules
-
-_METHOD = "auto"  # by cross-validation
 
 
 @dataclass
@@ -127,8 +126,9 @@ def propose_project(
     rules = _rules(data, out, order)
     proposal = Proposal(list(order.order), order.alternatives, out.conflicts, out.lenses, rules)
     project = _Maker(data, out, proposal, units).project(name, region)
-    _warn(project.proposal, data)
     check_project(project)
+    project.rocks, proposal.reasons["method"] = with_methods(project, len(data.logs))
+    _warn(proposal, data)
     return project
 
 
@@ -313,12 +313,10 @@ class _Maker:
             unit = choice.unit
             surface = unit if only_picks else _free(f"{unit} top", taken)
             block = None if only_picks else unit
-            surfaces.append(Surface(surface, method=_METHOD, rule=choice.rule, block=block, property=numbers[unit]))
+            surfaces.append(Surface(surface, rule=choice.rule, block=block, property=numbers[unit]))
         if only_picks:
-            surfaces.append(Surface(order[-1], method=_METHOD, property=numbers[order[-1]]))
-            self._why["method"] = "the method that predicts left-out points best, of each surface by itself"
+            surfaces.append(Surface(order[-1], property=numbers[order[-1]]))
             return surfaces
-        self._why["method"] = "the method that predicts left-out points best, of each surface by itself"
         youngest = order[-1]
         shape = self._ground_shape()
         surfaces.append(
@@ -335,10 +333,10 @@ class _Maker:
         if ground is not None:
             self._why["ground"] = "the heights that are given"
             is_raster = format_of(ground.file, RASTER) is not None
-            return {"points": ground, "method": "grid" if is_raster else _METHOD}
+            return {"points": ground, "method": "grid" if is_raster else None}
         tops = np.array([self._top(log) for log in self._data.logs])
         self._why["ground"] = f"through the {counted(len(tops), 'collar')} of the holes"
-        return {"points": tops, "method": _METHOD}
+        return {"points": tops}
 
     @staticmethod
     def _top(log: Log) -> np.ndarray:

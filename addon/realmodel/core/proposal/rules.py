@@ -50,7 +50,7 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
     holes = _holes(logs, order)
     gaps = _gaps(holes, len(units))
     if not any(gaps):
-        reason = "no unit is absent between two others: nothing says that it cuts older rock"
+        reason = "no hole lacks a unit between two others: nothing says that it cuts older rock"
         return [RuleChoice(unit, ENDS, reason) for unit in units[:-1]]
     share: dict[tuple[bool, ...], float] = {}
 
@@ -76,14 +76,19 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
             reason = "no hole lacks a unit beside it: nothing says that it cuts older rock"
         else:
             other = right((*best[:number], not best[number], *best[number + 1 :]))
-            missing = ", ".join(f"'{name}'" for name in gaps[number])
-            what = "cuts older rock" if cuts else "ends against older rock"
-            reason = (
-                f"it {what}: where {missing} is absent, left-out holes are right along {right(best):.1%} of "
-                f"their length, and {other:.1%} if it {'ended against' if cuts else 'cut'} older rock"
-            )
+            reason = _reason([units[unit] for unit in gaps[number]], cuts, right(best), other)
         choices.append(RuleChoice(unit, CUTS if cuts else ENDS, reason))
     return choices
+
+
+def _reason(absent: Sequence[str], cuts: bool, share: float, other: float) -> str:
+    missing = ", ".join(f"'{unit}'" for unit in absent)
+    what = "cuts older rock" if cuts else "ends against older rock"
+    figures = f"left-out holes are right along {share:.1%} of their length so, and {other:.1%} if it"
+    figures = f"{figures} {'ended against' if cuts else 'cut'} older rock"
+    if abs(share - other) <= _BETTER:
+        return f"where {missing} is absent, it {what}, which the holes hardly decide: {figures}"
+    return f"where {missing} is absent, it {what}: {figures}"
 
 
 def _holes(logs: Sequence[Log], order: UnitOrder) -> _Holes:
