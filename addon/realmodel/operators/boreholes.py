@@ -35,7 +35,7 @@ from ..core.settings.data_files import READING
 from ..core.settings.series_kinds import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
-from ..ui.panel import wrapped
+from ..ui.panel import message
 from .imports import FilesImportHelper, arrived, chosen_files
 from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, require_file
 from .rocks import add_rock
@@ -44,7 +44,6 @@ _SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "lay
 _OF_MAPS = ("map_layer", "map_block", "map_ground", "map_accuracy")
 _MOST_DETAILED = 8  # chosen files of which columns and codes are shown
 _MOST_CODES = 20
-_ICON = 5  # letters that are as wide as an icon
 _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
 
 
@@ -270,10 +269,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             text, icon, contained = shown_kind(path, self.columns, self.map_layer, self.map_block)
             box.label(text=f"{path.name}: {text}", icon=icon)
             for part in contained if len(shown) <= _MOST_DETAILED else ():
-                for line in wrapped(part, taken=_ICON):
-                    row = box.row()
-                    row.active = False
-                    row.label(text=line, icon="BLANK1")
+                lines = box.column(align=True)
+                lines.active = False
+                message(lines, part, icon="BLANK1")
         if not shown:
             box.label(text="Choose all tables at once", icon="INFO")
         layout.use_property_split = True
