@@ -23,14 +23,15 @@ _NAMING = frozenset(
 
 @dataclass
 class TablePreview:
-    """names: of the columns, or their numbers from 1. rows: the first of them, as they are written. xyz: the
-    names of the columns that are taken for x, y and z. splits: {column: its values in the order of the file},
-    of columns that may name surfaces; those that plainly do come first. is_plain: whether the first does.
-    problem: why the table cannot be read as it is."""
+    """names: of the columns; where there is no header, which has_header says, their numbers from 1. rows: the
+    first of them, as they are written. xyz: the names of the columns that are taken for x, y and z. splits:
+    {column: its values in the order of the file}, of columns that may name surfaces; those that plainly do
+    come first. is_plain: whether the first does. problem: why the table cannot be read as it is."""
 
     file: Path
     names: list[str]
     rows: list[list[str]]
+    has_header: bool = False
     xyz: tuple[str, ...] = ()
     splits: dict[str, list[str]] = field(default_factory=dict)
     is_plain: bool = False
@@ -45,8 +46,9 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
     count = max((len(row) for row in rows[:100]), default=0)
     names = list(table.layout.names or ())
     names = [name or str(n + 1) for n, name in enumerate(names)] if len(names) == count else []
+    has_header = bool(names)
     names = names or [str(n + 1) for n in range(count)]
-    preview = TablePreview(file, names, head_rows(table, _ROWS))
+    preview = TablePreview(file, names, head_rows(table, _ROWS), has_header)
     try:
         used = wanted_columns(table, columns)
         preview.xyz = tuple(names[n] for n in used if n < count)
