@@ -31,7 +31,7 @@ def test_semicolons_and_decimal_commas(table):
     path = table(SEMICOLONS)
     found = preview_table(path)
     assert found.names == ["Horizon", "Easting [m]", "Northing [m]", "Elevation [m]"]
-    assert found.xyz == ("Easting [m]", "Northing [m]", "Elevation [m]")
+    assert tuple(found.axes.values()) == ("Easting [m]", "Northing [m]", "Elevation [m]")
     assert found.rows[0] == ["top clay", "3430000,5", "5390000,25", "201,5"]
     assert found.splits == {"Horizon": ["top clay", "base gravel"]}
     assert found.is_plain
@@ -63,7 +63,7 @@ def test_a_missing_column_is_said_and_can_be_chosen(table):
     path = table("x,depth,north\n1,2,3\n4,5,6\n")
     found = preview_table(path)
     assert found.problem == "the header has no column z"
-    assert found.xyz == ()
+    assert tuple(found.axes.values()) == ()
     assert preview_table(path, ["x", "north", "depth"]).xyz == ("x", "north", "depth")
 
 

@@ -117,8 +117,8 @@ class TableDialog:
         headings = self.headings_of(file)
         return {heading.meaning: heading.key for heading in headings if heading.meaning != IGNORED}
 
-    def check(self, _context):
-        """A column has one meaning: the one that was chosen last has it."""
+    def settle_columns(self):
+        """A meaning has one column in a table: the one that was chosen last."""
         for number, (heading, before) in enumerate(zip(self.headings, self._before, strict=False)):
             if heading.meaning in (before, IGNORED):
                 continue
@@ -127,7 +127,6 @@ class TableDialog:
                 if is_same and other_number != number:
                     other.meaning = IGNORED
         self._before = self._meanings()
-        return True  # the dialog is drawn anew
 
     def remember(self, reading):
         """Keeps what was chosen as profiles, for tables that are understood otherwise without one. reading:
@@ -174,7 +173,13 @@ class ObjectDialog:
     """An operator with a dialog about the objects of files. What the filters do not show is not imported."""
 
     objects: CollectionProperty(type=RealModelFileObject, options={"SKIP_SAVE", "HIDDEN"})
-    active_object: IntProperty(options={"SKIP_SAVE", "HIDDEN"})
+    active_object: IntProperty(name="Active Object", options={"SKIP_SAVE", "HIDDEN"})
+    every_object: BoolProperty(
+        name="All",
+        description="Switch all objects of the list on, or off",
+        default=True,
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
     object_name: StringProperty(
         name="Named",
         description="Only objects whose names have this text, or fit this pattern: Top* or *fault*",
@@ -190,12 +195,21 @@ class ObjectDialog:
         options={"SKIP_SAVE", "HIDDEN"},
     )
 
+    _were_all = True
+
     def begin_objects(self, found):
         """found: (path, name, kind, size) of each object."""
         self.objects.clear()
         for path, name, kind, size in found:
             row = self.objects.add()
             row.file, row.name, row.kind, row.size = str(path), name, kind, size
+
+    def settle_objects(self):
+        """All that are listed are switched on, or off, where that was chosen."""
+        if self.every_object != self._were_all:
+            self._were_all = self.every_object
+            for row in self.objects:
+                row.chosen = self.every_object if fits(self, row) else row.chosen
 
     def wants(self, path, name):
         """Whether an object is to be imported: all are where there is no choice."""
@@ -204,8 +218,10 @@ class ObjectDialog:
 
     def draw_objects(self, layout):
         row = layout.row(align=True)
-        for name in ("object_name", "object_kind", "object_size"):
-            row.prop(self, name, text="" if name == "object_kind" else None)
+        row.prop(self, "every_object")
+        row.prop(self, "object_name")
+        row.prop(self, "object_kind", text="")
+        row.prop(self, "object_size")
         layout.template_list("REALMODEL_UL_file_objects", "", self, "objects", self, "active_object", rows=10)
         wanted = sum(row.chosen and fits(self, row) for row in self.objects)
         layout.label(text=f"{wanted} of {counted(len(self.objects), 'object')} to import")

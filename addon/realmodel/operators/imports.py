@@ -12,7 +12,7 @@ from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl.display import bodies
-from ..bl.host import caches
+from ..bl.host import caches, notices
 from ..bl.objects import shapes, viewports
 from ..bl.objects.stored_arrays import file_stamp
 from ..bl.project import (
@@ -197,13 +197,18 @@ class REALMODEL_OT_surface_add(
             return self.execute(context)
         reading = self.begin_tables(list(previews(self)))
         for key in _OTHERS:
-            method_settings.set_value(self, key, _OTHERS, reading.get(key, _OTHERS[key].default))
+            method_settings.set_value(self.properties, key, _OTHERS, reading.get(key, _OTHERS[key].default))
         if not self.headings and len(self.objects) < 2:
             return self.execute(context)
         return context.window_manager.invoke_props_dialog(self, width=WIDTH)
 
+    def check(self, _context):
+        self.settle_columns()
+        self.settle_objects()
+        return True  # the dialog is drawn anew
+
     def understood(self, preview):
-        columns = dict(zip(AXES, preview.xyz, strict=False))
+        columns = dict(preview.axes)
         named = next(iter(preview.splits), "") if preview.is_plain else ""
         columns |= {UNITS: named} if named else {}
         return {meaning: reading_text.column(name) for meaning, name in columns.items()}
@@ -218,7 +223,8 @@ class REALMODEL_OT_surface_add(
         self.draw_tables(layout, lambda path: self._said(context, path))
         layout.use_property_split = True
         for key in _OTHERS:
-            panel.draw(layout, self, key, _OTHERS)
+            if self._previews or key != "decimal":
+                panel.draw(layout, self, key, _OTHERS)
 
     def _said(self, context, path):
         """What is to be said of a table as it would be read: its extent and warnings, or why it is
@@ -264,12 +270,11 @@ class REALMODEL_OT_surface_add(
         if objects := objects_in(path):
             return self._of_objects(path, objects)
         if is_mesh_file(path):
-            allowed = {key: option for key, option in self._other_reading().items() if key in MESH_READING}
-            return [_NewSurface(path.stem, "MESH_FILE", path, reading=allowed)]
+            return [_NewSurface(path.stem, "MESH_FILE", path, reading=self._other_reading(*MESH_READING))]
         if path.suffix.lower() in endings(TABLE):
             return self._of_table(path)
-        allowed = {key: option for key, option in self._other_reading().items() if key != "decimal"}
-        return [_NewSurface(path.stem, "POINTS_FILE", path, reading=allowed)]
+        reading = self._other_reading("units", "z_axis", "nodata")
+        return [_NewSurface(path.stem, "POINTS_FILE", path, reading=reading)]
 
     def _of_table(self, path):
         """The surfaces of a table: one, or one for each value of a column."""
@@ -305,31 +310,36 @@ class REALMODEL_OT_surface_add(
         column = self.split_column or next(iter(preview_table(path).splits), "")
         return "" if len(self.files) > 1 and column not in preview_table(path).names else column
 
-    def _other_reading(self):
-        """The import options of the dialog beside columns that are not at their default."""
-        given = {key: method_settings.value(self, key, _OTHERS) for key in _OTHERS}
-        return {
-            key: option for key, option in given.items() if option not in (None, (), _OTHERS[key].default)
+    def _other_reading(self, *keys):
+        """The import options of the dialog beside columns, or some of them, that are not at their default."""
+        chosen = {
+            key: method_settings.value(self, key, _OTHERS) for key in _OTHERS if not keys or key in keys
         }
+        return {key: option for key, option in chosen.items() if option not in (None, _OTHERS[key].default)}
 
     def _of_objects(self, path, objects):
         """The chosen surfaces of a file of objects, each by its name: its open surfaces, and sets of points
         and lines. Closed ones are blocks of another model."""
         surfaces = []
         for obj in objects:
-            layer = {"layer": obj.name}
             if not self.wants(path, obj.name):
                 continue
             if obj.kind in (POINTS, LINES):
-                surfaces.append(_NewSurface(obj.name, "POINTS_FILE", path, reading=layer, is_named=True))
-            elif obj.kind == SURFACE:
-                mesh = read_mesh(MeshFile(path, **layer))
-                if len(open_edges(mesh.vertices, mesh.triangles)):
-                    surfaces.append(_NewSurface(obj.name, "MESH_FILE", path, reading=layer, is_named=True))
+                source, reading = "POINTS_FILE", self._other_reading("units", "z_axis", "nodata")
+            elif obj.kind == SURFACE and _is_open(read_mesh(MeshFile(path, layer=obj.name))):
+                source, reading = "MESH_FILE", self._other_reading(*MESH_READING)
+            else:
+                continue
+            reading["layer"] = obj.name
+            surfaces.append(_NewSurface(obj.name, source, path, reading=reading, is_named=True))
         if not surfaces:
             what = "no object of it is chosen" if self.objects else "it has neither open surfaces nor points"
             raise InputRefused(what, file=path)
         return surfaces
+
+
+def _is_open(mesh):
+    return len(open_edges(mesh.vertices, mesh.triangles)) > 0
 
 
 def _objects_of(paths):
@@ -339,8 +349,10 @@ def _objects_of(paths):
         if not any(obj.kind in kinds for obj in objects_in(path)):
             continue
         for obj in read_objects(path, None, kinds):
-            size = len(obj.vertices if obj.triangles is None else obj.triangles)
-            yield path, obj.name, obj.kind, size
+            if obj.triangles is None:
+                yield path, obj.name, obj.kind, len(obj.vertices)
+            elif _is_open(obj):
+                yield path, obj.name, obj.kind, len(obj.triangles)
 
 
 def _row_of(scene, rock, surface, units, warnings):
@@ -385,11 +397,11 @@ def _reading_says(surface, unit):
     try:
         warnings = _read(surface, unit)
     except RealModelError as error:
-        return [(str(error), "ERROR")]
+        return [(notices.in_panel_words(str(error)), "ERROR")]
     low, high = surface.places.min(axis=0), surface.places.max(axis=0)
     ranges = ", ".join(f"{axis} {a:,.1f} to {b:,.1f}" for axis, a, b in zip(AXES, low, high, strict=True))
     said = f"{counted(len(surface.places), 'point')}, in {unit}: {ranges}"
-    return [(said, "CHECKMARK"), *((text, "INFO") for text in warnings)]
+    return [(said, "CHECKMARK"), *((notices.in_panel_words(text), "INFO") for text in warnings)]
 
 
 def arrived(context, rock, places, read=None):
