@@ -51,7 +51,8 @@ def test_a_number_that_names_surfaces(table, separator):
 
 def test_without_a_header(table):
     found = preview_table(table("1 2 3\n4 5 6\n7 8 9\n", "t.xyz"))
-    assert (found.names, found.xyz, found.splits) == (["1", "2", "3"], ("1", "2", "3"), {})
+    assert (found.names, list(found.axes.values()), found.splits) == (["1", "2", "3"], ["1", "2", "3"], {})
+    assert not found.has_header
 
 
 def test_too_many_values_name_no_surfaces(table):
@@ -63,8 +64,8 @@ def test_a_missing_column_is_said_and_can_be_chosen(table):
     path = table("x,depth,north\n1,2,3\n4,5,6\n")
     found = preview_table(path)
     assert found.problem == "the header has no column z"
-    assert tuple(found.axes.values()) == ()
-    assert preview_table(path, ["x", "north", "depth"]).xyz == ("x", "north", "depth")
+    assert found.axes == {"x": "x", "y": "north"}
+    assert list(preview_table(path, ["x", "north", "depth"]).axes.values()) == ["x", "north", "depth"]
 
 
 def test_what_is_no_table(table):

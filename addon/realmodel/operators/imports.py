@@ -312,9 +312,8 @@ class REALMODEL_OT_surface_add(
 
     def _other_reading(self, *keys):
         """The import options of the dialog beside columns, or some of them, that are not at their default."""
-        chosen = {
-            key: method_settings.value(self, key, _OTHERS) for key in _OTHERS if not keys or key in keys
-        }
+        keys = [key for key in keys or _OTHERS if key in _OTHERS]
+        chosen = {key: method_settings.value(self, key, _OTHERS) for key in keys}
         return {key: option for key, option in chosen.items() if option not in (None, _OTHERS[key].default)}
 
     def _of_objects(self, path, objects):
