@@ -116,24 +116,33 @@ def test_units(write):
 @pytest.mark.parametrize(
     ("units", "said"),
     [
-        ({}, {"c.csv": "ft for 'Z (FT)'", "p.csv": "ft for 'depth [feet]'"}),
+        (
+            {},
+            {
+                "c.csv": "ft for 'Z (FT)': converted to m",
+                "p.csv": "ft for 'depth [feet]': converted to m",
+            },
+        ),
         ({"units": {"z": "ft"}}, {}),
         ({"units": {"z": "us-ft"}}, {}),
-        ({"units": "ft"}, {"c.csv": "m for 'X (m)'"}),
+        ({"units": "ft"}, {"c.csv": "m for 'X (m)', but the unit is ft"}),
     ],
 )
-def test_other_units_in_headers_are_a_warning(write, units, said):
+def test_units_in_headers_are_obeyed_unless_the_user_says_others(write, units, said):
     collars = COLLARS.replace("x,y,z", "X (m),y (plan),Z (FT)")
     files = {
         "picks": write("p.csv", PICKS.replace("depth", "depth [feet]")),
         "collars": write("c.csv", collars),
     }
-    warnings = [
-        text for text in read_boreholes(Boreholes(**files, **units)).warnings if "the header says" in text
-    ]
+    met = read_boreholes(Boreholes(**files, **units))
+    in_feet = 1 if units.get("units") == "ft" else [1, 1, 0.3048]
+    np.testing.assert_allclose(
+        met.points["clay"], np.array(CLAY) * in_feet * (0.3048 if in_feet == 1 else 1), rtol=1e-5
+    )
+    warnings = [text for text in met.warnings if "the header says" in text]
     assert len(warnings) == len(said)
     for text, (file, words) in zip(warnings, said.items(), strict=True):
-        assert file in text and f"the header says {words}, but the unit is" in text
+        assert file in text and f"the header says {words}" in text
 
 
 @pytest.mark.parametrize(

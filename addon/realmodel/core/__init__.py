@@ -35,6 +35,8 @@ from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
+from .readers.borehole_tables import BoreholeTables, read_boreholes
+from .readers.tables.hole_problems import HoleProblem
 from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
 from .results.contours import Contour
@@ -52,6 +54,7 @@ __all__ = [
     "Block",
     "BlockBoundary",
     "Body",
+    "BoreholeTables",
     "Boreholes",
     "Bounds",
     "BuildFailed",
@@ -70,6 +73,7 @@ __all__ = [
     "HoleAxis",
     "HoleContact",
     "HoleInterval",
+    "HoleProblem",
     "HoleValidation",
     "InputRefused",
     "Interpolation",
@@ -132,6 +136,7 @@ __all__ = [
     "load_project",
     "mesh_region",
     "open_tiles",
+    "read_boreholes",
     "save_mesh",
     "triangulate_polygon",
 ]

@@ -36,18 +36,148 @@ UNIT_NAMES = {
 }
 
 
-_WRITTEN = {
-    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-    **dict.fromkeys(("feet", "foot", "us-ft", "us ft", "ftus", "us survey feet"), "ft"),
-    **dict.fromkeys(("inch", "inches"), "in"),
+# Spellings in small letters, without blanks, points, hyphens and underscores.
+_SPELLINGS = {
+    "mm": ("mm", "millimeter", "millimeters", "millimetre", "millimetres"),
+    "cm": ("cm", "centimeter", "centimeters", "centimetre", "centimetres"),
+    "m": (
+        *("m", "mt", "mtr", "mtrs", "mts", "meter", "meters", "metre", "metres", "metro", "metros", "mètre"),
+        *(
+            "mètres",
+            "metri",
+            "internationalmeter",
+            "internationalmetre",
+            "masl",
+            "mamsl",
+            "mbsl",
+            "mnn",
+            "mnhn",
+        ),
+        *("münn", "münhn", "müm", "mnap", "mahd", "msnm"),
+    ),
+    "km": ("km", "kms", "kilometer", "kilometers", "kilometre", "kilometres"),
+    "in": ("in", "inch", "inches", '"'),
+    "ft": (
+        *(
+            "ft",
+            "fts",
+            "foot",
+            "feet",
+            "ift",
+            "intft",
+            "ftint",
+            "fti",
+            "internationalfoot",
+            "footinternational",
+        ),
+        *("internationalfeet", "feetinternational", "pieds", "pies", "fuß", "'"),
+    ),
+    "us-ft": (
+        *(
+            "usft",
+            "ftus",
+            "ussft",
+            "sft",
+            "usfoot",
+            "usfeet",
+            "footus",
+            "feetus",
+            "ussurveyfoot",
+            "ussurveyfeet",
+        ),
+        *("ussurveyft", "surveyfoot", "surveyfeet", "footussurvey", "feetussurvey", "ftussurvey", "surveyft"),
+        *("usfootsurvey", "ftsurvey"),
+    ),
+    "yd": ("yd", "yds", "yard", "yards"),
+    "mi": ("mi", "mile", "miles", "statutemile", "statutemiles"),
 }
+_UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spelling in spellings}
+# Units that a coordinate may be in, and which have no factor here.
+_NO_FACTOR = frozenset(
+    (
+        *(
+            "dm",
+            "decimeter",
+            "decimeters",
+            "decimetre",
+            "decimetres",
+            "fathom",
+            "fathoms",
+            "fm",
+            "ftm",
+            "chain",
+        ),
+        *("chains", "ch", "link", "links", "rod", "rods", "furlong", "furlongs", "nmi", "nauticalmile"),
+        *("nauticalmiles", "league", "leagues", "toise", "toises", "ms", "msec", "msecs", "millisecond"),
+        *(
+            "milliseconds",
+            "s",
+            "sec",
+            "second",
+            "seconds",
+            "twt",
+            "deg",
+            "degs",
+            "degree",
+            "degrees",
+            "°",
+            "dd",
+        ),
+        *(
+            "decimaldegrees",
+            "rad",
+            "radian",
+            "radians",
+            "gon",
+            "grad",
+            "dms",
+            "arcsec",
+            "arcsecond",
+            "arcseconds",
+        ),
+    )
+)
+_SIGNS = r"[\s._(){}<>\[\]-]+"  # which spellings are without
+# Of a name: what stands in brackets at its end, or else behind a sign or a change of capitals.
+_IN_BRACKETS = re.compile(r"[\[({<]\s*([^\])}>]*?)\s*[\])}>][\"'\s]*$")
+_LAST_WORD = re.compile(r"(?:[\s_.,:/-]+|(?<=[a-z])(?=[A-Z]))([^\s_.,:/-]+)\s*$")
+_TWO_WORDS = re.compile(
+    r"[\s_.,:/-]+((?:us|intl?|survey)[\s_.-]*(?:survey)?[\s_.-]*(?:ft|foot|feet))\s*$", re.IGNORECASE
+)
+
+
+def unit_of(text: str) -> str | None:
+    """The unit of length, one of METERS, that a text names in any usual spelling, also in brackets or before
+    what heights are above: "Feet", "[m]", "US survey feet", "m a.s.l."; None where it names none."""
+    plain = text.strip().strip("[](){}<>").strip().lower()
+    joined = re.sub(_SIGNS, "", plain)
+    if joined in _UNIT_OF:
+        return _UNIT_OF[joined]
+    first = re.split(r"[\s,;/+]+", plain)
+    return _UNIT_OF.get(first[0].strip("._-")) if len(first) > 1 else None
+
+
+def unknown_unit(text: str) -> bool:
+    """Whether a text names a unit that coordinates may have and that unit_of does not know: degrees, times,
+    and rare lengths."""
+    return re.sub(_SIGNS, "", text.lower()) in _NO_FACTOR
+
+
+def unit_text_of_column(name: str) -> str:
+    """What stands where the name of a column has its unit: in brackets behind it, else the last of several
+    words if that is a unit: "Elevation_ft", "Depth (m)"; "" where there is none."""
+    plain = name.strip().strip("\"'").strip()
+    if bracket := _IN_BRACKETS.search(plain):
+        return bracket[1]
+    word = _TWO_WORDS.search(plain) or _LAST_WORD.search(plain)
+    # "in" and "mi" end names of other meanings
+    is_unit = word is not None and (unit_of(word[1]) not in (None, "in", "mi") or unknown_unit(word[1]))
+    return word[1] if word is not None and is_unit else ""
 
 
 def unit_of_column(name: str) -> str | None:
-    """The unit of length that stands behind the name of a column in brackets; None where there is none."""
-    match = re.search(r"[\[(]\s*([^\])]*?)\s*[\])]\s*\"?\s*$", name.lower())
-    unit = None if match is None else _WRITTEN.get(match[1], match[1])
-    return unit if unit in METERS else None
+    """The unit of length that the name of a column says; None where there is none."""
+    return unit_of(unit_text_of_column(name))
 
 
 def other_units(file: Path, columns: Mapping[str, str | None], model_unit: str = MODEL_UNIT) -> list[str]:

@@ -5,14 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused, counted
-from ...base.text import Step
-from ...settings.data_files import Boreholes
-from .hole_tables import COLLARS, NO_VALUE, Row, rows
+from .hole_data import HoleTables
+from .hole_tables import NO_VALUE, Row
 from .holes import Holes
 from .intervals import read_intervals
 from .observations import LeftOut, Observations, Origin
@@ -57,8 +55,8 @@ def picks_of(holes: Mapping, surface: str) -> list[Pick]:
     return surface_picks
 
 
-def read_borehole_tables(
-    given: Boreholes, step: Step, scale: np.ndarray, units: UnitNames, plan_step: float | None
+def picks_of_tables(
+    tables: HoleTables, scale: np.ndarray, units: UnitNames, plan_step: float | None
 ) -> Picks:
     """The points of every surface that the picks name, in the order of the table, and what intervals say.
     scale (3,): the factors to the model's unit.
@@ -69,10 +67,10 @@ def read_borehole_tables(
     are listed, and refused where no hole has one; picks of one are refused. units: what the names of the
     tables mean. plan_step: as of read_intervals. Raises InputRefused naming file and line.
     """
-    holes = Holes(given)
-    picks = Picks() if given.picks is None else _picks(holes, units, scale, step)
-    if given.intervals is not None:
-        logged = read_intervals(holes, units, scale, plan_step, step)
+    holes = Holes(tables)
+    picks = Picks() if tables.picks is None else _picks(tables.picks, holes, units, scale)
+    if tables.intervals is not None:
+        logged = read_intervals(tables.intervals, holes, units, scale, plan_step)
         picks.observations.append(logged.observations)
         picks.left_out += logged.left_out
         for name, (collar, tops) in logged.holes.items():
@@ -87,15 +85,14 @@ def read_borehole_tables(
     return picks
 
 
-def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Picks:
+def _picks(rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray) -> Picks:
     boreholes = holes.given
-    assert boreholes.picks is not None
     points: dict[str, list[Pick]] = {}
     off: dict[str, list[np.ndarray]] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
     missing = 0
-    for row in rows(boreholes, Path(boreholes.picks), COLLARS, ("hole", "surface"), step):
+    for row in rows:
         name = units.surface(row.text("surface"))
         if not row.text("surface"):
             raise row.refuse("the surface has no name")
@@ -121,7 +118,7 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = holes.hole_of(row)
-        source = Origin.of(hole, depth, row.table.file, row.line)
+        source = Origin.of(hole, depth, row.file, row.line)
         points.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:

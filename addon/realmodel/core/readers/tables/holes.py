@@ -5,16 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.algebra import atan2, cos, sin
 from ...base.errors import InputRefused, number_list
-from ...base.text import Step, no_step
 from ...settings.data_files import Boreholes
-from .hole_tables import COLLARS, SURVEY, Row, normalized_name, rows
+from .hole_data import HoleTables
+from .hole_tables import Row, normalized_name
 from .observations import LeftOut
 
 Direction = tuple[float, float, float]  # of length 1: to the east, to the north, down
@@ -110,19 +109,16 @@ class HoleDirections:
         self.warnings: list[str] = []
 
     @classmethod
-    def of_survey(
-        cls, given: Boreholes, hole_of: Callable[[Row], str], step: Step = no_step
-    ) -> HoleDirections:
+    def of_survey(cls, tables: HoleTables, hole_of: Callable[[Row], str]) -> HoleDirections:
         """The stations of a survey table. hole_of: the hole of a row. Raises InputRefused naming the line."""
-        directions = cls(given)
-        assert given.survey is not None
-        for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
+        directions = cls(tables.given)
+        for row in tables.survey or ():
             depth = row.number("depth")
             if depth < 0:
                 raise row.refuse(f"depth is {depth:g}", "depths count from the collar along the hole")
             directions.add(row, depth, hole_of(row))
         if not directions._stations:
-            raise InputRefused("there are no directions in it", file=given.survey)
+            raise InputRefused("there are no directions in it", file=tables.given.survey)
         return directions
 
     def add(self, row: Row, depth: float, hole: str) -> None:
@@ -188,7 +184,7 @@ class HoleDirections:
                 raise station.row.refuse(what, "check its angles")
             if bend > _SHARP:
                 self.warnings.append(
-                    f"{station.row.table.file}: line {station.row.line}: hole '{hole}' turns by {bend:.0f} "
+                    f"{station.row.file}: line {station.row.line}: hole '{hole}' turns by {bend:.0f} "
                     f"degrees between depths {depths[-1]:g} and {station.depth:g}: check its angles"
                 )
             depths.append(station.depth)
@@ -217,8 +213,8 @@ def is_inclined(row: Row) -> bool:
 class Holes:
     """The collars and the paths of holes."""
 
-    def __init__(self, given: Boreholes):
-        self.given = given
+    def __init__(self, tables: HoleTables):
+        self.given = tables.given
         self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
         self._without_survey: dict[str, None] = {}
         self._paths: dict[str, WellTrajectory] = {}
@@ -229,23 +225,22 @@ class Holes:
         ] = {}  # names of holes with collars that are alike if `joined`
         self._taken: dict[tuple[str, str, str], None] = {}  # (file, name in it, the hole that it means)
         self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
-        self._collars = None if given.collars is None else self._read_collars()
+        self._collars = None if tables.collars is None else self._read_collars(tables.collars)
         for hole in self._collars or ():
             self._written.setdefault(normalized_name(hole), {})[hole] = None
         self._unused = set(self._collars or ())
         self._surveyed: set[str] = set()
-        if given.survey is not None:
-            directions = HoleDirections.of_survey(given, self.hole_of)
+        if tables.survey is not None:
+            directions = HoleDirections.of_survey(tables, self.hole_of)
             surveyed = directions.paths()
             self._warnings += directions.warnings
             self._surveyed = set(surveyed)
             self._paths |= surveyed
 
-    def _read_collars(self) -> dict[str, tuple[float, float, float]]:
+    def _read_collars(self, rows: list[Row]) -> dict[str, tuple[float, float, float]]:
         collars: dict[str, tuple[float, float, float]] = {}
         directions = HoleDirections(self.given)
-        assert self.given.collars is not None
-        for row in rows(self.given, Path(self.given.collars), COLLARS, ("hole", "x", "y", "z"), no_step):
+        for row in rows:
             hole = row.text("hole")
             lacking = [axis for axis in "xyz" if not row.has(axis)]
             if lacking:
@@ -277,7 +272,7 @@ class Holes:
         alike = list(self._written.get(normalized_name(hole), ()))
         if len({self._collars[name] for name in alike}) != 1:
             return hole
-        self._taken[str(row.table.file), hole, alike[0]] = None
+        self._taken[str(row.file), hole, alike[0]] = None
         return alike[0]
 
     def lacks_collar(self, row: Row) -> str:
