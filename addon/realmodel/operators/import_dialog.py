@@ -7,33 +7,19 @@ from fnmatch import fnmatchcase
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, StringProperty
 
-from ..bl.field import field_tables
+from .. import props_import
 from ..bl.project import profiles
 from ..core import RealModelError
 from ..core.base.errors import counted
 from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
+from ..props_import import IGNORED, MEANINGS, OF_POINTS
 from ..ui.lists import OfRows
 from ..ui.panel import message, right_label
 
-OF_POINTS, OF_HOLES = "points", "field data"  # imports, as profiles name them
-AXES = ("x", "y", "z")
-UNITS = "surface"  # a column of points whose values name surfaces
-IGNORED = "-"
 WIDTH = 720  # of a dialog
 LETTERS = 110  # in a line of it
+SHOWN = 3  # tables
 _BESIDE = 8  # columns side by side
-_SHOWN = 3  # tables
-_MEANINGS = {
-    OF_POINTS: {
-        **{axis: (axis, f"Coordinate {axis}") for axis in AXES},
-        UNITS: ("surface", "Names surfaces: one for each value"),
-    },
-    OF_HOLES: {name: (name, f"As `{name}` of a project file") for name in field_tables.ALL_COLUMNS},
-}
-_ITEMS = {
-    of: [(IGNORED, "Ignore", "The column is not read"), *((key, *texts) for key, texts in words.items())]
-    for of, words in _MEANINGS.items()
-}
 _KINDS = (
     ("ANY", "Any Kind", "Surfaces, points and lines"),
     (SURFACE, "Surfaces", "Triangulated surfaces"),
@@ -42,39 +28,11 @@ _KINDS = (
 )
 
 
-class RealModelHeading(bpy.types.PropertyGroup):
-    """A column of a table that is to be imported, and what it means. column: by name, or its number."""
-
-    file: StringProperty()
-    of: StringProperty(default=OF_POINTS)
-    column: StringProperty()
-    meaning: EnumProperty(
-        name="Meaning",
-        description="What the column of the table is",
-        items=lambda heading, _context: _ITEMS.get(heading.of, _ITEMS[OF_POINTS]),
-    )
-
-    @property
-    def key(self):
-        """The column by name, or by number from 1."""
-        return int(self.column) if self.column.isdecimal() else self.column
-
-
-class RealModelFileObject(bpy.types.PropertyGroup):
-    """An object of a file that is to be imported, or not. size: its triangles, or its points."""
-
-    file: StringProperty()
-    name: StringProperty()
-    kind: StringProperty()
-    size: IntProperty()
-    chosen: BoolProperty(name="Import", description="Import this object", default=True)
-
-
 class TableDialog:
     """An operator with a dialog about tables. `of`: OF_POINTS or OF_HOLES. `understood(preview)`: {meaning:
     column} of a table without a choice."""
 
-    headings: CollectionProperty(type=RealModelHeading, options={"SKIP_SAVE", "HIDDEN"})
+    headings: CollectionProperty(type=props_import.RealModelHeading, options={"SKIP_SAVE", "HIDDEN"})
 
     of = OF_POINTS
     _previews = ()
@@ -101,7 +59,7 @@ class TableDialog:
         return reading
 
     def _mean(self, file, columns):
-        by_column = {column: meaning for meaning, column in columns.items() if meaning in _MEANINGS[self.of]}
+        by_column = {column: meaning for meaning, column in columns.items() if meaning in MEANINGS[self.of]}
         for heading in self.headings_of(file):
             heading.meaning = by_column.get(heading.key, IGNORED)
 
@@ -145,14 +103,14 @@ class TableDialog:
 
     def draw_tables(self, layout, said):
         """said(path): (text, icon) of each message about a table."""
-        for preview in self._previews[:_SHOWN]:
+        for preview in self._previews[:SHOWN]:
             box = layout.box()
             box.label(text=preview.file.name, icon="FILE")
             self._draw_table(box, preview)
             for text, icon in said(preview.file):
                 message(box.column(align=True), text, icon=icon, most=LETTERS)
-        if len(self._previews) > _SHOWN:
-            layout.label(text=f"and {counted(len(self._previews) - _SHOWN, 'more table')}")
+        if len(self._previews) > SHOWN:
+            layout.label(text=f"and {counted(len(self._previews) - SHOWN, 'more table')}")
 
     def _draw_table(self, layout, preview):
         headings = self.headings_of(preview.file)
@@ -172,7 +130,7 @@ class TableDialog:
 class ObjectDialog:
     """An operator with a dialog about the objects of files. What the filters do not show is not imported."""
 
-    objects: CollectionProperty(type=RealModelFileObject, options={"SKIP_SAVE", "HIDDEN"})
+    objects: CollectionProperty(type=props_import.RealModelFileObject, options={"SKIP_SAVE", "HIDDEN"})
     active_object: IntProperty(name="Active Object", options={"SKIP_SAVE", "HIDDEN"})
     every_object: BoolProperty(
         name="All",

@@ -42,10 +42,11 @@ from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
 from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
+from ..props_import import AXES, OF_POINTS, UNITS
 from ..props_schema import properties_of
 from ..registration import drop_handler
 from ..ui import panel
-from .import_dialog import AXES, OF_POINTS, UNITS, WIDTH, ObjectDialog, TableDialog
+from .import_dialog import WIDTH, ObjectDialog, TableDialog
 from .reporting import Reporting, file_filter, require_file
 from .rocks import add_rock
 from .start import invoke
