@@ -4,10 +4,10 @@
 import bpy
 from bpy.props import StringProperty
 
-from ..bl.project import codes, library_rows, observed_blocks, reading_text, settings
-from ..bl.scene import built_scene, live
+from ..bl.project import borehole_picks, codes, library_rows, observed_blocks, reading_text, settings
+from ..bl.scene import borehole_points, built_scene, live
 from ..core import InputRefused
-from .reporting import Reporting, a_rock
+from .reporting import Reporting, a_rock, require_file
 from .start import invoke
 
 
@@ -31,16 +31,19 @@ class _Regrouping(Reporting):
 
     def act(self, context):
         rock = settings.active_rock(context.scene)
-        rows = (
-            codes.fitting(rock, self.pattern) if self.pattern.strip() else [c for c in rock.codes if c.chosen]
-        )
+        ticked = [row for row in rock.codes if row.chosen]
+        rows = codes.fitting(rock, self.pattern) if self.pattern.strip() else ticked
         if not rows:
             advice = "tick codes in the list, or give a pattern such as Qal*"
             raise InputRefused("no code is chosen", advice=advice)
+        for entry in codes.imports(rock):
+            for file in codes.files_of(entry["properties"]):
+                require_file(file)
         before = {row.unit for row in rock.codes}
-        count = len(rows)
+        known, count = observed_blocks.units_of(context.scene, rock), len(rows)
         for row in rows:
-            row.unit, row.chosen = self.unit_of(row), False
+            row.unit, row.chosen = known.surface(self.unit_of(row)), False
+        borehole_points.forget(rock, borehole_picks.of_rock(rock))
         _give_way(context.scene, rock, before)
         for entry in codes.imports(rock):
             names = reading_text.of_named(codes.names(rock))

@@ -54,7 +54,5 @@ class REALMODEL_PT_codes(FoldedPanel, bpy.types.Panel):
         layout.operator("realmodel.codes_assign", text=text, icon="FORWARD")
         if 0 <= rock.active_code < len(rock.codes):
             active = rock.codes[rock.active_code]
-            said = (
-                f"{active.name}: {active.rows} rows in {active.holes} holes; means {active.unit or 'nothing'}"
-            )
-            hint(layout, said)
+            rows = f"{active.rows} rows in {active.holes} holes"
+            hint(layout, f"{active.name}: {rows}; means {active.unit or 'nothing'}")

@@ -4,6 +4,7 @@ another meaning, their files are read again."""
 
 import json
 from fnmatch import fnmatchcase
+from pathlib import Path
 
 from . import settings
 
@@ -20,17 +21,19 @@ def imports(rock):
 def record(rock, properties, counts, units):
     """Keeps an import: the properties of its operator, realmodel.core's CodeCounts, and the UnitNames that it
     was read with. One of the same files takes the place of the earlier one."""
-    files = _files(properties)
-    kept_imports = [entry for entry in imports(rock) if _files(entry["properties"]) != files]
+    files = files_of(properties)
+    entries = [entry for entry in imports(rock) if files_of(entry["properties"]) != files]
     counted = [[count.code, count.holes, count.rows, count.length] for count in counts]
-    kept_imports.append({"properties": properties, "codes": counted})
-    rock.imports = json.dumps(kept_imports)
+    entries.append({"properties": properties, "codes": counted})
+    rock.imports = json.dumps(entries)
     with settings.filling():
-        _fill(rock, [count for entry in kept_imports for count in entry["codes"]], units)
+        _fill(rock, [count for entry in entries for count in entry["codes"]], units)
 
 
-def _files(properties):
-    return sorted(file["name"] for file in properties["files"]) or [properties["filepath"]]
+def files_of(properties):
+    """The paths of the files of an import."""
+    names = [str(Path(properties["directory"]) / file["name"]) for file in properties["files"]]
+    return sorted(names) or [properties["filepath"]]
 
 
 def _fill(rock, counted, units):
