@@ -31,6 +31,7 @@ from .project.project import Project, Rock, Surface
 from .project.project_file import load_library, load_project
 from .project.series import Series
 from .project.structure_entries import Body, Fault
+from .proposal import ProposedProject, propose_project
 from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
@@ -103,6 +104,7 @@ __all__ = [
     "PointFile",
     "Project",
     "Property",
+    "ProposedProject",
     "RealModelError",
     "Report",
     "Rock",
@@ -136,6 +138,7 @@ __all__ = [
     "load_project",
     "mesh_region",
     "open_tiles",
+    "propose_project",
     "read_boreholes",
     "save_mesh",
     "triangulate_polygon",

@@ -13,6 +13,7 @@ from .object_input import is_object_file, read_hole_objects
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, picks_of_tables
 from .tables.hole_data import HoleTables, read_hole_rows
+from .tables.hole_repair import repair
 from .tables.unit_names import UnitNames
 
 
@@ -32,10 +33,8 @@ def read_boreholes(
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
-        tables = read_repaired(given, model_unit, step)
-        picks = picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
-        picks.warnings += tables.warnings
-        return picks
+        tables = read_repaired(given, model_unit, step, units)
+        return picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
@@ -46,6 +45,11 @@ def read_boreholes(
     return picks
 
 
-def read_repaired(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step) -> HoleTables:
-    """The tables of some boreholes. Raises InputRefused naming file and line."""
-    return read_hole_rows(given, model_unit, step)
+def read_repaired(
+    given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step, units: UnitNames | None = None
+) -> HoleTables:
+    """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
+    InputRefused naming file and line."""
+    tables = read_hole_rows(given, model_unit, step)
+    repair(tables, units)
+    return tables

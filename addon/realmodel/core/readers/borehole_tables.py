@@ -18,6 +18,7 @@ from .borehole_input import read_repaired
 from .tables.hole_data import HoleTables
 from .tables.hole_problems import HoleProblem
 from .tables.hole_tables import Row
+from .tables.holes import end_of
 
 
 @dataclass(frozen=True)
@@ -86,14 +87,15 @@ def _numbers(rows: list[Row], column: str, scale: float = 1.0) -> np.ndarray:
 
 def _collars(tables: HoleTables, scale: np.ndarray) -> Table:
     """Without a table of collars, those that the rows of picks and intervals say."""
-    rows, end = tables.collars, "end"
+    rows, is_table = tables.collars, tables.collars is not None
     if rows is None:
         by_hole: dict[str, Row] = {}
         for row in (*(tables.intervals or ()), *(tables.picks or ())):
             by_hole.setdefault(row.text("hole"), row)
-        rows, end = list(by_hole.values()), ""
+        rows = list(by_hole.values())
     places = {axis: _numbers(rows, axis, scale[n]) for n, axis in enumerate("xyz")}
-    return Table({"hole": _texts(rows, "hole"), **places, "end": _numbers(rows, end, scale[2])})
+    ends = np.array([end_of(row) if is_table else np.nan for row in rows]) * scale[2]
+    return Table({"hole": _texts(rows, "hole"), **places, "end": ends})
 
 
 def _survey(tables: HoleTables, height: float) -> Table:

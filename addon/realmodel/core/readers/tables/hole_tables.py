@@ -7,6 +7,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Protocol
 
@@ -176,6 +177,24 @@ OBSERVED = {
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 # What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
+# Numbers that programs write where there is no value.
+NULL_NUMBERS = frozenset(
+    (
+        *(
+            -999.0,
+            -999.25,
+            -999.99,
+            -9999.0,
+            -9999.25,
+            -9999.99,
+            -99999.0,
+            -999999.0,
+            -9999999.0,
+            -99999999.0,
+        ),
+        *(99999.0, 999999.0, 1e30, -1e30, 1e31, 1e33, -32768.0, -32767.0),
+    )
+)
 _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
 LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
@@ -358,8 +377,8 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
 
 def _opened(reading: Reading, file: Path, meanings: Columns) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
-    for alias in (alias.lower() for aliases in meanings.values() for alias in aliases):
-        names.update(re.sub(r"[\s_]", sign, alias) for sign in ("", "_", " ", "-"))
+    for aliases in meanings.values():
+        names.update(*map(_spellings, aliases))
     return open_table(file, Expected(reading.separator, (), names, 1, 2))
 
 
@@ -375,6 +394,13 @@ def normalized_name(name: str) -> str:
     return re.sub(r"[\s_-]+", "_", name.strip().lower())
 
 
+@cache
+def _spellings(name: str) -> tuple[str, ...]:
+    """A name in small letters with each of the signs that may part its words."""
+    return tuple(re.sub(r"[\s_]", sign, name.lower()) for sign in ("", "_", " ", "-"))
+
+
+@cache
 def column_key(name: str) -> str:
     """The name of a column, for comparing: small letters and digits, without accents, signs and what is in
     brackets: FromDepth, from-depth and "From depth (m)" are one."""
