@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -49,9 +50,7 @@ def _surface(rock: Rock) -> tuple[Surface, list[Surface]]:
         return given, rock.surfaces
     if isinstance(given, (str, Path, PointFile, MeshFile)):
         check_file(getattr(given, "file", given), "terrain", rock.refused)
-    shape = file_shape(given)
-    if "points" in shape:
-        shape |= _OF_RASTER if _is_raster(given) else _OF_POINTS
+    shape = terrain_shape(given)
     youngest = rock.surfaces[-1] if rock.surfaces else None
     if youngest is None or youngest.series is not None or not needs_shape(rock, youngest):
         return Surface(NAME, **shape, source=rock.source), rock.surfaces
@@ -60,6 +59,14 @@ def _surface(rock: Rock) -> tuple[Surface, list[Surface]]:
     elif "options" in shape:
         shape["options"] = {**shape["options"], **youngest.options}
     return replace(youngest, **shape), rock.surfaces[:-1]
+
+
+def terrain_shape(given: Any) -> dict:
+    """The values of a Surface that is a terrain: as file_shape, points with the method by which they are."""
+    shape = file_shape(given)
+    if "points" not in shape:
+        return shape
+    return shape | deepcopy(_OF_RASTER if _is_raster(given) else _OF_POINTS)
 
 
 def needs_shape(rock: Rock, surface: Surface) -> bool:
