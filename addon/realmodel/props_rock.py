@@ -111,6 +111,7 @@ class RealModelSurface(
         description="Mesh object with the points or the surface, with its modifiers",
         update=changes.source,
     )
+    is_terrain: BoolProperty(options={"HIDDEN"})  # the boundary above all others
     filters: CollectionProperty(type=RealModelFilter)
     use_continuation: BoolProperty(
         name="Continue By",

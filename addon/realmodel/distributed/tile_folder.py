@@ -100,7 +100,7 @@ def build(
     is_finished = (folder / CATALOG).exists()
     if not is_finished:
         require_this_version(client)
-    check_project(project)
+    project = check_project(project)
     with (
         no_workers() if is_finished else workers_of(client, workers) as done_by,
         mapped_arrays(folder) as arrays,

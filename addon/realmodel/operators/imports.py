@@ -28,6 +28,8 @@ from ..bl.scene import data_objects, live
 from ..core import InputRefused, MeshFile, PointFile, RealModelError
 from ..core.base.errors import HeightsMissing, counted
 from ..core.base.triangles import open_edges
+from ..core.project.terrain import NAME as TERRAIN
+from ..core.project.terrain import terrain_shape
 from ..core.readers import (
     is_mesh_file,
     objects_in,
@@ -128,6 +130,11 @@ class REALMODEL_OT_surface_add(
         description="Take the active mesh object as the surface instead of a file",
         options={"SKIP_SAVE", "HIDDEN"},
     )
+    as_terrain: BoolProperty(
+        name="Terrain",
+        description="Make it the terrain, the boundary above all other surfaces, in place of the one there",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
     empty: BoolProperty(
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
@@ -160,22 +167,34 @@ class REALMODEL_OT_surface_add(
             type(self)._folder = os.path.dirname(self.filepath)
             chosen = {"filepath": self.filepath, "directory": self.directory}
             chosen["files"] = [{"name": file.name} for file in self.files]
+            chosen["as_terrain"] = self.as_terrain
             invoke(bpy.ops.realmodel.surface_add, self, **chosen)
             return
         scene = context.scene
         surfaces, warnings = self._new_surfaces(context)
+        if self.as_terrain:
+            if len(surfaces) > 1:
+                raise InputRefused("a terrain is one surface", advice="choose one file with one surface")
+            surfaces[0].name = self.name.strip() or TERRAIN
         rock = settings.active_rock(scene) or add_rock(scene)
         units = observed_blocks.units_of(scene, rock)
         read = {}
         with settings.filling():
             for surface in surfaces:
-                row = _row_of(scene, rock, surface, units, warnings)
+                row = _terrain_row(rock) if self.as_terrain else None
+                if row is None:
+                    row = _row_of(scene, rock, surface, units, warnings)
+                    row.is_terrain = self.as_terrain
                 if surface.item is not None:
                     row.source, row.object = "MESH_OBJECT", surface.item
                 elif surface.path is not None:
                     row.source, row.filepath = surface.source, str(surface.path)
                     kind = MeshFile if surface.source == "MESH_FILE" else PointFile
-                    method_settings.fill_reading(row, kind(surface.path, **surface.reading))
+                    given = kind(surface.path, **surface.reading)
+                    method_settings.fill_reading(row, given)
+                    if self.as_terrain:
+                        shape = terrain_shape(given)
+                        method_settings.set_options(row, shape.get("method"), shape.get("options", {}))
                     if surface.source == "POINTS_FILE" and surface.places is not None:
                         read[data_objects.file_key(row)] = surface.places
             rock.active_surface = len(rock.surfaces) - 1
@@ -369,6 +388,19 @@ def _row_of(scene, rock, surface, units, warnings):
     row = rock.surfaces.add()
     row.name = settings.free_name(rock.surfaces, surface.name, own=row)
     row.property_id = library_rows.for_surface(scene, row.name)
+    return row
+
+
+def _terrain_row(rock):
+    """The row that becomes the terrain: the one that is, or the youngest where it has no data; None where a
+    new one is needed."""
+    row = settings.terrain_of(rock)
+    youngest = rock.surfaces[-1] if len(rock.surfaces) else None
+    if row is None and youngest is not None and project_settings.is_free(youngest) and not youngest.series:
+        row = youngest
+    if row is not None:
+        project_settings.forget_shape(row)
+        row.is_terrain = True
     return row
 
 

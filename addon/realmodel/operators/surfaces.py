@@ -18,9 +18,18 @@ class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
     bl_label = "Remove Surface"
     needs = (a_surface,)
 
+    terrain: BoolProperty(
+        name="Terrain",
+        description="Remove the terrain of the rock mass in the place of the active surface",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+
     def act(self, context):
         scene = context.scene
-        row, rock = settings.active_surface(context.scene), settings.active_rock(scene)
+        rock = settings.active_rock(scene)
+        row = settings.terrain_of(rock) if self.terrain else settings.active_surface(scene)
+        if row is None:
+            raise InputRefused("the rock mass has no terrain")
         number = list(rock.surfaces).index(row)
         with settings.filling():
             library_rows.remove_made(scene, row)
@@ -46,6 +55,7 @@ class REALMODEL_OT_surface_copy(Reporting, bpy.types.Operator):
         with settings.filling():
             row.name = settings.free_name(rock.surfaces, source.name, own=row)
             row.interface, row.interface_digest, row.figures, row.block = None, "", "", ""
+            row.is_terrain = False
             if row.source in ("POINTS_FILE", "MESH_FILE"):
                 row.object = None
             rock.surfaces.move(len(rock.surfaces) - 1, number + 1)

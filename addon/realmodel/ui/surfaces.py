@@ -30,6 +30,7 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
         if rock is None:
             _draw_adding(layout)
             return
+        _draw_terrain(layout, rock)
         if rock.ground or rock.ground_stored or rock.map:
             file_field(layout, rock, "ground")
         row = layout.row()
@@ -55,6 +56,22 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
+
+
+def _draw_terrain(layout, rock):
+    """The file or the object of the terrain, and the button that removes it; or how to choose one."""
+    row, line = settings.terrain_of(rock), layout.row(align=True)
+    if row is None:
+        right_label(line, "Terrain")
+        for text, icon in (("File...", "IMPORT"), ("Active Mesh", "OBJECT_DATA")):
+            made = line.operator("realmodel.surface_add", text=text, icon=icon)
+            made.as_terrain, made.use_object = True, icon == "OBJECT_DATA"
+        return
+    if row.source in ("POINTS_OBJECT", "MESH_OBJECT"):
+        line.prop(row, "object", text="Terrain")
+    else:
+        file_field(line, row, "filepath", text="Terrain")
+    line.operator("realmodel.surface_remove", text="", icon="X").terrain = True
 
 
 def _draw_adding(layout):

@@ -133,6 +133,8 @@ def compose(scene, depsgraph, whole=True):
             with naming(surface_item(rock, surface)):
                 _shape(source, composed, (number, at), surface, surface_row)
             rock.surfaces.append(surface)
+        if len(row.surfaces) and row.surfaces[-1].is_terrain:
+            rock.terrain = rock.surfaces[-1].name
         if not rock.interpolates:  # no mesh that they could affect
             rock.constraints, rock.size = [], []
     for place, row in settings.structure_rows(scene):
@@ -225,8 +227,13 @@ def is_of_ground(row):
     rock = settings.rock_of(row)
     if not (rock.ground or rock.ground_stored) or row.path_from_id() != rock.surfaces[-1].path_from_id():
         return False
-    is_free = row.source == "NONE" or (row.source == "POINTS_FILE" and not (row.filepath or row.stored))
-    return is_free and not series_settings.is_level_set(row)
+    return is_free(row)
+
+
+def is_free(row):
+    """Whether a surface is made from no data of its own."""
+    has_none = row.source == "NONE" or (row.source == "POINTS_FILE" and not (row.filepath or row.stored))
+    return has_none and not series_settings.is_level_set(row)
 
 
 def _take_ground(source, composed, place, surface, row):
@@ -501,6 +508,7 @@ def add_rock(group, rock):
             row.region_stored = region_arrays(rock)
         for surface in rock.surfaces:
             fill_surface(row.surfaces.add(), surface)
+            row.surfaces[-1].is_terrain = surface.name == rock.terrain_name
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
         borehole_picks.keep_ends(row, rock.hole_ends)

@@ -73,9 +73,29 @@ def active_rock(scene):
 def active_surface(scene):
     """The active surface's row, or None."""
     rock = active_rock(scene)
-    if rock is None or not len(rock.surfaces):
+    return None if rock is None else _active_surface_in(rock)
+
+
+def _active_surface_in(rock):
+    if not len(rock.surfaces):
         return None
     return rock.surfaces[min(max(rock.active_surface, 0), len(rock.surfaces) - 1)]
+
+
+def terrain_of(rock):
+    """The surface's row that is the terrain of a rock mass, or None."""
+    return next((row for row in rock.surfaces if row.is_terrain), None)
+
+
+def keep_terrains(scene):
+    """Moves terrains above all other surfaces, in whatever order these were added or moved."""
+    for rock in scene.realmodel.rocks:
+        terrain, last = terrain_of(rock), len(rock.surfaces) - 1
+        if terrain is not None and terrain != rock.surfaces[last]:
+            active = _active_surface_in(rock).name
+            with filling():
+                rock.surfaces.move(list(rock.surfaces).index(terrain), last)
+                rock.active_surface = rock.surfaces.find(active)
 
 
 def surface_of(row):
@@ -154,11 +174,12 @@ def row_of_block(scene, block):
 
 def time_of_block(scene, block):
     """The number, from the oldest, of the surface with which a block came."""
-    names = next(([s.name for s in r.surfaces] for r in scene.realmodel.rocks if r.name == block.rock), [])
-    name = block.surface
+    rows = next((list(r.surfaces) for r in scene.realmodel.rocks if r.name == block.rock), [])
+    names, name = [row.name for row in rows], block.surface
     if block.is_body:
         body = row_of_block(scene, block)
-        name = (names[-1] if names else "") if body is None or not body.after else body.after
+        below = [row.name for row in rows if not row.is_terrain] or [""]
+        name = below[-1] if body is None or not body.after else body.after
     return names.index(name) if name in names else 0
 
 

@@ -65,6 +65,7 @@ def _set_outdated(scene, is_outdated):
 
 def _look_at(scene):
     """Reports that a scene's model may be another one than its input makes."""
+    settings.keep_terrains(scene)
     names.store(scene)
     settings.follow_youngest(scene)
     _again.discard(scene.name)

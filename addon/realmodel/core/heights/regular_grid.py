@@ -20,6 +20,7 @@ from .interpolation import Result, Task
 
 # Of a cell: how far a point may lie from its place in the grid (coordinates are written with few digits).
 _OFF_GRID = 0.02
+_CELL = 0.5  # of a cell: so far each node of a raster reaches, where it says all that is known
 _ON_LINE = 1e-9  # of a cell: nearer points lie on a line of the grid, up to rounding
 _SAMPLE = 200  # points whose neighbours show the grid's directions
 _MOST_EMPTY = 100  # nodes of the grid for each point
@@ -53,7 +54,8 @@ def bilinear(task: Task) -> Result:
     grid = find_grid(task.points)
     at = grid.places(task.nodes)
     last = np.array(grid.shape) - 1
-    outside = ((at < -_OFF_GRID) | (at > last + _OFF_GRID)).any(axis=1)
+    border = _CELL if task.settings.get("extrapolate") == "none" else 0.0
+    outside = np.maximum(-at, at - last).max(axis=1, initial=0.0) > border + _OFF_GRID
     at = np.clip(np.where(np.abs(at - np.rint(at)) < _ON_LINE, np.rint(at), at), 0, last)
     i, j = np.minimum(at.astype(np.int64), last - 1).T
     u, v = at[:, 0] - i, at[:, 1] - j

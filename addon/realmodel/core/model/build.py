@@ -62,7 +62,7 @@ def build(
     check_cells(cells)
     check_memory(memory)
     threads = check_threads(threads)
-    check_project(project)
+    project = check_project(project)
     if stage is not None:
         check_stage(project, stage)
     native_module()

@@ -109,7 +109,7 @@ def estimate(
     """
     check_cells(cells)
     threads = check_threads(threads)
-    check_project(project)
+    project = check_project(project)
     if stage is not None:
         check_stage(project, stage)
     native_module()

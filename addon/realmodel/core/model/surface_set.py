@@ -102,7 +102,7 @@ def build_surfaces(
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
-    check_project(project)
+    project = check_project(project)
     if stage is not None:
         check_stage(project, stage)
     if not any(rock.surfaces for rock in project.rocks):

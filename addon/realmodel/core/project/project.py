@@ -229,6 +229,9 @@ class Rock(Entry):
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
     `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
     as of a region; `size` may be at what is in such files too.
+    `terrain` is the boundary above all surfaces: the name of one of them, or a Surface, a file of heights (a
+    raster, points or a mesh), a PointFile, a MeshFile, or points (P, 3). It becomes the youngest surface of
+    the model; faults and bodies end at it unless they name it.
     With `base_elevation` there is a block between this height and the oldest surface.
     `series` are runs of surfaces that share their structure.
     `shape_file` is the file that the rings were read from, if any: messages name it.
@@ -294,6 +297,7 @@ class Rock(Entry):
     map: MapFile | None = declared(
         kind="table_file", of=MapFile, example='{ file = "geology.gpkg", block = "UNIT" }'
     )
+    terrain: str | Path | PointFile | MeshFile | np.ndarray | Surface | None = declared(kind="ground")
     series: list[Series] = declared(kind="tables", of=Series, factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     hole_ends: Mapping = field(default_factory=dict, repr=False, compare=False)
@@ -357,6 +361,27 @@ class Rock(Entry):
         return None if is_surface else ground
 
     @property
+    def terrain_number(self) -> int | None:
+        """The number of the surface that is its terrain; None where it has none, or it is no surface yet."""
+        numbers = (at for at, surface in enumerate(self.surfaces) if surface.name == self.terrain_name)
+        return next(numbers, None)
+
+    @property
+    def terrain_name(self) -> str | None:
+        """The name of the surface that is its terrain; the same."""
+        is_name = isinstance(self.terrain, str) and any(
+            surface.name == self.terrain for surface in self.surfaces
+        )
+        return str(self.terrain) if is_name else None
+
+    @property
+    def youngest_in_rock(self) -> int:
+        """The number of its youngest surface below the terrain, up to which faults displace it and bodies come
+        where they do not say so."""
+        last = len(self.surfaces) - 1
+        return last - 1 if last > 0 and self.terrain_number == last else last
+
+    @property
     def ground_number(self) -> int | None:
         """The number of the surface that is the ground of its map; None without a map, or where none is."""
         if self.map is None:
@@ -402,9 +427,9 @@ class Rock(Entry):
         """The rock mass with the surfaces up to m, and the series that these belong to."""
         surfaces = self.surfaces[: m + 1]
         names = {surface.series for surface in surfaces}
-        return replace(
-            self, surfaces=surfaces, series=[series for series in self.series if series.name in names]
-        )
+        series = [series for series in self.series if series.name in names]
+        is_above = self.terrain_number is not None and self.terrain_number > m
+        return replace(self, surfaces=surfaces, series=series, terrain=None if is_above else self.terrain)
 
     @property
     def interpolates(self) -> bool:

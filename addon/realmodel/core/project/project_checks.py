@@ -41,6 +41,7 @@ from .project import Project, Rock, Surface, surface_item
 from .series import Series
 from .structure_entries import FAULT, OF_TRACES, Body, Fault
 from .structure_history import displaced_surfaces
+from .terrain import with_terrains
 
 CELL_KINDS = ("columns", "blocks")
 
@@ -322,8 +323,9 @@ def _way_back(name: str, faults: dict[str, Fault]) -> list[str]:
     return []
 
 
-def check_project(project: Project) -> None:
-    """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
+def check_project(project: Project) -> Project:
+    """A project as it is built, with its terrains as surfaces. One that cannot be built is refused, before
+    anything is read. Raises InputRefused."""
     if not is_name(project.name):
         raise InputRefused("a project needs a name", file=project.path)
     try:
@@ -332,9 +334,11 @@ def check_project(project: Project) -> None:
         raise InputRefused(error.what, file=project.path, item=error.option, advice=error.advice) from error
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
+    project = with_terrains(project)
     for rock in named_once(project.rocks, "rock mass"):
         _check_rock(project, rock)
     check_structures(project)
+    return project
 
 
 def _check_rock(project: Project, rock: Rock) -> None:

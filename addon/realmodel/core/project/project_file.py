@@ -42,8 +42,7 @@ def load_project(path: str | Path) -> Project:
         raise top.refuse(f"unknown format {version}", "format", f"this version reads format {FORMAT}")
     top.allow_only(("format", *PROJECT))
     project = Project(path=path, **_values(top, Project, path.parent, _checked))
-    check_project(project)
-    return project
+    return check_project(project)
 
 
 def load_library(path: str | Path) -> Library:
@@ -188,7 +187,7 @@ def _table_file(key: _Key) -> Any:
 
 
 def _ground(key: _Key) -> Any:
-    """The ground of a map: a file, a table with one, or the name of a surface of the rock mass."""
+    """A ground or a terrain: a file, a table with one, or the name of a surface of the rock mass."""
     if isinstance(key.value, dict):
         keys = key.inner()
         keys.allow_only(settings_of(PointFile))
@@ -196,9 +195,8 @@ def _ground(key: _Key) -> Any:
         is_mesh = is_file(values["file"]) and is_mesh_file(values["file"])
         kind = MeshFile if is_mesh and values.keys() <= settings_of(MeshFile).keys() else PointFile
         return kind(**values)
-    rock: Any = key.table.document.content
-    for part in key.table.path[:-1]:
-        rock = rock[part]
+    of_rocks, number = key.table.path[:2]
+    rock = key.table.document.content[of_rocks][number]
     names = [surface.get("name") for surface in rock.get("surface", []) if isinstance(surface, dict)]
     return key.text() if key.text() in names else key.path()
 

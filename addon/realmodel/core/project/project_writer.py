@@ -43,7 +43,7 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
     path = Path(path)
     if path.suffix.lower() != ".toml":
         raise UsageError(f"{path}: a project file ends in .toml")
-    check_project(project)
+    project = check_project(project)
     with Outputs() as outputs:
         files = _Beside(path, outputs)
         lines = ["format = 1", *_entry_lines(project, files, (), "")]

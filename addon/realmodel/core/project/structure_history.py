@@ -26,7 +26,7 @@ def _numbers(project: Project, names: Sequence[str], surface: str | None) -> dic
             continue
         surfaces = [rock_surface.name for rock_surface in rock.surfaces]
         if surface is None:
-            numbers[number] = len(surfaces) - 1
+            numbers[number] = rock.youngest_in_rock
         elif surface in surfaces:
             numbers[number] = surfaces.index(surface)
     return numbers

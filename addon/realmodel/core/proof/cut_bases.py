@@ -112,6 +112,7 @@ def _areas(corners: np.ndarray, base: float) -> tuple[float, float]:
 
 _KEPT = "it is a ready mesh, or other data of it lie below them"
 _NOT_KEPT = "if they are observed = true, it cuts none"
+_OF_TERRAIN = "the terrain is not moved to them: check their heights, and those of the collars of holes"
 
 
 def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedForm]) -> None:
@@ -128,7 +129,8 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
             points = data.measured_points
             is_observed = bool(len(points)) and len(observed_contacts(surface, data)) == len(points)
             for cutter in succession.cut_later(number) if len(points) else ():
-                if not (is_observed or surfaces[cutter].has_points):
+                is_terrain = cutter == rock.terrain_number
+                if not is_observed and (is_terrain or not surfaces[cutter].has_points):
                     continue
                 # infinite: a level set is nowhere in the compartment
                 above = np.nan_to_num(-form.above(work, cutter, points), posinf=0.0, neginf=0.0)
@@ -138,7 +140,8 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
                 text = (
                     f"it erodes {len(wrong.items)} of the {len(points)} contacts of '{surface.name}', the "
                     f"farthest lies {wrong.by:.4g} above it: point {data.row(wrong.worst)} at "
-                    f"{place_text(wrong.place)}; {_KEPT if is_observed else _NOT_KEPT}"
+                    f"{place_text(wrong.place)}; "
+                    f"{_OF_TERRAIN if is_terrain else _KEPT if is_observed else _NOT_KEPT}"
                 )
                 cutter_name = surfaces[cutter].name  # a stage without it has no such warning
                 entry.warnings.append(

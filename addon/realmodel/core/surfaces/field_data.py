@@ -80,13 +80,18 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     observations = Observations.joined(parts).along_holes() if parts else None
     if observations is not None and not (picks.holes or rock.hole_picks):
         map_warnings += _on_the_ground_alone(rock, observations, dips, series)
+    takes_picks = {
+        surface.name
+        for number, surface in enumerate(rock.surfaces)
+        if surface.has_points and number != rock.terrain_number
+    }
     surfaces = [
         (_without_picks(surface, picks), picks.of_surfaces.get(surface.name))
-        if surface.has_points
+        if surface.name in takes_picks
         else (surface, None)
         for surface in rock.surfaces
     ]
-    unnamed = picks.of_surfaces.keys() - {surface.name for surface in rock.surfaces if surface.has_points}
+    unnamed = picks.of_surfaces.keys() - takes_picks
     read = replace(
         rock,
         boreholes=None,

@@ -18,12 +18,13 @@ from ..base.work import native_module
 from ..heights.interpolate import interpolate
 from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
-from ..readers import UnitNames, is_mesh_file
+from ..project.terrain import file_shape, needs_shape
+from ..readers import UnitNames
 from ..readers.fault_input import read_fault_trace
 from ..readers.point_input import read_raster_heights
 from ..readers.tables.observations import LeftOut, Observations
 from ..readers.unit_polygons import UnitPolygon, read_unit_polygons
-from ..settings.data_files import MapFile, MapLayer, MeshFile, PointFile
+from ..settings.data_files import MapFile, MapLayer, PointFile
 from ..settings.methods import CONTINUATION, CONTINUATION_OPTIONS
 from .observed.map_places import MapFrame, observed_on_map
 from .observed.polygon_borders import inside
@@ -37,9 +38,7 @@ def with_ground(rock: Rock) -> Rock:
     """The rock mass whose youngest surface is made from the ground of its map, where it has no points and no
     mesh."""
     youngest = rock.surfaces[-1]
-    if rock.map is None or not (
-        rock.is_interpolated(youngest) and youngest.points is None and youngest.needs_points
-    ):
+    if rock.map is None or not needs_shape(rock, youngest):
         return rock
     if (shape := _ground_shape(rock)) is None:
         return rock
@@ -48,12 +47,7 @@ def with_ground(rock: Rock) -> Rock:
 
 def _ground_shape(rock: Rock) -> dict | None:
     """The points or the mesh of the ground; None where it is a surface."""
-    ground = rock.ground_file
-    if ground is None:
-        return None
-    if isinstance(ground, (PointFile, MeshFile)):
-        return {"mesh" if isinstance(ground, MeshFile) else "points": ground}
-    return {"mesh" if is_mesh_file(ground) else "points": ground}
+    return None if rock.ground_file is None else file_shape(rock.ground_file)
 
 
 @dataclass(frozen=True, eq=False)

@@ -145,10 +145,17 @@ def _other_systems(rock: Rock, crs: str | None) -> list[BuildWarning]:
 
 def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
     """The warning about picks of names that no surface has."""
-    if not field.unnamed:
-        return []
-    what = f"boreholes have picks of {number_list(field.unnamed)}, which no surface from points is named"
-    return [BuildWarning(what, "points", rock.name)]
+    terrain = field.rock.terrain_name
+    of_none = [name for name in field.unnamed if name != terrain]
+    texts = []
+    if of_none:
+        texts.append(f"boreholes have picks of {number_list(of_none)}, which no surface from points is named")
+    if len(of_none) < len(field.unnamed):
+        texts.append(
+            f"boreholes have picks of '{terrain}', which is the terrain, so they are not used; if that is wrong, "
+            "add a surface without points above it, for the terrain"
+        )
+    return [BuildWarning(text, "points", rock.name) for text in texts]
 
 
 def with_arrays(project: Project) -> Project:

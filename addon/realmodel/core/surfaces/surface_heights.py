@@ -122,7 +122,8 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
         if trend is not None:
             result, free = _on_trend(work, entry, number, trend, others)
         else:
-            give = heights if entry.draws is None else entry.draws[number].heights
+            draws = None if number == rock.terrain_number else entry.draws  # a terrain is measured
+            give = heights if draws is None else draws[number].heights
             companions = companions_of(rock, entry.data, number, entry.joint_fits)
             task = Task(work, data.points, nodes, settings, triangles, surfaces=others)
             task = replace(task, dips=data.dips, companions=companions, ties=surface.tie)

@@ -203,6 +203,8 @@ def _of_used(
     used, their rows; and the rows at places where blocks meet that no surface of their series divides."""
     places, sides = observations.places[used] + 0.0, _sides(situation, len(observations))[used]
     above, below = _statements(rock, situation, blocks, used)
+    if (terrain := rock.terrain_number) is not None:  # it is measured, and not moved to what contradicts it
+        above[:, terrain] = below[:, terrain] = False
     first, place = _numbered(np.column_stack([places, sides]))
     first_rows = np.full(len(first), len(used))
     np.minimum.at(first_rows, place, np.arange(len(used)))

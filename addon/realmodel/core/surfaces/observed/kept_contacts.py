@@ -34,7 +34,7 @@ def kept_bounds(rock: Rock, data: Sequence[SurfaceData]) -> list[Bounds]:
         done = {surface.series} - {None}
         for number in succession.cut_later(older) if len(contacts) else []:
             younger = surfaces[number]
-            if younger.has_points and younger.series not in done:
+            if number != rock.terrain_number and younger.has_points and younger.series not in done:
                 places[number].append(contacts)
                 done |= {younger.series} if rock.is_level_set(younger) else set()
     return [
