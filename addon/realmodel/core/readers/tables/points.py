@@ -61,7 +61,27 @@ _WORDS = {
 _BESIDE = (
     *("utm", "coord", "coordinate", "coordinates", "coords", "point", "rd", "pos", "position", "map", "grid"),
     *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat", "mga", "lv95", "gk"),
-    *("world", "local", "projected", "nat_grid", "nap", "nn", "nhn", "asl", "amsl", "msl", "wert", "l93"),
+    *(
+        "world",
+        "local",
+        "projected",
+        "nat_grid",
+        "value",
+        "utme",
+        "utmn",
+        "nap",
+        "nn",
+        "nhn",
+        "asl",
+        "amsl",
+        "msl",
+        "wert",
+        "l93",
+    ),
+)
+_DEPTHS = (
+    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
+    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
 )
 _SYSTEM = re.compile(
     r"(?:utm|mga|lv|gda|epsg|zone|l|gk|cc|rt|osgb|ch|etrs|wgs|nad|nzgd|sweref|dhdn|ed|itrf)?\d+[a-z]{0,2}"
@@ -71,7 +91,7 @@ AXES = {
     axis: (
         *words,
         *(f"{beside}_{word}" for word in words for beside in _BESIDE),
-        *(f"{word}_{beside}" for word in words for beside in _BESIDE),
+        *(f"{word}_{beside}" for word in words for beside in (*_BESIDE, *(_DEPTHS if axis == "z" else ()))),
         *(f"{beside}{word}" for word in words[:3] for beside in _BESIDE),
         *(f"{word}{beside}" for word in words[:3] for beside in _BESIDE),
     )
@@ -82,10 +102,6 @@ _DEGREES = {
     "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),
     "y": ("lat", "latitude", "latitud", "breite"),
 }
-_DEPTHS = (
-    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
-    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
-)
 _NAMES = {axis: (*AXES[axis], *_DEGREES.get(axis, ()), *(_DEPTHS if axis == "z" else ())) for axis in AXES}
 KNOWN = frozenset(name for names in _NAMES.values() for name in names)
 
