@@ -57,6 +57,7 @@ def read_map_points(
 
 
 _END_OF_LINE = 999.0  # in all three columns, of IRAP's points
+_BY_CHANCE = 1e-3  # of all points
 _LOOKED_FOR = (*OFTEN_NO_VALUE, _END_OF_LINE)
 OF_POINTS = (POINTS, LINES, SURFACE, HOLE)
 
@@ -335,14 +336,15 @@ class _Values:
             what = f"{self._file}: {number} the {called} {value:.9g}"
             near = min(abs(value - low), abs(value - high))
             is_far = near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
-            # of a number such as -999.25 it is less likely that it is a value
-            if is_far or value == self.nodata or value % 1 or abs(value) > 1e19:
+            # among others such a number comes by chance, where there are many of them
+            is_rare = low <= value <= high and count <= _BY_CHANCE * self._count
+            if is_far or value == self.nodata or (value % 1 and not is_rare):
                 values.append(value)
                 self.warnings.append(
                     f"{what}, {'far from all others, ' if is_far else ''}which often means no data, and left "
                     'out: if it is a value, set nodata = "none"'
                 )
-            elif count > 1:
+            elif value % 1 or (count > 1 and not is_rare):
                 self.warnings.append(
                     f"{what}, which often means no data: it is used; if it is none, set nodata = {value:g}"
                 )

@@ -370,6 +370,8 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     """(P,) the values of each further column, by its name, or by its number from 1 where it has none: numbers
     (NaN where there is none), or texts if not all are numbers."""
     table, mark = rows.table, rows.decimal
+    if max(map(len, head_rows(table, 2000)), default=0) <= 3 and len(table.layout.names or ()) <= 3:
+        return {}
     filters, missing = _filters(table, given)
     separator = table.layout.separator
     lines = table.raw[table.layout.body :].split(b"\n")
