@@ -186,7 +186,7 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None, step: S
     are expected. Raises InputRefused where there are no rows."""
     raw: Content
     if begins_as_workbook(FileBytes(file)[:100]):
-        raw = sheet_text(file, sheet, partial(_has_columns, expected), step)
+        raw = sheet_text(file, sheet, expected.is_header or partial(_has_columns, expected), step)
         expected = replace(expected, separator="\t")
     else:
         raw = text_content(file)

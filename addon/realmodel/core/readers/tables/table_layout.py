@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -73,14 +73,17 @@ def is_any_number(entry: str) -> bool:
 @dataclass(frozen=True)
 class Expected:
     """What is known of a table before it is read. separator: None where it is to be found. wanted: the
-    requested columns; texts are names that the header must have. known: names that make a line a header, in
-    small letters. numbers, columns: how many of them a row has at least."""
+    requested columns; texts are names that the header must have. known: names that make a line a header,
+    in small letters. numbers, columns: how many of them a row has at least. is_header: whether texts are
+    the names of the columns that are needed, by which a sheet of a workbook is chosen; None: by wanted and
+    known."""
 
     separator: str | None = None
     wanted: Sequence[str | int] = ()
     known: Container[str] = ()
     numbers: int = 3
     columns: int = 3
+    is_header: Callable[[list[str]], bool] | None = None
 
 
 def table_layout(
