@@ -330,15 +330,14 @@ class _Values:
         called = "height" if axis == 2 else name
         values = []
         for value, count in self._counts[axis].items():
-            if low > high:
-                continue
             number = "1 point has" if count == 1 else f"{count} points have"
             what = f"{self._file}: {number} the {called} {value:.9g}"
             near = min(abs(value - low), abs(value - high))
-            is_far = near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
+            has_others = low <= high
+            is_far = has_others and near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
             # among others such a number comes by chance, where there are many of them
             is_rare = low <= value <= high and count <= _BY_CHANCE * self._count
-            if is_far or value == self.nodata or (value % 1 and not is_rare):
+            if has_others and (is_far or value == self.nodata or (value % 1 and not is_rare)):
                 values.append(value)
                 self.warnings.append(
                     f"{what}, {'far from all others, ' if is_far else ''}which often means no data, and left "

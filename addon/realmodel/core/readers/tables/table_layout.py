@@ -145,11 +145,11 @@ def _with_unit(name: str, unit: str) -> str:
 
 
 def _commented(text: str, separator: str, count: int) -> list[str]:
-    """The entries of a comment, as many as a row has where the sign that begins it is the name of the
-    first."""
+    """The entries of a comment, as many as a row has where the sign that begins it is the name of the first:
+    not with blanks between them, where it rather is the sign of a comment."""
     entries = fields(text.lstrip(_SIGNS + " "), separator)
     whole = fields(text, separator)
-    return whole if len(whole) == count > len(entries) else entries
+    return whole if separator != " " and len(whole) == count > len(entries) else entries
 
 
 def _is_comment(text: str) -> bool:
@@ -183,9 +183,10 @@ def _header(
     for n, entries in [*headings, *commented]:
         if asked and set(asked) <= {entry.lower() for entry in entries}:
             return n, tuple(entries)
-    for n, entries in headings:
-        if any(plain_name(entry) in known_names for entry in entries):
-            return n, tuple(entries)
+    known = [sum(plain_name(entry) in known_names for entry in entries) for _, entries in headings]
+    if any(known):
+        n, entries = headings[known.index(max(known))]
+        return n, tuple(entries)
     for n, entries in commented:
         if {"x", "y", "z"} <= {plain_name(entry) for entry in entries}:
             return n, tuple(entries)
