@@ -317,7 +317,7 @@ class Row:
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
-    table = _opened(given, file, known)
+    table = _opened(given, file, known, needed)
     layout = table.layout
     names, name_line = layout.names or (), layout.name_line or 1
     columns = _columns(given, file, layout, known)
@@ -374,11 +374,16 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(reading: Reading, file: Path, meanings: Columns) -> TextTable:
+def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = ()) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
     for aliases in meanings.values():
         names.update(*map(_spellings, aliases))
-    return open_table(file, Expected(reading.separator, (), names, 1, 2))
+
+    def is_header(cells: list[str]) -> bool:
+        columns = _columns(reading, file, TableLayout("\t", tuple(cells), 0, 0, None), meanings)
+        return set(needed) <= columns.keys() and len(columns) > 2
+
+    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header))
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:
