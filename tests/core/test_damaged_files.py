@@ -11,8 +11,16 @@ import pytest
 from damages import damaged_bytes
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from realmodel.core import Boreholes, BuildFailed, InputRefused, MeshFile, PointFile, load_library, load_project
-from realmodel.core.readers import read_mesh, read_point_file, read_region
+from realmodel.core import (
+    Boreholes,
+    BuildFailed,
+    InputRefused,
+    MeshFile,
+    PointFile,
+    load_library,
+    load_project,
+)
+from realmodel.core.readers import read_boreholes, read_mesh, read_point_file, read_region
 from realmodel.core.readers.fault_input import read_fault_points
 from test_mesh_dialects import GOCAD, STRINGS, WELL, datamine, legacy
 from test_named_objects import binary_dxf, dxf_blocks, dxf_meshes, glb, gmsh

@@ -403,7 +403,8 @@ def test_wells_of_gocad(put):
 
 
 def legacy(kind, version, binary):
-    """Two triangles and a square of a PolyData or an UnstructuredGrid, with an array before and behind them."""
+    """Two triangles and a square of a PolyData or an UnstructuredGrid, with an array before and behind
+    them."""
     places = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 5], [2, 1, 5]], float)
     rows = [[0, 1, 2, 3], [1, 4, 2], [4, 5, 2]]
 

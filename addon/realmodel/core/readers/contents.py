@@ -52,8 +52,8 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
 
 
 def layer_names(file: Path) -> list[str]:
-    """What `layer` may name in a file: the layers of a GeoPackage, the objects of a file of objects; none of other
-    files. Raises InputRefused."""
+    """What `layer` may name in a file: the layers of a GeoPackage, the objects of a file of objects; none of
+    other files. Raises InputRefused."""
     file_format = format_of(file, OBJECTS, SHAPES)
     if file_format is not None and file_format.holds == OBJECTS:
         return list(dict.fromkeys(obj.name for obj in objects_in(file)))

@@ -52,8 +52,8 @@ class FileFormat:
 
     holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
-    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer` names
-    one of several layers of shapes in a file.
+    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer`
+    names one of several layers of shapes in a file.
     """
 
     label: str

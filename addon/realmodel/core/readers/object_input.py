@@ -61,8 +61,8 @@ def read_objects(
 def _chosen(
     file: Path, objects: list[ObjectName], layer: str | None, kinds: Collection[str], several: bool
 ) -> list[ObjectName]:
-    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name has
-    several kinds the first of `kinds` counts."""
+    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name
+    has several kinds the first of `kinds` counts."""
     said = " or ".join(_PLURALS[kind] for kind in kinds)
     listed = f"it has {names_shown([obj.name for obj in objects])}" if objects else None
     if layer is None:

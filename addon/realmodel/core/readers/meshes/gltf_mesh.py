@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""glTF 2.0 (Khronos, "glTF 2.0 Specification"), .gltf and .glb: the triangles of each node, by its name, where
-its scene places them, in meters. Y is up there: it is turned to z."""
+"""glTF 2.0 (Khronos, "glTF 2.0 Specification"), .gltf and .glb: the triangles of each node, by its name,
+where its scene places them, in meters. Y is up there: it is turned to z."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def begins_as_gltf(head: bytes, _size: int = 0) -> bool:
 
 
 def read_gltf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
-    """The nodes that have triangles; corners at the same place become one vertex, for normals and colors divide
-    them. Raises InputRefused naming the file."""
+    """The nodes that have triangles; corners at the same place become one vertex, for normals and colors
+    divide them. Raises InputRefused naming the file."""
     file = Path(file)
     try:
         content = _Content(file)

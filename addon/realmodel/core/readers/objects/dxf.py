@@ -3,8 +3,8 @@
 each layer, and of each block that is inserted.
 
 Faces: 3DFACE, polyface and polygon meshes (POLYLINE), and MESH, of which the coarsest level counts. Lines and
-points: POLYLINE, LWPOLYLINE, LINE and POINT, by their vertices. What stands in a block is where it is inserted,
-and on the layer of the insert if it is on layer 0.
+points: POLYLINE, LWPOLYLINE, LINE and POINT, by their vertices. What stands in a block is where it is
+inserted, and on the layer of the insert if it is on layer 0.
 """
 
 from __future__ import annotations
@@ -186,8 +186,8 @@ def _insert_changes(insert: Entity, block: Entity) -> Iterator[np.ndarray]:
 
 
 def _axes(entity: Entity) -> np.ndarray:
-    """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded: the
-    "arbitrary axis algorithm" of the reference. Raises ValueError."""
+    """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded:
+    the "arbitrary axis algorithm" of the reference. Raises ValueError."""
     normal = np.array([entity.number(code, default) for code, default in ((210, 0), (220, 0), (230, 1))])
     length = math.sqrt(float(normal @ normal))
     if not length > 0.0 or ((normal[:2] == 0).all() and normal[2] > 0):
@@ -268,7 +268,8 @@ def _polyline(entity: Entity) -> _Shape:
 
 
 def _mesh_faces(entity: Entity) -> list[list[_Place]]:
-    """The faces of a MESH on its coarsest level: behind code 93 stand the size and the corners of each face."""
+    """The faces of a MESH on its coarsest level: behind code 93 stand the size and the corners of each
+    face."""
     places = list(zip(entity.all_of(10), entity.all_of(20), entity.all_of(30), strict=True))
     numbers, is_list = [], False
     for code, value in entity.pairs:
