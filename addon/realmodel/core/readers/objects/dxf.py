@@ -92,14 +92,21 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     parts = [layer for name, layer in inserted.items() if name not in layers]
     objects += [obj for layer in parts for obj in _objects(file, layer, said_unit, True)]
     if not objects:
+        what = "it has no 3D faces, lines or points"
+        not_read = _kinds(sum((layer.not_read for layer in layers.values()), Counter()))
+        what += f", but {not_read}, which are not read" if not_read else ""
         advice = "export the surface as 3D faces (3DFACE), as a polyface mesh or as contour lines"
-        raise InputRefused("it has no 3D faces, lines or points", file=file, advice=advice)
+        raise InputRefused(what, file=file, advice=advice)
     return objects
 
 
+def _kinds(entities: Counter) -> str:
+    return number_list(f"{count} {name}" for name, count in sorted(entities.items()))
+
+
 def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) -> Iterator[ObjectName]:
-    kinds = [f"{count} {name}" for name, count in sorted(layer.not_read.items())]
-    warnings = (f"'{layer.name}' has {number_list(kinds)}, which are not read",) if kinds else ()
+    kinds = _kinds(layer.not_read)
+    warnings = (f"'{layer.name}' has {kinds}, which are not read",) if kinds else ()
 
     def surface() -> GeoObject:
         mesh = mesh_of_corners(file, layer.corners, layer.sizes)
