@@ -60,7 +60,7 @@ class HoleProblem:
     code: str | None = None
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}: {self.text} ({self.action})"
+        return f"{self.file}: {self.text} ({self.action})"
 
 
 class ProblemList(list[HoleProblem]):
