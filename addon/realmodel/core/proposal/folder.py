@@ -32,8 +32,7 @@ _WIDTH = 110  # of comments
 def save_folder(project: ProposedProject, folder: str | Path) -> list[Path]:
     """Writes a proposed project to a new folder. Raises OutputFailed."""
     folder = Path(folder)
-    if folder.exists():
-        raise OutputFailed(f"{folder}: it exists; choose a new folder")
+    require_new(folder)
     with Outputs() as outputs, outputs.folder(folder, _PROJECT) as waiting:
         files = _Files(waiting, folder)
         text = "\n".join(_project_lines(project, files)) + "\n"
@@ -43,6 +42,12 @@ def save_folder(project: ProposedProject, folder: str | Path) -> list[Path]:
         load_project(waiting / _PROJECT)  # what it says is right
         names = sorted(files.taken)
     return [folder / name for name in names]
+
+
+def require_new(folder: Path) -> None:
+    """Raises OutputFailed where something stands in the place of a new folder."""
+    if folder.exists():
+        raise OutputFailed(f"{folder}: it exists; choose a new folder")
 
 
 class _Files:

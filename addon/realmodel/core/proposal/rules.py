@@ -69,6 +69,10 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
                 best = flipped
         if best == before:
             break
+    for number in range(count):  # what decides nothing cuts nothing
+        flipped = (*best[:number], False, *best[number + 1 :])
+        if best[number] and right(flipped) >= right(best):
+            best = flipped
     choices = []
     for number, unit in enumerate(units[:-1]):
         cuts = best[number] and bool(gaps[number])
