@@ -4,6 +4,7 @@
 import json
 import subprocess
 import sys
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ PLAIN = [("Soil", 2), ("Sand", 5), ("Clay", 18), ("Rock", 20)]
 
 
 def write_tables(folder, holes, plan=PLAN, rows_in=None):
-    """collars.csv and intervals.csv of holes, each (unit, thickness) from above. rows_in: the order of rows."""
+    """Tables of holes, each (unit, thickness) from above. rows_in: the random numbers that shuffle rows."""
     collars = [f"H{n},{plan[n][0]},{plan[n][1]},50" for n in range(len(holes))]
     intervals = []
     for number, hole in enumerate(holes):
@@ -166,9 +167,10 @@ def test_where_superposition_decides_the_order_is_the_truth(data):
     count = data.draw(st.integers(2, 16))
     names = data.draw(st.permutations([f"unit {n}" for n in range(count)]))  # youngest first
     columns = [
-        [(name, 1.0) for name in names if data.draw(st.booleans())] for _ in range(data.draw(st.integers(0, 6)))
+        [(name, 1.0) for name in names if data.draw(st.booleans())]
+        for _ in range(data.draw(st.integers(0, 6)))
     ]
-    columns += [[(upper, 1.0), (lower, 2.0)] for upper, lower in zip(names, names[1:], strict=False)]
+    columns += [[(upper, 1.0), (lower, 2.0)] for upper, lower in pairwise(names)]
     found = find_order(evidence_of(names, columns))
     assert found.order == list(reversed(names))
     assert not found.alternatives
@@ -184,7 +186,7 @@ def test_an_order_contradicts_no_more_than_any_exchange_of_neighbors(data):
     ]
     evidence = evidence_of(names, columns)
     downward = [names.index(unit) for unit in reversed(find_order(evidence).order)]
-    for upper, lower in zip(downward, downward[1:], strict=False):
+    for upper, lower in pairwise(downward):
         assert evidence.over[upper, lower] >= evidence.over[lower, upper] - 1e-9
 
 

@@ -80,7 +80,9 @@ class _Files:
             name = self.free(file.stem, file.suffix)
             self._copies[file.resolve()] = self.write(name, file.read_bytes())
             for other in beside(file):
-                ending = other.name.removeprefix(file.stem) if other.name.startswith(file.stem) else other.suffix
+                ending = (
+                    other.name.removeprefix(file.stem) if other.name.startswith(file.stem) else other.suffix
+                )
                 self.write(Path(name).stem + ending, other.read_bytes())
         return self._copies[file.resolve()]
 
@@ -146,7 +148,9 @@ def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:
 
 
 def _order_comment(proposal: Proposal) -> list[str]:
-    lines = _comment("The order of units, oldest first, by which lies over which: " + ", ".join(proposal.order))
+    lines = _comment(
+        "The order of units, oldest first, by which lies over which: " + ", ".join(proposal.order)
+    )
     for other in proposal.alternatives:
         lines += _comment(
             f"Not decided: '{other.younger}' is taken to be younger than '{other.older}' "

@@ -108,9 +108,7 @@ def _in_order(parts: Sequence[Part], order: UnitOrder) -> list[bool]:
     return stays
 
 
-def _runs_out_of_order(
-    log: Log, stays: Sequence[bool], order: UnitOrder, repeats: list[Repeat]
-) -> set[int]:
+def _runs_out_of_order(log: Log, stays: Sequence[bool], order: UnitOrder, repeats: list[Repeat]) -> set[int]:
     """The numbers of parts that are out of order several in a row, which are added to the repeats."""
     numbers: set[int] = set()
     run: list[int] = []
@@ -151,9 +149,7 @@ def _conflicts(log: Log, stays: Sequence[bool], number: int, order: UnitOrder) -
     return conflicts
 
 
-def _groups(
-    parts: list[tuple[str, Part]], plan: dict[str, np.ndarray]
-) -> list[list[tuple[str, Part]]]:
+def _groups(parts: list[tuple[str, Part]], plan: dict[str, np.ndarray]) -> list[list[tuple[str, Part]]]:
     """Parts of neighboring holes at about the same height are one lens."""
     reach = _REACH * spacing(np.array(list(plan.values())))
     groups: list[list[tuple[str, Part]]] = []
@@ -196,7 +192,7 @@ def _named(lenses: list[Lens], data: HoleLogs, logs: list[Log]) -> list[Lens]:
         same = [other for other in lenses if other.unit == lens.unit]
         is_all = len(same) == 1 and not any(part.unit == lens.unit for log in logs for part in log.parts)
         name, number = lens.unit if is_all else f"{lens.unit} lens", 1
-        while not is_all and (name.casefold() in taken or len(same) > 1 and number == 1):
+        while not is_all and (name.casefold() in taken or (len(same) > 1 and number == 1)):
             name = f"{lens.unit} lens {number}"
             if name.casefold() not in taken:
                 break
@@ -256,7 +252,7 @@ def _spread(places: np.ndarray, values: np.ndarray, nodes: np.ndarray) -> np.nda
 def _closed(
     nodes: np.ndarray, triangles: np.ndarray, middle: np.ndarray, thickness: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The closed surface around where the thickness is above 0, half of it above the middle and half below."""
+    """The closed surface around where there is a thickness, half of it above the middle and half below."""
     vertices: list[tuple[float, float, float]] = []
     numbers: dict[tuple, int] = {}
 

@@ -266,7 +266,7 @@ class _Hints:
         ]
         if min(thick) > 0.5 * max(thick):
             said.append(
-                f"they are about as thick ({thick[0]:.3g} and {thick[1]:.3g}): they may be the same bed of two rocks"
+                f"they are about as thick ({thick[0]:.3g} and {thick[1]:.3g}): perhaps one bed of two rocks"
             )
         return said
 

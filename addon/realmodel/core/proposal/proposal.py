@@ -17,7 +17,7 @@ from ..base.units import MODEL_UNIT
 from ..project.plan_input import read_rings
 from ..project.project import Project, Rock, Surface
 from ..project.project_checks import check_project
-from ..project.structure_entries import Body, as_point_file
+from ..project.structure_entries import Body
 from ..readers.formats import MESH, RASTER, format_of
 from ..readers.point_input import read_point_file, read_raster_heights
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
@@ -38,9 +38,9 @@ class Proposal:
     """Why a project is as it is.
 
     order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
-    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became
-    bodies. repeats: where several units come again in a hole. rules: of the surface over each unit, with reasons. reasons: of the other choices, by the key of
-    the project file. warnings: sentences.
+    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became bodies.
+    repeats: where several units come again in a hole. rules: of the surface over each unit, with reasons.
+    reasons: of the other choices, by the key of the project file. warnings: sentences.
     """
 
     order: list[str]
@@ -96,10 +96,10 @@ def propose_project(
 ) -> ProposedProject:
     """A project that builds at once, from data alone.
 
-    boreholes: a file that holds all tables (AGS), or Boreholes or their keys: {"collars": ..., "intervals":
-    ...}. map: a file of polygons, or a MapFile or its keys; without `block`, the attribute that names units is
-    found by its name. ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None:
-    around the data. dips: a table. units: of the model. name: of the project.
+    boreholes: a file that holds all tables, or Boreholes or their keys: {"collars": ..., "intervals": ...}.
+    map: a file of polygons, or a MapFile or its keys; without `block`, the attribute of units is found.
+    ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None: around the data.
+    dips: a table. units: of the model. name: of the project.
 
     The order of units follows from which lies over which; see `ProposedProject.proposal`. Raises InputRefused
     naming the file, UsageError.
@@ -365,9 +365,7 @@ class _Maker:
         for lens in lenses:
             vertices, triangles = lens_mesh(lens, at, reach)
             after = None if tops[lens.host] == len(tops) - 1 else f"{lens.host} top"
-            bodies.append(
-                Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit])
-            )
+            bodies.append(Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit]))
         return bodies
 
 
