@@ -29,7 +29,7 @@ from .lenses import Conflict, Lens, Repeat, Sorted, lens_mesh, sort_out, spacing
 from .logs import HoleLogs, Log, read_logs
 from .maps import MapUnits, map_file_of, read_map_units, unconformities
 from .methods import with_methods
-from .order import Alternative, Evidence, UnitOrder, evidence_of, find_order
+from .order import Alternative, UnitOrder, evidence_of, find_order
 from .rules import CUTS, RuleChoice, choose_rules
 
 
@@ -203,7 +203,10 @@ def _order(data: _Data) -> UnitOrder:
         at = [evidence.names.index(unit) for unit in mapped.evidence.names]
         evidence.over[np.ix_(at, at)] += mapped.evidence.over
         evidence.adjacent[np.ix_(at, at)] += mapped.evidence.adjacent
-    return find_order(Evidence(evidence.names, evidence.over, evidence.adjacent), data.logs)
+    near = None
+    if mapped is not None and not data.logs and not mapped.has_ages:
+        near = mapped.touches
+    return find_order(evidence, data.logs, near)
 
 
 def _rules(data: _Data, out: Sorted, order: UnitOrder) -> list[RuleChoice]:
