@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from ..base.errors import InputRefused
@@ -14,8 +12,8 @@ from ..settings.data_files import Boreholes
 from .object_input import is_object_file, read_hole_objects
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, picks_of_tables
-from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
-from .tables.hole_tables import other_units_in
+from .tables.hole_data import HoleTables, read_hole_rows
+from .tables.hole_repair import repair
 from .tables.unit_names import UnitNames
 
 
@@ -29,31 +27,29 @@ def read_boreholes(
     """The points of every surface that the picks name, in the model's unit, and what intervals say: of
     tables, or of the objects of an OMF or geoh5 file. units: what the names in them mean. plan_step: as of
     read_intervals. Raises InputRefused naming file and line, or object."""
-    plan, height = factors(given.units, model_unit)
-    scale = np.array([plan, plan, height])
     units = units or UnitNames()
     of_objects = [file for file in given.files if is_object_file(file)]
     if not of_objects and given.layer is not None:
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
-        tables = read_repaired(given, model_unit, step)
-        picks = picks_of_tables(tables, scale, units, plan_step)
-        picks.warnings += tables.warnings
-        return picks
+        tables = read_repaired(given, model_unit, step, units)
+        return picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    picks = read_hole_objects(given, scale, units, plan_step)
+    plan, height = factors(given.units, model_unit)
+    picks = read_hole_objects(given, np.array([plan, plan, height]), units, plan_step)
     step(1.0)
     return picks
 
 
-def read_repaired(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step) -> HoleTables:
-    """The tables of some boreholes. Raises InputRefused naming file and line."""
-    tables = read_hole_rows(given, step)
-    for kind, columns in MEANINGS.items():
-        if (file := getattr(given, kind)) is not None:
-            tables.warnings += other_units_in(given, Path(file), columns, model_unit)
+def read_repaired(
+    given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step, units: UnitNames | None = None
+) -> HoleTables:
+    """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
+    InputRefused naming file and line."""
+    tables = read_hole_rows(given, model_unit, step)
+    repair(tables, units)
     return tables

@@ -11,13 +11,14 @@ import numpy as np
 
 from ..base.errors import UsageError
 from ..base.table import Table
-from ..base.units import MODEL_UNIT, factors
+from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from ..settings.method_options import OptionRefused
 from .borehole_input import read_repaired
 from .tables.hole_data import HoleTables
 from .tables.hole_problems import HoleProblem
 from .tables.hole_tables import Row
+from .tables.holes import end_of
 
 
 @dataclass(frozen=True)
@@ -48,9 +49,9 @@ def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **ke
     >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
     """
     given = _given(file, keys)
-    plan, height = factors(given.units, units)
     tables = read_repaired(given, units)
-    scale = np.array([plan, plan, height])
+    scale = tables.scale(units)
+    height = scale[2]
     return BoreholeTables(
         _collars(tables, scale),
         _survey(tables, height),
@@ -86,14 +87,19 @@ def _numbers(rows: list[Row], column: str, scale: float = 1.0) -> np.ndarray:
 
 def _collars(tables: HoleTables, scale: np.ndarray) -> Table:
     """Without a table of collars, those that the rows of picks and intervals say."""
-    rows, end = tables.collars, "end"
+    rows, is_table = tables.collars, tables.collars is not None
     if rows is None:
         by_hole: dict[str, Row] = {}
         for row in (*(tables.intervals or ()), *(tables.picks or ())):
             by_hole.setdefault(row.text("hole"), row)
-        rows, end = list(by_hole.values()), ""
-    places = {axis: _numbers(rows, axis, scale[n]) for n, axis in enumerate("xyz")}
-    return Table({"hole": _texts(rows, "hole"), **places, "end": _numbers(rows, end, scale[2])})
+        rows = list(by_hole.values())
+    # without a depth z is where a pick is
+    known = [
+        row if is_table or row.has("depth") or row.has("from") else row.with_values({"z": ""}) for row in rows
+    ]
+    places = {axis: _numbers(known, axis, scale[n]) for n, axis in enumerate("xyz")}
+    ends = np.array([end_of(row) if is_table else np.nan for row in rows]) * scale[2]
+    return Table({"hole": _texts(rows, "hole"), **places, "end": ends})
 
 
 def _survey(tables: HoleTables, height: float) -> Table:
@@ -118,4 +124,7 @@ def _intervals(tables: HoleTables, height: float) -> Table:
 def _picks(tables: HoleTables, height: float) -> Table:
     rows = [row for row in tables.picks or () if row.is_used]
     names = {name: _texts(rows, name) for name in ("hole", "surface")}
-    return Table(names | {name: _numbers(rows, name, height) for name in ("depth", "elevation")})
+    columns = rows[0].columns if rows else {}
+    elevation = "elevation" if "elevation" in columns or "depth" in columns else "z"
+    heights = {"depth": _numbers(rows, "depth", height), "elevation": _numbers(rows, elevation, height)}
+    return Table(names | heights)

@@ -11,6 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from ..base.text import reading
+from .holes.ags import begins_as_ags, read_ags
+from .holes.diggs import begins_as_diggs, read_diggs
+from .holes.gocad_wells import begins_as_gocad_well, read_gocad_wells
+from .holes.las import begins_as_las, read_las
+from .holes.well_tops import begins_as_well_tops, read_well_tops
 from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
@@ -36,7 +41,7 @@ from .tables.sticks import begins_as_sticks, read_sticks
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
-MESH, STICKS, TABLE = "mesh", "sticks", "table"
+MESH, STICKS, TABLE, HOLES = "mesh", "sticks", "table", "holes"
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,7 @@ class FileFormat:
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
     by_ending: a file whose beginning tells nothing is one, too, if its name ends so. in_pieces: read takes
     where its arrays are kept, for files that are larger than the memory. has_layers: `layer` names one of
-    several things in a file.
+    several things in a file. downward_dip: of boreholes, which dips go down where the format says it.
     """
 
     label: str
@@ -58,6 +63,7 @@ class FileFormat:
     by_ending: bool = False
     in_pieces: bool = False
     has_layers: bool = False
+    downward_dip: str | None = None
 
 
 FORMATS = (
@@ -91,6 +97,11 @@ FORMATS = (
     FileFormat("DXF", (".dxf",), MESH, begins_as_dxf, read_dxf, by_ending=True),
     FileFormat("STL", (".stl",), MESH, begins_as_stl, read_stl, by_ending=True),
     FileFormat("OBJ", (".obj",), MESH, begins_as_obj, read_obj, by_ending=True),
+    FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
+    FileFormat("DIGGS", (".xml", ".diggs"), HOLES, begins_as_diggs, read_diggs),
+    FileFormat("Petrel well tops", (".tops", ".asc", ".txt"), HOLES, begins_as_well_tops, read_well_tops),
+    FileFormat("GOCAD wells", (".wl",), HOLES, begins_as_gocad_well, read_gocad_wells),
+    FileFormat("LAS", (".las",), HOLES, begins_as_las, read_las),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     FileFormat(
         "table of text",

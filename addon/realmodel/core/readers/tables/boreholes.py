@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.errors import InputRefused, counted
+from ...base.errors import InputRefused
 from .hole_data import HoleTables
-from .hole_tables import NO_VALUE, Row
+from .hole_problems import HoleProblem
+from .hole_tables import Row
 from .holes import Holes
 from .intervals import read_intervals
-from .observations import LeftOut, Observations, Origin
+from .observations import LeftOut, Observations, Origin, left_out_of
 from .unit_names import UnitNames
 
 Pick = tuple[Origin, np.ndarray]  # with its place (3,), model units
@@ -24,8 +25,8 @@ class Picks:
     """of_surfaces: where holes met surfaces, by the names of these; holes: of each hole by name its collar
     (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
     highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
-    of the blocks of intervals; left_out: intervals that are not used. switched_off: as points, those of rows
-    that are."""
+    of the blocks of intervals; left_out: intervals and picks that are not used. switched_off: as points,
+    those of rows that are. problems: what was wrong with rows of tables."""
 
     of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -34,6 +35,7 @@ class Picks:
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
     switched_off: dict[str, np.ndarray] = field(default_factory=dict)
+    problems: list[HoleProblem] = field(default_factory=list)
 
     @property
     def points(self) -> dict[str, np.ndarray]:
@@ -81,7 +83,9 @@ def picks_of_tables(
     picks.of_surfaces = dict(sorted(picks.of_surfaces.items()))
     picks.ends = dict(sorted(picks.ends.items()))
     picks.holes = dict(sorted(picks.holes.items()))
-    picks.warnings += holes.warnings()
+    picks.problems = tables.problems
+    picks.left_out = [*left_out_of(tables.problems), *picks.left_out]
+    picks.warnings += [*tables.warnings, *holes.warnings()]
     return picks
 
 
@@ -91,19 +95,10 @@ def _picks(rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray) -
     off: dict[str, list[np.ndarray]] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
-    missing = 0
     for row in rows:
         name = units.surface(row.text("surface"))
-        if not row.text("surface"):
-            raise row.refuse("the surface has no name")
         column = _depth_column(row)
-        if not name or row.text(column).lower() in NO_VALUE:
-            missing += 1
-            continue
-        if lacks := holes.lacks_collar(row):
-            if row.is_used:
-                what = f"hole '{holes.hole_of(row)}': {lacks}"
-                raise row.refuse(what, "check how it is written, or leave it out")
+        if not name or not row.has(column):
             continue
         begin = holes.begin_of(row)
         if column == "depth":
@@ -117,7 +112,7 @@ def _picks(rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray) -
             off.setdefault(name, []).append(place)
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
-        hole = holes.hole_of(row)
+        hole = row.text("hole")
         source = Origin.of(hole, depth, row.file, row.line)
         points.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
@@ -126,10 +121,7 @@ def _picks(rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray) -
     if not (points or off):
         raise InputRefused("there are no picks in it", file=boreholes.picks)
     switched_off = {name: np.array(places) for name, places in off.items()}
-    picks = Picks(points, met, ends=ends, switched_off=switched_off)
-    if missing:
-        picks.warnings.append(f"{boreholes.picks}: left out: {counted(missing, 'pick')} without a depth")
-    return picks
+    return Picks(points, met, ends=ends, switched_off=switched_off)
 
 
 def _depth_column(row: Row) -> str:
