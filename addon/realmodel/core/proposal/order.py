@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..surfaces.age_order import improved
 from .logs import Log
 
 _EXACT = 12  # units in a circle
@@ -185,24 +186,9 @@ def _exact(weights: np.ndarray) -> list[int]:
 
 
 def _moved(weights: np.ndarray) -> list[int]:
-    """By the balance of each, then each to its best place until none moves."""
+    """By the balance of each, then moved."""
     balance = weights.sum(axis=1) - weights.sum(axis=0)
-    order = np.argsort(-balance, kind="stable").tolist()
-    gain = weights - weights.T
-    for _ in range(len(order)):
-        before = list(order)
-        for number in before:
-            at = order.index(number)
-            rest = order[:at] + order[at + 1 :]
-            # value of standing before rest[k:]: what it lies over there, less what lies over it
-            values = np.append(np.cumsum(gain[number, rest][::-1])[::-1], 0.0)
-            values -= np.append(0.0, np.cumsum(gain[number, rest]))
-            best = int(np.argmax(values))
-            if values[best] > values[at] + 1e-12:
-                order = [*rest[:best], number, *rest[best:]]
-        if order == before:
-            break
-    return order
+    return improved(weights.T, np.argsort(balance, kind="stable").tolist())[::-1]
 
 
 def _neighbors_near(weights: np.ndarray, near: np.ndarray, order: list[int]) -> list[int]:
