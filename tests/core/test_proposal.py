@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, OutputFailed, UsageError, build, load_project, propose_project
 from realmodel.core.proposal.order import evidence_of, find_order
+from test_hole_files import ags4
 
 PLAN = [(100.0 * (n % 3), 100.0 * (n // 3)) for n in range(9)]
 PLAIN = [("Soil", 2), ("Sand", 5), ("Clay", 18), ("Rock", 20)]
@@ -304,6 +305,54 @@ def test_a_map_whose_units_are_not_clear_names_the_key(tmp_path):
     with pytest.raises(InputRefused, match="block"):
         propose_project(**given_map)
     assert propose_project(map={"file": given_map["map"], "block": "FOO"}, ground=given_map["ground"])
+
+
+@pytest.mark.parametrize("unit", ["m", "ft"])
+def test_a_file_with_all_tables_is_enough(tmp_path, unit):
+    file = tmp_path / "site.ags"
+    file.write_text(ags4(unit, 1.0 if unit == "m" else 1 / 0.3048), encoding="utf-8")
+    project = propose_project(boreholes=file)
+    assert project.proposal.order == ["C", "B", "A"]
+    project.save(tmp_path / "out")
+    model = build(load_project(tmp_path / "out/project.toml"))
+    assert shares(model) == shares(build(project))
+    assert (tmp_path / "out/site.ags").read_bytes() == file.read_bytes()
+    bottom = intervals_of(model, "A", 50, 50)[0].bottom
+    assert bottom == pytest.approx(-10, abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["array", "file"])
+def test_a_region_that_is_given(tmp_path, kind):
+    ring = [[-50, -50], [300, -50], [300, 250], [-50, 250]]
+    shape = {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
+    (tmp_path / "region.geojson").write_text(json.dumps(shape))
+    region = np.array(ring, float) if kind == "array" else tmp_path / "region.geojson"
+    project = propose_project(boreholes=write_tables(tmp_path, [PLAIN] * 9), region=region)
+    project.save(tmp_path / "out")
+    model = build(load_project(tmp_path / "out/project.toml"))
+    assert np.allclose(model.vertices[:, :2].min(axis=0), (-50, -50))
+    assert np.allclose(model.vertices[:, :2].max(axis=0), (300, 250))
+
+
+def test_inclined_holes(tmp_path):
+    keys = write_tables(tmp_path, [[("Sand", 10), ("Clay", 15), ("Rock", 20)]] * 9)
+    (tmp_path / "survey.csv").write_text(
+        "hole,depth,azimuth,dip\n" + "".join(f"H{n},0,{40 * n},-60\n" for n in range(9))
+    )
+    project = propose_project(boreholes={**keys, "survey": tmp_path / "survey.csv"})
+    assert project.proposal.order == ["Rock", "Clay", "Sand"]
+    project.save(tmp_path / "out")
+    assert build(load_project(tmp_path / "out/project.toml")).observed().share == 1.0
+
+
+def test_a_raster_is_the_ground_and_bounds_the_region(tmp_path):
+    keys = write_tables(tmp_path, [PLAIN] * 9)
+    head = "ncols 26\nnrows 26\nxllcorner -15\nyllcorner -15\ncellsize 10\n"
+    (tmp_path / "dem.asc").write_text(head + "\n".join([" ".join(["50"] * 26)] * 26) + "\n")
+    project = propose_project(boreholes=keys, ground=tmp_path / "dem.asc")
+    model = build(project)
+    assert np.allclose(model.vertices[:, 2].max(), 50)
+    assert model.vertices[:, :2].min() >= -15
 
 
 def run_new(*arguments):
