@@ -350,8 +350,8 @@ class Boreholes:
     tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops, GOCAD wells and LAS;
     those given beside it count in their place. tolerance: up to which gaps and overlaps of intervals are
     closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
-    tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that are used
-    as they are written, whatever seems wrong with them. left_out: rows that are not used.
+    tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
+    are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
     """
 
     picks: str | Path | None = described(FILE)

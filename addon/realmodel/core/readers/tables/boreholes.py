@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from .hole_data import HoleTables
+from .hole_problems import HoleProblem
 from .hole_tables import Row
 from .holes import Holes
 from .intervals import read_intervals
@@ -25,7 +26,7 @@ class Picks:
     (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
     highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
     of the blocks of intervals; left_out: intervals that are not used. switched_off: as points, those of rows
-    that are."""
+    that are. problems: of rows that were repaired, left out, or are used although something is wrong."""
 
     of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -34,6 +35,7 @@ class Picks:
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
     switched_off: dict[str, np.ndarray] = field(default_factory=dict)
+    problems: list[HoleProblem] = field(default_factory=list)
 
     @property
     def points(self) -> dict[str, np.ndarray]:
@@ -83,6 +85,7 @@ def picks_of_tables(
     picks.holes = dict(sorted(picks.holes.items()))
     picks.left_out = [*left_out_of(tables.problems), *picks.left_out]
     picks.warnings += [*tables.warnings, *holes.warnings()]
+    picks.problems = tables.problems
     return picks
 
 
