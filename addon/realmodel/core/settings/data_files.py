@@ -310,6 +310,17 @@ def _checked_tolerance(key: str, length: Any) -> Any:
     return length
 
 
+_ROW = re.compile(r".*\S:\s*\d+\s*")
+
+
+def _checked_rows(key: str, rows: Any) -> Any:
+    texts = rows if isinstance(rows, (list, tuple)) else [rows]
+    if not all(isinstance(text, str) and _ROW.fullmatch(text) for text in texts):
+        what = f"'{key}' must be rows of tables, each a name of a file and a line, not {rows!r}"
+        raise OptionRefused(what, key, f'write {key} = ["collars.csv:17"]')
+    return rows
+
+
 def _checked_sense(key: str, sense: Any) -> Any:
     if sense is not None and sense not in DOWNWARD_DIPS:
         raise OptionRefused(f'\'{key}\' must be "negative" or "positive", not {sense!r}', key)
@@ -338,8 +349,9 @@ class Boreholes:
     of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
     tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops, GOCAD wells and LAS;
     those given beside it count in their place. tolerance: up to which gaps and overlaps of intervals are
-    closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a tenth
-    of the thinner interval; 0: none are.
+    closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
+    tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
+    are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
     """
 
     picks: str | Path | None = described(FILE)
@@ -361,12 +373,14 @@ class Boreholes:
         unset="a thousandth of the depth of the hole, at most a tenth of the thinner interval",
         check=_checked_tolerance,
     )
+    unrepaired: Sequence[str] = declared((), kind="table_rows", check=_checked_rows)
+    left_out: Sequence[str] = declared((), kind="table_rows", check=_checked_rows)
 
     @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
-        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance")
-        return [key for key in keys if getattr(self, key)]
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance", "unrepaired")
+        return [key for key in (*keys, "left_out") if getattr(self, key)]
 
     @property
     def files(self) -> list[Path]:
