@@ -156,8 +156,8 @@ _LAYER = Setting(
 
 @dataclass(frozen=True)
 class PointFile:
-    """Points in a table of text or a sheet of a workbook, a raster (ESRI ASCII, GeoTIFF, ...), a file of shapes
-    (GeoJSON, well-known text, a shapefile or a layer of a GeoPackage), or an object of a file of objects.
+    """Points in a table of text or a sheet of a workbook, a raster (ESRI ASCII, GeoTIFF, ...), a file of
+    shapes (GeoJSON, well-known text, a shapefile or a layer of a GeoPackage), or an object of a file.
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
