@@ -6,10 +6,11 @@ import random
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, UsageError, read_points
+from realmodel.core import InputRefused, PointFile, UsageError, read_points
 from realmodel.core.base.packages import vendored
 from realmodel.core.base.units import METERS
 from realmodel.core.readers.contents import column_names, column_values, layer_names
+from realmodel.core.readers.point_input import read_raster_heights
 
 PETREL = """# Petrel Points with attributes
 # Unit in X and Y direction: {plan}
@@ -152,6 +153,25 @@ def test_sheets_of_workbooks(tmp_path):
     (tmp_path / "cut.xlsx").write_bytes(file.read_bytes()[:900])
     with pytest.raises(InputRefused, match="not a workbook that can be read"):
         read_points(tmp_path / "cut.xlsx")
+
+
+def test_a_raster_that_does_not_say_its_null(write):
+    file = write("g.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 2\n101 102\n103 -9999\n")
+    read = read_points(file)
+    assert read.xyz[:, 2].tolist() == [101, 102, 103] and "nodata" in read.warnings[0]
+    z = read_raster_heights(PointFile(file), np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 3.0]]))
+    np.testing.assert_array_equal(z, [103, np.nan, 101.5])
+
+
+def test_vertices_of_meshes_are_points(write):
+    file = write("m.off", "OFF\n3 1 0\n0 0 5\n1 0 6\n0 1 7\n3 0 1 2\n")
+    assert read_points(file).xyz.tolist() == [[0, 0, 5], [1, 0, 6], [0, 1, 7]]
+
+
+def test_ends_of_lines_behind_a_long_line(write):
+    rows = [f"{451000 + n}.5 6782345.0 {999 if n == 7 else -n}.0" for n in range(400)]
+    file = write("f.txt", "\n".join([*rows, "999.0 999.0 999.0", *rows[:2], "999.0 999.0 999.0"]))
+    assert len(read_points(file).xyz) == 402
 
 
 def test_keys_of_read_points(write):
