@@ -72,7 +72,7 @@ def test_petrel_points(write):
     read = read_points(write("p.txt", PETREL.format(plan="US ft", height="ft")), file_units="m")
     assert read.xyz[0].tolist() == [451234.5, 6782345, -2345.6]
     assert len(read.warnings) == 2 and all("'units'" in text for text in read.warnings)
-    with pytest.raises(InputRefused, match="unit 'parsec' .*set units"):
+    with pytest.raises(InputRefused, match=r"unit 'parsec' .*set units"):
         read_points(write("p.txt", PETREL.format(plan="m", height="parsec")))
 
 
@@ -139,7 +139,7 @@ def test_sheets_of_workbooks(tmp_path):
     assert layer_names(file) == ["Tops", "Notes"] and column_names(file, "Tops")[1] == "Rechtswert"
     assert column_values(file, "Id") == ["a", "#b"]
     two = workbook(tmp_path / "two.xlsx", A=SHEET, B=[["X", "Y", "Z"], [7, 8, 9]], Empty=[])
-    with pytest.raises(InputRefused, match='layer = "..."; it has A, B, Empty'):
+    with pytest.raises(InputRefused, match=r'layer = "..."; it has A, B, Empty'):
         read_points(two)
     assert read_points(two, layer="b").xyz.tolist() == [[7, 8, 9]]
     with pytest.raises(InputRefused, match="no sheet 'C'; it has A, B"):
@@ -148,7 +148,7 @@ def test_sheets_of_workbooks(tmp_path):
     with pytest.raises(InputRefused, match=r"bad.xlsx:3: z is not a number: 'bad'"):
         read_points(bad)
     (tmp_path / "old.xls").write_bytes(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600))
-    with pytest.raises(InputRefused, match="save it as .xlsx"):
+    with pytest.raises(InputRefused, match=r"save it as .xlsx"):
         read_points(tmp_path / "old.xls")
     (tmp_path / "cut.xlsx").write_bytes(file.read_bytes()[:900])
     with pytest.raises(InputRefused, match="not a workbook that can be read"):
