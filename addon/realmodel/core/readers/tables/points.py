@@ -82,7 +82,8 @@ def _names_of(axis: str) -> tuple[str, ...]:
         # N_value is another thing
         beside = _BESIDE[:9] if word in ("e", "n") else (*_BESIDE, *(_DEPTHS if word == "z" else ()))
         names += [form.format(word, other) for other in beside for form in ("{1}_{0}", "{0}_{1}")]
-        names += [f"{other}{word}" for other in beside] + [f"{word}{other}" for other in beside]
+        if word in "xyz":
+            names += [f"{other}{word}" for other in beside] + [f"{word}{other}" for other in beside]
     return tuple(names)
 
 
