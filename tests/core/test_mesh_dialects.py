@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from realmodel.core import Boreholes, InputRefused, read_mesh, read_points
+from realmodel.core import Boreholes, InputRefused, PointFile, read_mesh, read_points
 from realmodel.core.readers import UnitNames, is_mesh_file, read_boreholes
 from realmodel.core.readers.contents import layer_names
+from realmodel.core.readers.fault_input import read_fault_points
 from realmodel.core.readers.meshes.triangle_mesh import mesh_of_faces
 
 
@@ -358,6 +359,8 @@ def test_objects_of_gocad(put):
     assert points.columns["age"].tolist()[:1] == [5] and np.isnan(points.columns["age"][1])
     assert any("ft" in text and "units" in text for text in points.warnings)
     assert read_points(path, layer="a fault").xyz.tolist() == [[0, 0, 1], [1, 0, 2], [5, 0, 1]]
+    sticks, _ = read_fault_points(PointFile(path, layer="a fault"))
+    assert [stick.tolist() for stick in sticks] == [[[0, 0, 1], [1, 0, 2]], [[5, 0, 1]]]
     assert len(read_mesh(path).triangles) == 1  # the only surface
     with pytest.raises(InputRefused, match="it has tops, a fault, top"):
         read_points(path)

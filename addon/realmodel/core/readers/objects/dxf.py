@@ -23,7 +23,7 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ..meshes.triangle_mesh import mesh_of_corners, object_of_mesh
 from .dxf_tags import BINARY, Entity, read_entities
-from .geo_object import LINES, POINTS, SURFACE, GeoObject, ObjectName, point_object
+from .geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
 
 _BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
@@ -56,6 +56,7 @@ class _Layer:
     corners: list[_Place] = field(default_factory=list)
     sizes: list[int] = field(default_factory=list)
     places: list[_Place] = field(default_factory=list)
+    sticks: list[int] = field(default_factory=list)  # of places: the number of their line
     kind: str = POINTS
     not_read: Counter = field(default_factory=Counter)
 
@@ -65,6 +66,7 @@ class _Layer:
                 self.corners += face
                 self.sizes.append(len(face))
         self.places += shape.places
+        self.sticks += [self.sticks[-1] + 1 if self.sticks else 1] * len(shape.places)
         if shape.is_line:
             self.kind = LINES
 
@@ -115,7 +117,10 @@ def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) ->
     if layer.sizes:
         yield ObjectName(layer.name, SURFACE, surface, is_part=is_part)
     if layer.places:
-        points = point_object(layer.name, layer.places, layer.kind, said_unit=said_unit, warnings=warnings)
+        columns = {STICK: np.array(layer.sticks)} if layer.kind == LINES else {}
+        points = point_object(
+            layer.name, layer.places, layer.kind, columns, said_unit=said_unit, warnings=warnings
+        )
         yield ObjectName(points.name, points.kind, points.key, is_part=is_part)
 
 

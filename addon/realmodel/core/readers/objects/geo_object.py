@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..meshes.triangle_mesh import TriangleMesh
 
 POINTS, LINES, SURFACE, HOLE = "points", "lines", "surface", "borehole"
+STICK = "stick"  # the column with the number of the line that a vertex of lines is of
 
 
 @dataclass(frozen=True)

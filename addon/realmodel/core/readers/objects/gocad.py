@@ -20,7 +20,7 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step, text_lines
 from ...base.units import unit_of
 from ..meshes.triangle_mesh import UNREADABLE, surface_object
-from .geo_object import HOLE, LINES, POINTS, GeoObject, ObjectName, Values, point_object
+from .geo_object import HOLE, LINES, POINTS, STICK, GeoObject, ObjectName, Values, point_object
 
 _WORD = re.compile(r'"([^"]*)"|(\S+)')
 _NAME = re.compile(r"\*?name\s*:\s*(.*?)\s*(?:\}.*)?$", re.IGNORECASE)
@@ -50,6 +50,8 @@ class _Object:
     rows: dict[int, list[str]] = field(default_factory=dict)  # values of the properties by vertex
     collar: tuple[float, ...] = ()
     path: list[tuple[float, float, float, float]] = field(default_factory=list)  # depth, z, dx, dy
+    part: int = 0  # of a PLine
+    parts: list[int] = field(default_factory=list)  # by vertex
     markers: list[tuple[str, float]] = field(default_factory=list)
     zones: list[tuple[str, float, float]] = field(default_factory=list)
 
@@ -99,6 +101,8 @@ def _read_line(obj: _Object, words: list[str], line: str, number: int) -> None:
         a, b, c = words[1:4]
         obj.faces.append((obj.index[int(a)], obj.index[int(b)], obj.index[int(c)]))
         obj.lines.append(number)
+    elif key == "ILINE":
+        obj.part += 1
     elif key == "ZPOSITIVE":
         obj.up = -1.0 if words[1].lower() == "depth" else 1.0
     elif key == "AXIS_UNIT":
@@ -119,6 +123,7 @@ def _read_vertex(obj: _Object, words: list[str]) -> None:
         obj.rows[len(obj.vertices)] = words[5 : 5 + len(obj.properties)]
     obj.index[int(words[1])] = len(obj.vertices)
     obj.vertices.append((x, y, obj.up * z))
+    obj.parts.append(obj.part)
 
 
 def _read_well(obj: _Object, words: list[str]) -> None:
@@ -165,8 +170,8 @@ def _stated(word: str) -> str | None:
 
 
 def _columns(obj: _Object) -> dict[str, np.ndarray]:
-    """(V,) numbers of each property; NaN where there is none."""
-    columns = {}
+    """(V,) numbers of each property; NaN where there is none. Those of lines are sticks."""
+    columns = {STICK: np.array(obj.parts)} if obj.kind == "PLine" else {}
     for number, name in enumerate(obj.properties):
         missing = obj.no_data[number] if number < len(obj.no_data) else None
         column = np.full(len(obj.vertices), np.nan)
