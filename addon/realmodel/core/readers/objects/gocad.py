@@ -9,7 +9,7 @@ Depths that are positive downward become heights. Units of the axes are those th
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -48,7 +48,7 @@ class _Object:
     properties: list[str] = field(default_factory=list)
     no_data: list[str] = field(default_factory=list)
     rows: dict[int, list[str]] = field(default_factory=dict)  # values of the properties by vertex
-    collar: tuple[float, ...] = ()
+    collar: tuple[float, float, float] | None = None
     path: list[tuple[float, float, float, float]] = field(default_factory=list)  # depth, z, dx, dy
     part: int = 0  # of a PLine
     parts: list[int] = field(default_factory=list)  # by vertex
@@ -62,7 +62,7 @@ def read_gocad(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     line."""
     file = Path(file)
     objects: list[_Object] = []
-    others: list[str] = []
+    others: list[_Object] = []
     current = _Object("")
     for number, line in _lines(file, step):
         words = [quoted or plain for quoted, plain in _WORD.findall(line)]
@@ -188,13 +188,13 @@ def _well(obj: _Object, units: str | dict | None) -> Callable[[], GeoObject]:
     def made() -> GeoObject:
         depths, places = _path(obj)
 
-        def at(depth: list[float]) -> np.ndarray:
+        def at(depth: Sequence[float]) -> np.ndarray:
             return np.column_stack([np.interp(depth, depths, column) for column in places.T])
 
         values = []
         if obj.markers:
             names, marked = zip(*obj.markers, strict=True)
-            values.append(Values(at(list(marked)), {"surface": np.array(names, object)}))
+            values.append(Values(at(marked), {"surface": np.array(names, object)}))
         if obj.zones:
             names, begins, ends = zip(*obj.zones, strict=True)
             columns = {"block": np.array(names, object)}
