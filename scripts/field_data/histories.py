@@ -237,3 +237,61 @@ HISTORIES = (
     History("discontinuous", _discontinuous(), 20, 60, (_names("P", 4), ("Q1", "Q2"))),
     History("pinching", _pinching(), 20, 40),
 )
+
+
+def random_history(seed: int) -> History:
+    """Beds that rise to the side, undulate or are folded gently, with an unconformity, an onlapped high,
+    channels or lenses, or none of them."""
+    draw = np.random.default_rng([64, seed])
+    length, azimuth, wave = draw.uniform(500, 1800), draw.uniform(0, 360), draw.choice([8.0, 25.0, 50.0])
+    slope = draw.choice([0.0, 0.05, 0.25]) * draw.uniform(-1, 1, 2)
+
+    def bed(level, share=1.0, turn=0.0):
+        return lambda x, y: (
+            level
+            + share * wave * _wave(x, y, length, azimuth + turn)
+            + share * (slope[0] * (x - 500) + slope[1] * (y - 500))
+        )
+
+    layers: list[Layer] = []
+    what: list[str] = []
+    if draw.random() < 0.3:
+        x0, y0, rise = draw.uniform(300, 700), draw.uniform(300, 700), draw.uniform(120, 240)
+        width = draw.uniform(200, 350)
+        layers.append(
+            Layer(
+                "high",
+                "base",
+                lambda x, y: -60 + rise * np.exp(-((x - x0) ** 2 + (y - y0) ** 2) / width**2),
+            )
+        )
+        what.append("onlap")
+    level = -40.0
+    for k in range(draw.integers(2, 5)):
+        layers.append(Layer(f"H{k}", "conformable", bed(level)))
+        level += draw.uniform(35, 80)
+    if draw.random() < 0.5:
+        layers.append(Layer("U", "erosional", bed(draw.uniform(120, 180), 0.3, 70.0)))
+        what.append("unconformity")
+        level = max(level, 210.0)
+    if draw.random() < 0.4:
+        x0, y0, thick = draw.uniform(250, 750), draw.uniform(250, 750), draw.uniform(40, 90)
+        base = level - 20
+
+        def lens(x, y):
+            r = ((x - x0) ** 2 + (y - y0) ** 2) / 280.0**2
+            return bed(base, 0.3)(x, y) + thick * (1.5 * np.exp(-r) - 0.5)
+
+        layers.append(Layer("pinching", "conformable", lens))
+        level += 45.0
+        what.append("pinching")
+    for k in range(draw.integers(1, 3)):
+        layers.append(Layer(f"C{k}", "conformable", bed(level, 0.3)))
+        level += draw.uniform(25, 50)
+    if draw.random() < 0.35:
+        across, depth = draw.uniform(300, 700), draw.uniform(60, 130)
+        top = level - 20.0
+        layers.append(Layer("base of K", "erosional", lambda x, y: _channel(x, y, across, 110.0, depth, top)))
+        what.append("channel")
+    layers.append(Layer("ground", "erosional", _hills if draw.random() < 0.4 else _ground))
+    return History(" ".join(what) or "plain", layers, int(draw.integers(12, 40)), 0)

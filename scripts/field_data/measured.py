@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -111,9 +112,13 @@ def random_points(history: History, count: int = 20000, seed: int = 7) -> tuple[
     return points[block >= 0], block[block >= 0]
 
 
-def right_share(model: Model, points: np.ndarray, block: np.ndarray) -> float:
-    """The share of points (N, 3) that a model has in their blocks (N,)."""
+def right_share(
+    model: Model, points: np.ndarray, block: np.ndarray, unit_names: Mapping[int, str] | None = None
+) -> float:
+    """The share of points (N, 3) that a model has in their blocks (N,). unit_names: what the model calls
+    blocks, "B0", ... without it."""
     form = closed_forms(model)[0]
     numbers = run(lambda work: form.blocks_at(work, points))
     names = np.array([*(each.name for each in model.blocks), ""])
-    return float(np.mean(names[numbers] == np.array([f"B{number}" for number in block.tolist()])))
+    right = np.array([unit_names[number] if unit_names else f"B{number}" for number in block.tolist()])
+    return float(np.mean(names[numbers] == right))

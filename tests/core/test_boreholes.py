@@ -116,34 +116,39 @@ def test_units(write):
 @pytest.mark.parametrize(
     ("units", "said"),
     [
-        ({}, {"c.csv": "ft for 'Z (FT)'", "p.csv": "ft for 'depth [feet]'"}),
+        (
+            {},
+            {
+                "c.csv": "ft for 'Z (FT)': converted to m",
+                "p.csv": "ft for 'depth [feet]': converted to m",
+            },
+        ),
         ({"units": {"z": "ft"}}, {}),
         ({"units": {"z": "us-ft"}}, {}),
-        ({"units": "ft"}, {"c.csv": "m for 'X (m)'"}),
+        ({"units": "ft"}, {"c.csv": "m for 'X (m)', but the unit is ft"}),
     ],
 )
-def test_other_units_in_headers_are_a_warning(write, units, said):
+def test_units_in_headers_are_obeyed_unless_the_user_says_others(write, units, said):
     collars = COLLARS.replace("x,y,z", "X (m),y (plan),Z (FT)")
     files = {
         "picks": write("p.csv", PICKS.replace("depth", "depth [feet]")),
         "collars": write("c.csv", collars),
     }
-    warnings = [
-        text for text in read_boreholes(Boreholes(**files, **units)).warnings if "the header says" in text
-    ]
+    met = read_boreholes(Boreholes(**files, **units))
+    in_feet = 1 if units.get("units") == "ft" else [1, 1, 0.3048]
+    np.testing.assert_allclose(
+        met.points["clay"], np.array(CLAY) * in_feet * (0.3048 if in_feet == 1 else 1), rtol=1e-5
+    )
+    warnings = [text for text in met.warnings if "the header says" in text]
     assert len(warnings) == len(said)
     for text, (file, words) in zip(warnings, said.items(), strict=True):
-        assert file in text and f"the header says {words}, but the unit is" in text
+        assert file in text and f"the header says {words}" in text
 
 
 @pytest.mark.parametrize(
     ("collars", "picks", "file", "line", "words"),
     [
-        (COLLARS, PICKS.replace("B", "C"), "p.csv", 2, "hole 'C1': it has no collar in"),
-        (COLLARS, PICKS + "B1,clay,x\n", "p.csv", 8, "depth is not a number: 'x'"),
-        (COLLARS, PICKS + "B1,,3\n", "p.csv", 8, "no name"),
-        (COLLARS, PICKS + "B1,clay\n", "p.csv", 8, "3 values are needed, there are 2"),
-        (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "has two collars"),
+        (COLLARS, PICKS.replace("B", "C"), "p.csv", 2, "no hole of it has a collar in"),
         ("hole,x,y,z\nB1,0,,1\n", PICKS, "c.csv", None, "line 2 of"),
         (
             COLLARS.replace("z", "q"),
@@ -168,19 +173,25 @@ def test_tables_refused(write, collars, picks, file, line, words):
 
 
 @pytest.mark.parametrize(
-    ("more", "line", "words"),
-    [("B9,clay,3\n", 8, "hole 'B9': it has no collar in"), ("B5,clay,3\n", 8, "hole 'B5': line 6 of")],
+    ("more", "words"),
+    [
+        ("B9,clay,3\n", "line 8, hole 'B9' at 3, 'clay': it has no collar in"),
+        ("B5,clay,3\n", "line 8, hole 'B5' at 3, 'clay': line 6 of"),
+    ],
 )
-def test_a_pick_of_a_hole_without_a_collar_is_refused(write, more, line, words):
+def test_a_pick_of_a_hole_without_a_collar_is_listed(write, more, words):
     collars = write("c.csv", COLLARS.replace("B5,2,2,11", "B5,2,,11"))
     met = read_boreholes(Boreholes(write("p.csv", PICKS), collars))
     assert met.points["sand"].tolist() == SAND
-    assert met.warnings[1:] == [f"{collars}: holes without x, y or z, which are not used: B5"]
-    with pytest.raises(InputRefused, match=words) as raised:
-        read_boreholes(Boreholes(write("p.csv", PICKS + more), collars))
-    assert (raised.value.file.name, raised.value.line) == ("p.csv", line)
+    assert met.warnings[0] == (
+        f"{collars}: holes are without x, y or z, and are not used (1): line 6, hole 'B5': it has no y"
+    )
+    met = read_boreholes(Boreholes(write("p.csv", PICKS + more), collars))
+    assert met.points["sand"].tolist() == SAND
+    (entry,) = met.left_out
+    assert entry.kind == "no_collar" and entry.text.startswith(words)
     off = write("p.csv", PICKS.replace("depth\n", "depth,use\n") + more.replace("\n", ",0\n"))
-    assert read_boreholes(Boreholes(off, collars)).points["sand"].tolist() == SAND
+    assert not read_boreholes(Boreholes(off, collars)).left_out
 
 
 def test_holes_are_found_however_they_are_written(write):
@@ -195,8 +206,8 @@ def test_holes_are_found_however_they_are_written(write):
         "are taken for those with collars: 'dh 1' for 'DH-1' and 'b3' for 'B3'" in t for t in met.warnings
     )
     # 'DH_2' may be 'DH 2' or 'dh_2', at another place
-    with pytest.raises(InputRefused, match="hole 'DH_2': it has no collar"):
-        read_boreholes(Boreholes(write("p.csv", picks.replace("DH 2,", "DH_2,")), write("c.csv", collars)))
+    met = read_boreholes(Boreholes(write("p.csv", picks.replace("DH 2,", "DH_2,")), write("c.csv", collars)))
+    assert [(entry.kind, entry.hole) for entry in met.left_out] == [("no_collar", "DH_2")]
 
 
 PROJECT = """format = 1
@@ -272,5 +283,5 @@ def test_a_point_in_another_column_is_no_decimal_comma(tmp_path):
     found = read_boreholes(Boreholes(picks=file))
     assert found.points["Top 1.5"].tolist() == [[100.5, 200.5, 5.75]]
     file.write_text("hole;x;y;z;surface;depth\nB1;100.5;200.5;7;Top;1,5\n")
-    with pytest.raises(InputRefused, match="depth is not a number: '1,5'"):
+    with pytest.raises(InputRefused, match="depth is not a number: '1,5'"):  # as all that there are
         read_boreholes(Boreholes(picks=file))

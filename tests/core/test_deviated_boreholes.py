@@ -202,12 +202,6 @@ def test_surveys_without_a_match_are_a_warning(write):
         ("hole,depth,azimuth,dip\nB1,-3,9,-60\n", 2, "depth is -3"),
         ("hole,depth,azimuth,dip\nB1,x,9,-60\n", 2, "depth is not a number: 'x'"),
         ("hole,depth,azimuth,dip\nB1,0,9\n", 2, "4 values are needed, there are 3"),
-        ("hole,depth,azimuth,dip\nB1,9,9,-60\nB1,9,9,-61\n", 3, "hole 'B1' has two directions at depth 9"),
-        (
-            "hole,depth,azimuth,inclination\nB1,0,9,90\nB1,9,189,90\n",
-            3,
-            "hole 'B1' turns back between depths 0 and 9",
-        ),
         ("hole,depth,dip\nB1,9,9\n", 1, 'no column azimuth; name it: columns = { azimuth = "..." }'),
         ("hole,depth,azimuth\nB1,9,9\n", 2, "no column for dip (from the horizontal)"),
         ("hole,depth,azimuth,dip\n", None, "no directions"),

@@ -171,7 +171,7 @@ def test_a_hole_that_bends_has_places_close_enough_to_follow_it(write):
     ("more", "kind", "depth", "words"),
     [
         ("B4,3,6,sand\n", "overlap", 3.0, "hole 'B4' from 3 to 4: intervals of 'S1' and 'S2' overlap"),
-        ("B4,9,8,sand\n", "from_to", 9.0, "line 16, hole 'B4' at 9, 'sand': from 9 is below to 8"),
+        ("B4,3,2,sand\n", "from_to", 3.0, "line 16, hole 'B4' at 3, 'sand': from 3 is below to 2"),
         ("B4,,8,sand\n", "no_depth", 8.0, "line 16, hole 'B4' at 8, 'sand': 'from' has no value"),
         ("B4,7,8,slate\n", "unknown_block", 7.0, "line 16, hole 'B4' at 7, 'slate': this is no block"),
         ("B9,7,8,sand\n", "no_collar", 7.0, "line 16, hole 'B9' at 7, 'sand': it has no collar in"),
@@ -339,7 +339,7 @@ def test_a_model_of_logs_alone(project, tmp_path):
 
 
 def test_what_is_left_out_is_said_with_hole_and_depth(project):
-    log = LOG + "B4,4,6,basement\nB4,6,12,clay\nB1,9,8,clay\nB1,8.5,9.5,clay\nB2,9,10,tuff\n"
+    log = LOG + "B4,4,6,basement\nB4,6,12,clay\nB1,9,7,clay\nB1,8.5,9.5,clay\nB2,9,10,tuff\n"
     model = build(load_project(project(log=log)))
     said = {warning.kind: warning.text for warning in model.warnings}
     assert "hole 'B4' at 4, 'S0': an older block lies above a younger one" in said["wrong_order"]

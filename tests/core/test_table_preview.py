@@ -64,7 +64,7 @@ def test_a_missing_column_is_said_and_can_be_chosen(table):
     found = preview_table(path)
     assert found.problem == "the header has no column z"
     assert found.xyz == ()
-    assert preview_table(path, ["x", "north", "depth"]).xyz == ("x", "north", "depth")
+    assert preview_table(path, ["x", "north", "thickness"]).xyz == ("x", "north", "thickness")
 
 
 def test_what_is_no_table(table):

@@ -3,6 +3,7 @@
 
 command        from arguments to the exit status
 options        arguments, checked
+new            a project from data alone
 run            build, write, print
 cuts           sections, fences, boreholes and cuts
 probabilities  the same of ensembles

@@ -6,11 +6,15 @@ import os
 import signal
 import sys
 import traceback
+from importlib import import_module
 from typing import NoReturn
 
 from . import DONE, IN_BLENDER, INTERRUPTED, REFUSED, USAGE, say
 from .options import parse
 from .terminal import terminate
+
+# By their first argument: the modules with `parse` and `run`; without one of these a project is built.
+COMMANDS = {"new": ".new"}
 
 
 def command() -> NoReturn:
@@ -36,16 +40,18 @@ def main(arguments: list[str]) -> int:
             stream.reconfigure(errors="replace")  # a terminal that lacks a letter of a name stops no build
     if hasattr(signal, "SIGXFSZ"):
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # exceeding the size limit of files becomes an OSError
+    name = next((name for name in COMMANDS if arguments[:1] == [name]), None)
     try:
-        options = parse(arguments)
+        named = None if name is None else import_module(COMMANDS[name], __package__)
+        options = parse(arguments) if named is None else named.parse(arguments[1:])
         from ..core import RealModelError, UsageError
-        from .run import run
+        from .run import run as build
     except SystemExit as leaving:
         return leaving.code or DONE
     except ImportError as error:
         return say(_not_importable(error), REFUSED)
     try:
-        run(options)
+        (build if named is None else named.run)(options)
     except UsageError as error:
         return say(str(error), USAGE)
     except RealModelError as error:

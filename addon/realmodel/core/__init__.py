@@ -31,12 +31,15 @@ from .project.project import Project, Rock, Surface
 from .project.project_file import load_library, load_project
 from .project.series import Series
 from .project.structure_entries import Body, Fault
+from .proposal import ProposedProject, propose_project
 from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
+from .readers.borehole_tables import BoreholeTables, read_boreholes
 from .readers.mesh_data import MeshData, read_mesh
 from .readers.point_input import PointData, read_points
+from .readers.tables.hole_problems import HoleProblem
 from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
 from .results.contours import Contour
@@ -54,6 +57,7 @@ __all__ = [
     "Block",
     "BlockBoundary",
     "Body",
+    "BoreholeTables",
     "Boreholes",
     "Bounds",
     "BuildFailed",
@@ -72,6 +76,7 @@ __all__ = [
     "HoleAxis",
     "HoleContact",
     "HoleInterval",
+    "HoleProblem",
     "HoleValidation",
     "InputRefused",
     "Interpolation",
@@ -103,6 +108,7 @@ __all__ = [
     "PointFile",
     "Project",
     "Property",
+    "ProposedProject",
     "RealModelError",
     "Report",
     "Rock",
@@ -136,6 +142,8 @@ __all__ = [
     "load_project",
     "mesh_region",
     "open_tiles",
+    "propose_project",
+    "read_boreholes",
     "read_mesh",
     "read_points",
     "save_mesh",

@@ -25,7 +25,7 @@ BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 BOM = codecs.BOM_UTF8
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 # Letters of code page 850 (ü, ä, ö, é and others) that cp1252 does not have, or has as signs.
-_OF_DOS = re.compile(rb"[\x81\x8d\x8f\x90\x9d]|[A-Za-z][\x82\x84\x94][a-z]")
+_OF_DOS = re.compile(rb"[\x81\x8d\x8f\x90\x9d]|[A-Za-z][\x82\x84\x85\x87-\x8a\x93\x94][a-z\x81-\xa5\xe1]")
 
 Step = Callable[[float], None]
 

@@ -208,7 +208,12 @@ def _places(field: _Value) -> str | None:
 
 
 def _region(field: _Value) -> str:
-    return _rings_text(field.value) if is_several(field.value) else _ring_text(field.value)
+    return region_text(field.value)
+
+
+def region_text(region: Any) -> str:
+    """An outline (N, 2), or several, as TOML."""
+    return _rings_text(region) if is_several(region) else _ring_text(region)
 
 
 def _trace(field: _Value) -> str:

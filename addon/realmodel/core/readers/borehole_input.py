@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from ..base.errors import InputRefused
@@ -13,8 +11,9 @@ from ..base.units import MODEL_UNIT, factors
 from ..settings.data_files import Boreholes
 from .object_input import is_object_file, read_hole_objects
 from .point_input import refuse_keys
-from .tables.boreholes import Picks, read_borehole_tables
-from .tables.hole_tables import COLLARS, INTERVALS, SURVEY, other_units_in
+from .tables.boreholes import Picks, picks_of_tables
+from .tables.hole_data import HoleTables, read_hole_rows
+from .tables.hole_repair import repair
 from .tables.unit_names import UnitNames
 
 
@@ -28,24 +27,29 @@ def read_boreholes(
     """The points of every surface that the picks name, in the model's unit, and what intervals say: of
     tables, or of the objects of an OMF or geoh5 file. units: what the names in them mean. plan_step: as of
     read_intervals. Raises InputRefused naming file and line, or object."""
-    plan, height = factors(given.units, model_unit)
-    scale = np.array([plan, plan, height])
     units = units or UnitNames()
     of_objects = [file for file in given.files if is_object_file(file)]
     if not of_objects and given.layer is not None:
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
-        picks = read_borehole_tables(given, step, scale, units, plan_step)
-        files = (given.collars, given.survey, given.picks, given.intervals)
-        for file, columns in zip(files, (COLLARS, SURVEY, COLLARS, INTERVALS), strict=True):
-            if file is not None:
-                picks.warnings += other_units_in(given, Path(file), columns, model_unit)
-        return picks
+        tables = read_repaired(given, model_unit, step, units)
+        return picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    picks = read_hole_objects(given, scale, units, plan_step)
+    plan, height = factors(given.units, model_unit)
+    picks = read_hole_objects(given, np.array([plan, plan, height]), units, plan_step)
     step(1.0)
     return picks
+
+
+def read_repaired(
+    given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step, units: UnitNames | None = None
+) -> HoleTables:
+    """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
+    InputRefused naming file and line."""
+    tables = read_hole_rows(given, model_unit, step)
+    repair(tables, units)
+    return tables

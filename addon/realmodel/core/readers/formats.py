@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.text import as_utf8, reading
+from .holes.ags import begins_as_ags, read_ags
 from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
@@ -40,10 +41,11 @@ from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
 from .tables.dialects import DIALECTS
 from .tables.points import begins_as_array, read_point_array, read_point_rows
 from .tables.sticks import begins_as_sticks, read_sticks
+from .tables.workbook import begins_as_workbook
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
-MESH, STICKS, TABLE = "mesh", "sticks", "table"
+MESH, STICKS, TABLE, HOLES = "mesh", "sticks", "table", "holes"
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ class FileFormat:
     holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
     by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer`
-    names one of several layers of shapes in a file.
+    names one of several layers of shapes, or sheets, in a file. downward_dip: of boreholes, which dips go
+    down where the format says it.
     """
 
     label: str
@@ -63,6 +66,7 @@ class FileFormat:
     read: Callable[..., Any]
     by_ending: bool = False
     has_layers: bool = False
+    downward_dip: str | None = None
 
 
 FORMATS = (
@@ -119,8 +123,10 @@ FORMATS = (
     FileFormat("DXF", (".dxf",), OBJECTS, begins_as_dxf, as_a_whole(read_dxf), by_ending=True),
     FileFormat("STL", (".stl",), OBJECTS, begins_as_stl, as_a_whole(read_stl), by_ending=True),
     FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
+    FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     *(FileFormat(d.label, d.endings, TABLE, d.begins, read_point_rows) for d in DIALECTS),
+    FileFormat("Excel", (".xlsx", ".xlsm"), TABLE, begins_as_workbook, read_point_rows, has_layers=True),
     FileFormat(
         "table of text",
         (".csv", ".xyz", ".txt", ".dat", ".tsv"),

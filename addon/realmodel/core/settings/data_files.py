@@ -303,6 +303,13 @@ def check_column_names(columns: Any, known: Sequence[str]) -> None:
             raise OptionRefused(what, "columns")
 
 
+def _checked_tolerance(key: str, length: Any) -> Any:
+    is_number = isinstance(length, (int, float)) and not isinstance(length, bool)
+    if length is not None and not (is_number and 0 <= length < math.inf):
+        raise OptionRefused(f"'{key}' must be a length from 0, not {length!r}", key)
+    return length
+
+
 def _checked_sense(key: str, sense: Any) -> Any:
     if sense is not None and sense not in DOWNWARD_DIPS:
         raise OptionRefused(f'\'{key}\' must be "negative" or "positive", not {sense!r}', key)
@@ -329,7 +336,10 @@ class Boreholes:
     (depths are in the unit of z); None: those of the model.
     Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
     of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
-    tables.
+    tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops, GOCAD wells and LAS;
+    those given beside it count in their place. tolerance: up to which gaps and overlaps of intervals are
+    closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a tenth
+    of the thinner interval; 0: none are.
     """
 
     picks: str | Path | None = described(FILE)
@@ -342,22 +352,31 @@ class Boreholes:
     downward_dip: str | None = declared(kind="sense", check=_checked_sense)
     intervals: str | Path | None = described(FILE)
     layer: str | None = declared(kind="layer", check=checked_name)
+    file: str | Path | None = described(FILE)
+    tolerance: float | None = declared(
+        kind="number",
+        label="Tolerance",
+        tip="Gaps and overlaps of intervals up to it are closed at their middle, in the unit of depths",
+        low=0.0,
+        unset="a thousandth of the depth of the hole, at most a tenth of the thinner interval",
+        check=_checked_tolerance,
+    )
 
     @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
-        keys = ("collars", "survey", "separator", "decimal", "downward_dip")
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance")
         return [key for key in keys if getattr(self, key)]
 
     @property
     def files(self) -> list[Path]:
-        """The tables that there are."""
-        tables = (self.collars, self.survey, self.picks, self.intervals)
+        """The files that there are."""
+        tables = (self.collars, self.survey, self.picks, self.intervals, self.file)
         return [Path(file) for file in tables if file is not None]
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if self.picks is None and self.intervals is None:
+        if self.picks is None and self.intervals is None and self.file is None:
             what = "there are neither picks nor intervals"
             raise OptionRefused(what, "picks", "give the table of picks = ... or intervals = ...")
         check_column_names(self.columns, HOLE_COLUMNS)

@@ -5,17 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import InputRefused, counted
-from ...base.text import Step
-from ...settings.data_files import Boreholes
-from .hole_tables import COLLARS, NO_VALUE, Row, rows
+from ...base.errors import InputRefused
+from .hole_data import HoleTables
+from .hole_tables import Row
 from .holes import Holes
 from .intervals import read_intervals
-from .observations import LeftOut, Observations, Origin
+from .observations import LeftOut, Observations, Origin, left_out_of
 from .unit_names import UnitNames
 
 Pick = tuple[Origin, np.ndarray]  # with its place (3,), model units
@@ -57,8 +55,8 @@ def picks_of(holes: Mapping, surface: str) -> list[Pick]:
     return surface_picks
 
 
-def read_borehole_tables(
-    given: Boreholes, step: Step, scale: np.ndarray, units: UnitNames, plan_step: float | None
+def picks_of_tables(
+    tables: HoleTables, scale: np.ndarray, units: UnitNames, plan_step: float | None
 ) -> Picks:
     """The points of every surface that the picks name, in the order of the table, and what intervals say.
     scale (3,): the factors to the model's unit.
@@ -69,10 +67,10 @@ def read_borehole_tables(
     are listed, and refused where no hole has one; picks of one are refused. units: what the names of the
     tables mean. plan_step: as of read_intervals. Raises InputRefused naming file and line.
     """
-    holes = Holes(given)
-    picks = Picks() if given.picks is None else _picks(holes, units, scale, step)
-    if given.intervals is not None:
-        logged = read_intervals(holes, units, scale, plan_step, step)
+    holes = Holes(tables)
+    picks = Picks() if tables.picks is None else _picks(tables.picks, holes, units, scale)
+    if tables.intervals is not None:
+        logged = read_intervals(tables.intervals, holes, units, scale, plan_step)
         picks.observations.append(logged.observations)
         picks.left_out += logged.left_out
         for name, (collar, tops) in logged.holes.items():
@@ -83,30 +81,21 @@ def read_borehole_tables(
     picks.of_surfaces = dict(sorted(picks.of_surfaces.items()))
     picks.ends = dict(sorted(picks.ends.items()))
     picks.holes = dict(sorted(picks.holes.items()))
-    picks.warnings += holes.warnings()
+    picks.left_out = [*left_out_of(tables.problems), *picks.left_out]
+    picks.warnings += [*tables.warnings, *holes.warnings()]
     return picks
 
 
-def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Picks:
+def _picks(rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray) -> Picks:
     boreholes = holes.given
-    assert boreholes.picks is not None
     points: dict[str, list[Pick]] = {}
     off: dict[str, list[np.ndarray]] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
-    missing = 0
-    for row in rows(boreholes, Path(boreholes.picks), COLLARS, ("hole", "surface"), step):
+    for row in rows:
         name = units.surface(row.text("surface"))
-        if not row.text("surface"):
-            raise row.refuse("the surface has no name")
         column = _depth_column(row)
-        if not name or row.text(column).lower() in NO_VALUE:
-            missing += 1
-            continue
-        if lacks := holes.lacks_collar(row):
-            if row.is_used:
-                what = f"hole '{holes.hole_of(row)}': {lacks}"
-                raise row.refuse(what, "check how it is written, or leave it out")
+        if not name or not row.has(column):
             continue
         begin = holes.begin_of(row)
         if column == "depth":
@@ -120,8 +109,8 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             off.setdefault(name, []).append(place)
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
-        hole = holes.hole_of(row)
-        source = Origin.of(hole, depth, row.table.file, row.line)
+        hole = row.text("hole")
+        source = Origin.of(hole, depth, row.file, row.line)
         points.setdefault(name, []).append((source, place))
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:
@@ -129,10 +118,7 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
     if not (points or off):
         raise InputRefused("there are no picks in it", file=boreholes.picks)
     switched_off = {name: np.array(places) for name, places in off.items()}
-    picks = Picks(points, met, ends=ends, switched_off=switched_off)
-    if missing:
-        picks.warnings.append(f"{boreholes.picks}: left out: {counted(missing, 'pick')} without a depth")
-    return picks
+    return Picks(points, met, ends=ends, switched_off=switched_off)
 
 
 def _depth_column(row: Row) -> str:

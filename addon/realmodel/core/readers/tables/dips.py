@@ -176,7 +176,7 @@ def _gradient(row: Row) -> np.ndarray:
 def _no_column(row: Row, column: str, others: str = "") -> InputRefused:
     return InputRefused(
         f"the header has no column {column}{others}",
-        file=row.table.file,
-        line=row.table.layout.name_line or 1,
+        file=row.file,
+        line=row.header.line,
         advice=f'name it: columns = {{ {column} = "..." }}',
     )

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Protocol
 
@@ -14,65 +16,149 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.no_value import NO_VALUE
 from ...base.text import Step
-from ...base.units import other_units
-from .points import TextTable, open_table
-from .table_layout import Expected, fields, is_number, plain_name
+from ...base.units import other_units, unit_text_of_column
+from .points import AXES, TextTable, open_table
+from .table_layout import Expected, TableLayout, column_number, fields, is_number, plain_name
 
-_HOLE = ("hole", "hole_id", "holeid", "bhid", "borehole", "well", "well_id", "name", "id")
-# In the order in which they are looked for: a column has one meaning in a table.
+# Names of columns of programs and surveys the world over, compared by column_key: English, German, French,
+# Spanish and Dutch, and those of Leapfrog, Surpac, Datamine, Micromine, Vulcan, gINT, AGS, GSWA, DINO and
+# swisstopo. A column has one meaning in a table; names stand in the order in which they are looked for.
+_HOLE_NAMES = (
+    *(
+        "hole",
+        "hole_id",
+        "bhid",
+        "dhid",
+        "borehole",
+        "well",
+        "well_id",
+        "hole_name",
+        "hole_no",
+        "hole_number",
+    ),
+    *("borehole_id", "borehole_name", "borehole_no", "bore", "bore_id", "drillhole", "drillhole_id", "ddh"),
+    *("collar_id", "well_name", "well_identifier", "wellbore", "uwi", "dino_nr", "nitg_nr", "nitg"),
+    *(
+        "Bohrung",
+        "Bohrung Nr",
+        "Bohrungsname",
+        "Bohrungsnummer",
+        "Bohrloch",
+        "Bohrprofil",
+        "Bohr_ID",
+        "Sondage",
+    ),
+    *("nom_sondage", "Forage", "nom_forage", "Sondeo", "Pozo", "Barreno", "Boring", "Boringnummer"),
+    *("Boornummer", "Boorgat"),
+)
+_PLACE_NAMES = ("location_id", "loca_id", "loc_id", "point_id", "site_id", "original_name", "name", "id")
+_HOLE = (*_HOLE_NAMES, *_PLACE_NAMES)
+_HEIGHT = ("Höhe", "Hoehe", "Cota", "Cote", "Altitud", "Elevación", "Hoogte")
+_DEPTH = ("Tiefe", "Teufe", "Profondeur", "Prof", "Profundidad", "Diepte")
 PICKS = {
     "hole": _HOLE,
-    "x": ("x", "easting", "east"),
-    "y": ("y", "northing", "north"),
-    "z": ("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height"),
-    "surface": ("surface", "horizon", "top", "marker", "formation", "unit", "pick"),
-    "depth": ("depth", "md", "tvd", "from"),
-    "elevation": ("elevation", "elev", "z", "altitude", "rl", "height"),
+    "x": (
+        *("x", "easting", "east", "loca_nate", "hole_nate", "national_grid_easting", "x_collar", "collar_x"),
+        *("location_x", "x_coordinate", "x_coordinaat", "x_koordinate", "x_lambert", "xl", *AXES["x"]),
+    ),
+    "y": (
+        *(
+            "y",
+            "northing",
+            "north",
+            "loca_natn",
+            "hole_natn",
+            "national_grid_northing",
+            "y_collar",
+            "collar_y",
+        ),
+        *("location_y", "y_coordinate", "y_coordinaat", "y_koordinate", "y_lambert", "yl", *AXES["y"]),
+    ),
+    "z": (
+        *("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height", "ground_level", "loca_gl"),
+        *("hole_gl", "gl", "ground_elevation", "surface_elevation", "z_collar", "collar_z", "collar_rl"),
+        *("collar_elevation", "elevation_z", "location_z", "z_coordinate", "z_coordinaat", "z_koordinate"),
+        *("Ansatzhöhe", "Ansatzhoehe", "Ansatzpunkt", "Geländehöhe", "Gelaendehoehe", "GOK"),
+        *("Maaiveld", "Maaiveldhoogte", "Cota boca", *_HEIGHT, *AXES["z"]),
+    ),
+    "surface": (
+        *("surface", "horizon", "top", "marker", "formation", "unit", "pick", "surface_name", "horizon_name"),
+        *("well_top", "Horizont", "Horizonte"),
+    ),
+    "depth": ("depth", "md", "tvd", "from", "measured_depth", *_DEPTH),
+    "elevation": ("elevation", "elev", "z", "altitude", "rl", "height", *_HEIGHT),
 }
 DIRECTIONS = {
-    "azimuth": ("azimuth", "azi", "azim", "azm", "az", "bearing", "brg"),
-    "dip": ("dip", "plunge"),
+    "azimuth": (
+        *("azimuth", "azi", "azim", "azm", "az", "bearing", "brg", "horn_ornt", "hdph_ornt", "true_azimuth"),
+        *("azimuth_true", "azimuth_grid", "Azimut", "Acimut"),
+    ),
+    "dip": ("dip", "plunge", "horn_incl"),
     "inclination": ("inclination", "incl", "inc", "deviation"),
 }
 SURVEY = {
     "hole": _HOLE,
-    "depth": ("depth", "md", "measured_depth", "at", "distance", "dist", "survey_depth"),
+    "depth": (
+        *("depth", "md", "measured_depth", "at", "distance", "dist", "survey_depth", "horn_top"),
+        *("station_depth", *_DEPTH),
+    ),
     **DIRECTIONS,
 }
 COLLARS = {
     **PICKS,
     **DIRECTIONS,
     "end": (
-        *("end", "eoh", "end_of_hole", "end_depth", "total_depth", "totaldepth", "td", "max_depth"),
-        *("maxdepth", "final_depth", "hole_depth", "hole_length", "length"),
+        *("end", "eoh", "end_of_hole", "end_depth", "total_depth", "td", "max_depth", "final_depth"),
+        *("hole_depth", "hole_length", "length", "loca_fdep", "hole_fdep", "Endteufe", "Endtiefe"),
+        *("Gesamttiefe", "Bohrtiefe", "Longueur", "Longitud", "Einddiepte", "Profondeur finale"),
+        *("Profundidad final",),
     ),
     "use": ("use",),
 }
 _BLOCK = (
-    *(
-        "block",
-        "unit",
-        "lithology",
-        "litho",
-        "lith",
-        "lith_code",
-        "lithcode",
-        "rock",
-        "rock_type",
-        "rocktype",
-    ),
-    *("formation", "strat", "stratigraphy", "geology", "geol", "code", "layer"),
+    *("block", "unit", "lithology", "litho", "lith", "lith_code", "simple_lith", "lith1", "lith_1", "rock"),
+    *("rock_type", "rock_code", "formation", "strat", "stratigraphy", "geology", "geol", "geol_geol"),
+    *("geology_code", "geol_leg", "legend_code", "code", "layer", "lithology_1", "Einheit", "Schicht"),
+    *("Gestein", "Stratigraphie", "Lithologie", "Litología", "Unidad", "Formación", "Grondsoort"),
+    *("Hoofdgrondsoort", "Eenheid", "Terrain", "Roche"),
 )
 INTERVALS = {
     "hole": _HOLE,
     **{axis: PICKS[axis] for axis in "xyz"},
     "from": (
-        *("from", "depth_from", "from_depth", "depthfrom", "from_m", "start", "begin", "top", "top_depth"),
-        *("depth_top", "md", "tvd"),
+        *("from", "depth_from", "from_depth", "start", "begin", "top", "top_depth", "depth_top", "geol_top"),
+        *("depth_to_top", "upper_depth", "start_depth", "depth_start", "interval_from", "md_from", "from_md"),
+        *("Von", "Tiefe von", "von Tiefe", "Tiefe oben", "Desde", "prof_desde", "De", "Toit", "prof_toit"),
+        *("prof_debut", "Profondeur toit", "Van", "Bovenkant", "Bovenkant laag", "diepte_van", "md", "tvd"),
+        "depth",
     ),
     "to": (
-        *("to", "depth_to", "to_depth", "depthto", "to_m", "end", "bottom", "base", "bottom_depth"),
-        *("depth_bottom", "base_depth"),
+        *(
+            "to",
+            "depth_to",
+            "to_depth",
+            "end",
+            "bottom",
+            "base",
+            "bottom_depth",
+            "depth_bottom",
+            "base_depth",
+        ),
+        *("depth_base", "depth_to_base", "geol_base", "lower_depth", "end_depth", "depth_end", "interval_to"),
+        *(
+            "md_to",
+            "to_md",
+            "Bis",
+            "Tiefe bis",
+            "bis Tiefe",
+            "Tiefe unten",
+            "Hasta",
+            "prof_hasta",
+            "à",
+            "Mur",
+        ),
+        *("prof_mur", "prof_fin", "Profondeur mur", "Tot", "Onderkant", "Onderkant laag", "diepte_tot"),
+        "Basis",
     ),
     "block": _BLOCK,
     **DIRECTIONS,
@@ -83,16 +169,34 @@ OBSERVED = {
     "y": PICKS["y"],
     "z": ("z", "elevation", "elev", "altitude", "rl", "height"),
     "block": _BLOCK,
-    "hole": _HOLE[:-2],  # names and ids are of the places
+    "hole": _HOLE_NAMES,  # other names and ids are of the places
     "depth": ("depth", "md"),
     "use": ("use",),
     "on": ("seen_on",),
     "error": ("height_error",),
 }
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
+# Numbers that programs write where there is no value.
+NULL_NUMBERS = frozenset(
+    (
+        *(
+            -999.0,
+            -999.25,
+            -999.99,
+            -9999.0,
+            -9999.25,
+            -9999.99,
+            -99999.0,
+            -999999.0,
+            -9999999.0,
+            -99999999.0,
+        ),
+        *(99999.0, 999999.0, 1e30, -1e30, 1e31, 1e33, -32768.0, -32767.0),
+    )
+)
 _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
-_LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
+LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
 
@@ -114,15 +218,63 @@ class Reading(Protocol):
 
 
 @dataclass(frozen=True)
+class Header:
+    """names: of the columns as they are written, none without a header. line: its number, 1 without one.
+    columns: the numbers of the columns from 0, by their meaning. units: of columns, as they are written, by
+    their meaning."""
+
+    file: Path
+    names: Sequence[str]
+    line: int
+    columns: dict[str, int]
+    units: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table in a file that holds several: the names of its columns, the lines and entries of its rows, and
+    what units its columns have, as they are written, "" for none."""
+
+    names: Sequence[str]
+    rows: Sequence[tuple[int, list[str]]]
+    line: int = 1
+    units: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
 class Row:
-    table: TextTable
+    header: Header
     line: int
     entries: list[str]
-    columns: dict[str, int]
-    decimal: str
+    decimal: str = "."
+
+    @property
+    def file(self) -> Path:
+        return self.header.file
+
+    @property
+    def columns(self) -> dict[str, int]:
+        return self.header.columns
 
     def refuse(self, what: str, advice: str | None = None) -> InputRefused:
-        return InputRefused(what, file=self.table.file, line=self.line, advice=advice)
+        return InputRefused(what, file=self.file, line=self.line, advice=advice)
+
+    def with_values(self, values: Mapping[str, float | str]) -> Row:
+        """The same with other values in some of its columns, by their meaning."""
+        entries = list(self.entries)
+        for column, value in values.items():
+            text = value if isinstance(value, str) else repr(float(value)).replace(".", self.decimal)
+            entries[self.columns[column]] = text
+        return replace(self, entries=entries)
+
+    def scaled(self, factors: Mapping[str, float]) -> Row:
+        """The same with the numbers of some columns times factors, by their meaning."""
+        values = {
+            column: self.number(column) * by
+            for column, by in factors.items()
+            if self.has(column) and is_number(self.entries[self.columns[column]], self.decimal)
+        }
+        return self.with_values(values)
 
     def text(self, column: str) -> str:
         at = self.columns[column]
@@ -142,7 +294,7 @@ class Row:
 
     def called(self, column: str) -> str:
         """The name of a column in the header, in small letters; empty without a header."""
-        names, at = self.table.layout.names or (), self.columns[column]
+        names, at = self.header.names, self.columns[column]
         return plain_name(names[at]) if at < len(names) else ""
 
     def number(self, column: str, advice: str | None = None) -> float:
@@ -165,10 +317,15 @@ class Row:
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
-    table = _opened(given, file, known)
-    columns = _columns(given, table, known, needed)
-    separator = table.layout.separator
-    body = table.raw[table.layout.body :].decode(table.encoding)
+    table = _opened(given, file, known, needed)
+    layout = table.layout
+    names, name_line = layout.names or (), layout.name_line or 1
+    columns = _columns(given, file, layout, known)
+    _require(given, Header(file, names, name_line, columns), needed)
+    written = {meaning: unit_text_of_column(names[at]) for meaning, at in columns.items() if at < len(names)}
+    header = Header(file, names, name_line, columns, written)
+    separator = layout.separator
+    body = table.raw[layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
     if given.decimal is None and separator != ",":
         entries = list(_parts(body, separator))
@@ -182,9 +339,16 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
         stripped = line.strip()
         if not stripped or stripped.startswith("#"):
             continue
-        yield Row(
-            table, table.layout.body_line + number, table.layout.fields(line.rstrip("\r")), columns, decimal
-        )
+        yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
+
+
+def sheet_rows(given: Reading, file: Path, sheet: Sheet, known: Columns, needed: Sequence[str]) -> list[Row]:
+    """The same of a table in a file that holds several."""
+    columns = _columns(given, file, TableLayout(",", tuple(sheet.names), 0, 0, sheet.line), known)
+    units = {meaning: sheet.units[at] for meaning, at in columns.items() if at < len(sheet.units)}
+    header = Header(file, sheet.names, sheet.line, columns, units)
+    _require(given, header, needed)
+    return [Row(header, line, entries) for line, entries in sheet.rows]
 
 
 def other_units_in(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
@@ -194,8 +358,8 @@ def other_units_in(given: Reading, file: Path, known: Columns, model_unit: str) 
     units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     column_units = {
         names[at]: units.get("xy" if meaning in ("x", "y") else "z")
-        for meaning, at in _columns(given, table, known, ()).items()
-        if meaning in _LENGTHS and at < len(names)
+        for meaning, at in _columns(given, file, table.layout, known).items()
+        if meaning in LENGTHS and at < len(names)
     }
     return other_units(file, column_units, model_unit)
 
@@ -204,15 +368,22 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
     """The known columns that a table has, by their meaning: their names in the header, in small letters.
     Raises InputRefused if it is not a table."""
     table = _opened(given, file, known)
-    names = [plain_name(name) for name in table.layout.names or ()]
-    columns = _columns(given, table, known, ())
+    written = table.layout.names or ()
+    names = [plain_name(name) for name in written]
+    columns = _columns(given, file, table.layout, known)
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(reading: Reading, file: Path, meanings: Columns) -> TextTable:
+def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = ()) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
-    names.update(alias for aliases in meanings.values() for alias in aliases)
-    return open_table(file, Expected(reading.separator, (), names, 1, 2))
+    for aliases in meanings.values():
+        names.update(*map(_spellings, aliases))
+
+    def is_header(cells: list[str]) -> bool:
+        columns = _columns(reading, file, TableLayout("\t", tuple(cells), 0, 0, None), meanings)
+        return set(needed) <= columns.keys() and len(columns) > 2
+
+    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header))
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:
@@ -227,11 +398,42 @@ def normalized_name(name: str) -> str:
     return re.sub(r"[\s_-]+", "_", name.strip().lower())
 
 
-def _columns(reading: Reading, table: TextTable, meanings: Columns, needed: Sequence[str]) -> dict[str, int]:
+@cache
+def _spellings(name: str) -> tuple[str, ...]:
+    """A name in small letters with each of the signs that may part its words."""
+    return tuple(re.sub(r"[\s_]", sign, name.lower()) for sign in ("", "_", " ", "-"))
+
+
+@cache
+def column_key(name: str) -> str:
+    """The name of a column, for comparing: small letters and digits, without accents, signs and what is in
+    brackets: FromDepth, from-depth and "From depth (m)" are one."""
+    letters = re.sub(r"[\W_]+", "", plain_name(name).casefold())
+    if len(letters) < 2:  # à is no a
+        return letters
+    parts = unicodedata.normalize("NFKD", letters)
+    return "".join(letter for letter in parts if not unicodedata.combining(letter))
+
+
+def _named(names: Sequence[str], wanted: Sequence[str]) -> int | None:
+    """The number of the column that is called so, by the first of several names that one has; a unit may
+    stand behind it."""
+    with_unit = [column_key(name) for name in names]
+    without = [
+        column_key(name.strip()[: -len(unit)] if (unit := unit_text_of_column(name)) else "")
+        for name in names
+    ]
+    for keys in (with_unit, without):
+        for key in map(column_key, wanted):
+            if key in keys:
+                return keys.index(key)
+    return None
+
+
+def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Columns) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
-    written = table.layout.names or ()
-    names = [normalized_name(plain_name(name)) for name in written]
-    as_written = [name.strip().lower() for name in written]
+    names = layout.names or ()
+    as_written = [name.strip().lower() for name in names]
     columns: dict[str, int] = {}
     for column, called in reading.columns.items():  # first, so that no other column takes what they name
         if column not in meanings:
@@ -239,23 +441,23 @@ def _columns(reading: Reading, table: TextTable, meanings: Columns, needed: Sequ
         if isinstance(called, int):
             columns[column] = called - 1
         elif called.strip().lower() in as_written:
-            columns[column] = table.column(called)
-        elif normalized_name(called) in names:
-            columns[column] = names.index(normalized_name(called))
+            columns[column] = column_number(file, layout, called)
+        elif (at := _named(names, [called])) is not None:
+            columns[column] = at
     for column, aliases in meanings.items():
         # depths of picks are often called otherwise than a survey's
         if column in columns or (reading.columns.get(column) is not None and meanings is not SURVEY):
             continue
-        at = next(
-            (names.index(normalized_name(alias)) for alias in aliases if normalized_name(alias) in names),
-            None,
-        )
+        at = _named(names, aliases)
         if at is not None and at not in columns.values():
             columns[column] = at
+    return columns
+
+
+def _require(reading: Reading, header: Header, needed: Sequence[str]) -> None:
     for column in needed:
-        if column not in columns:
+        if column not in header.columns:
             called = reading.columns.get(column)
             what = f"the header has no column {called or column}"
             advice = f'name it: columns = {{ {column} = "..." }}'
-            raise InputRefused(what, file=table.file, line=table.layout.name_line or 1, advice=advice)
-    return columns
+            raise InputRefused(what, file=header.file, line=header.line, advice=advice)

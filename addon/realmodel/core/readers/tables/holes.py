@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.algebra import atan2, cos, sin
 from ...base.errors import InputRefused, number_list
-from ...base.text import Step, no_step
 from ...settings.data_files import Boreholes
-from .hole_tables import COLLARS, SURVEY, Row, normalized_name, rows
-from .observations import LeftOut
+from .hole_data import HoleTables
+from .hole_tables import Row
 
 Direction = tuple[float, float, float]  # of length 1: to the east, to the north, down
 _STRAIGHT = 1e-12  # radians
@@ -110,19 +108,16 @@ class HoleDirections:
         self.warnings: list[str] = []
 
     @classmethod
-    def of_survey(
-        cls, given: Boreholes, hole_of: Callable[[Row], str], step: Step = no_step
-    ) -> HoleDirections:
-        """The stations of a survey table. hole_of: the hole of a row. Raises InputRefused naming the line."""
-        directions = cls(given)
-        assert given.survey is not None
-        for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
+    def of_survey(cls, tables: HoleTables) -> HoleDirections:
+        """The stations of a survey table. Raises InputRefused naming the line."""
+        directions = cls(tables.given)
+        for row in tables.survey or ():
             depth = row.number("depth")
             if depth < 0:
                 raise row.refuse(f"depth is {depth:g}", "depths count from the collar along the hole")
-            directions.add(row, depth, hole_of(row))
+            directions.add(row, depth, row.text("hole"))
         if not directions._stations:
-            raise InputRefused("there are no directions in it", file=given.survey)
+            raise InputRefused("there are no directions in it", file=tables.given.survey)
         return directions
 
     def add(self, row: Row, depth: float, hole: str) -> None:
@@ -188,7 +183,7 @@ class HoleDirections:
                 raise station.row.refuse(what, "check its angles")
             if bend > _SHARP:
                 self.warnings.append(
-                    f"{station.row.table.file}: line {station.row.line}: hole '{hole}' turns by {bend:.0f} "
+                    f"{station.row.file}: line {station.row.line}: hole '{hole}' turns by {bend:.0f} "
                     f"degrees between depths {depths[-1]:g} and {station.depth:g}: check its angles"
                 )
             depths.append(station.depth)
@@ -200,6 +195,12 @@ def _direction(station: _Station, sign: float) -> Direction:
     if "inclination" in station.row.columns:
         return direction(station.angle, station.azimuth)
     return direction(90.0 - sign * station.angle, station.azimuth)
+
+
+def end_of(collar: Row) -> float:
+    """The depth at which the hole of a row of collars ends; NaN where it is not known."""
+    name = next((name for name in ("end", "depth") if collar.has(name)), None)
+    return float("nan") if name is None else collar.number(name)
 
 
 def is_inclined(row: Row) -> bool:
@@ -215,91 +216,40 @@ def is_inclined(row: Row) -> bool:
 
 
 class Holes:
-    """The collars and the paths of holes."""
+    """The collars and the paths of holes, of tables that are repaired."""
 
-    def __init__(self, given: Boreholes):
-        self.given = given
+    def __init__(self, tables: HoleTables):
+        self.given = tables.given
         self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
         self._without_survey: dict[str, None] = {}
         self._paths: dict[str, WellTrajectory] = {}
         self._warnings: list[str] = []
-        self._incomplete: dict[str, str] = {}  # holes whose collars are without a number: what they lack
-        self._written: dict[
-            str, dict[str, None]
-        ] = {}  # names of holes with collars that are alike if `joined`
-        self._taken: dict[tuple[str, str, str], None] = {}  # (file, name in it, the hole that it means)
         self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
-        self._collars = None if given.collars is None else self._read_collars()
-        for hole in self._collars or ():
-            self._written.setdefault(normalized_name(hole), {})[hole] = None
-        self._unused = set(self._collars or ())
+        self._collars = None if tables.collars is None else self._read_collars(tables.collars)
+        said = {row.text("hole") for row in (*(tables.picks or ()), *(tables.intervals or ()))}
+        self._unused = set(self._collars or ()) - said
         self._surveyed: set[str] = set()
-        if given.survey is not None:
-            directions = HoleDirections.of_survey(given, self.hole_of)
+        if tables.survey is not None:
+            directions = HoleDirections.of_survey(tables)
             surveyed = directions.paths()
             self._warnings += directions.warnings
             self._surveyed = set(surveyed)
             self._paths |= surveyed
 
-    def _read_collars(self) -> dict[str, tuple[float, float, float]]:
+    def _read_collars(self, rows: list[Row]) -> dict[str, tuple[float, float, float]]:
         collars: dict[str, tuple[float, float, float]] = {}
         directions = HoleDirections(self.given)
-        assert self.given.collars is not None
-        for row in rows(self.given, Path(self.given.collars), COLLARS, ("hole", "x", "y", "z"), no_step):
+        for row in rows:
             hole = row.text("hole")
-            lacking = [axis for axis in "xyz" if not row.has(axis)]
-            if lacking:
-                self._incomplete[hole] = f"line {row.line} of {self.given.collars} has no {lacking[0]}"
-                continue
-            place = (row.number("x"), row.number("y"), row.number("z"))
-            is_repeated = hole in collars
-            end = next((name for name in ("end", "depth") if row.has(name)), None)
-            if end is not None:
-                self.ends[hole] = row.number(end)
-            if collars.setdefault(hole, place) != place:
-                raise row.refuse(f"hole '{hole}' has two collars", "give each hole one")
+            collars[hole] = (row.number("x"), row.number("y"), row.number("z"))
+            if np.isfinite(end := end_of(row)):
+                self.ends[hole] = end
             if row.has("azimuth") and (row.has("dip") or row.has("inclination")):
                 directions.add(row, 0.0, hole)
-            elif is_inclined(row) and not is_repeated:
+            elif is_inclined(row):
                 self._inclined[hole] = None
-        if not collars:
-            what = next(iter(self._incomplete.values()), "there are no holes in it")
-            raise InputRefused(what, file=self.given.collars)
         self._paths |= directions.paths()
         return collars
-
-    def hole_of(self, row: Row) -> str:
-        """The name of a row's hole, as the collars have it where it is one of theirs: they may write it with
-        other capitals, spaces, hyphens or underscores."""
-        hole = row.text("hole")
-        if self._collars is None or hole in self._collars:
-            return hole
-        alike = list(self._written.get(normalized_name(hole), ()))
-        if len({self._collars[name] for name in alike}) != 1:
-            return hole
-        self._taken[str(row.table.file), hole, alike[0]] = None
-        return alike[0]
-
-    def lacks_collar(self, row: Row) -> str:
-        """Why the place of a row's hole is not known; "" where it is."""
-        hole = self.hole_of(row)
-        self._unused.discard(hole)
-        if self._collars is None or hole in self._collars:
-            return ""
-        return self._incomplete.get(hole, f"it has no collar in {self.given.collars}")
-
-    def without_collar(self, row: Row, depth: float | None, code: str) -> LeftOut | None:
-        """What a row says, where its hole has no collar; None where it has one. depth, code: of the row."""
-        if not (lacks := self.lacks_collar(row)):
-            return None
-        hole, at = self.hole_of(row), "" if depth is None else f" at {depth:.9g}"
-        text = f"line {row.line}, hole '{hole}'{at}, '{code}': {lacks}"
-        return LeftOut("no_collar", text, code, hole, depth)
-
-    def refuse_all(self, row: Row) -> InputRefused:
-        """That of a table no hole has a collar. row: its first."""
-        what = f"no hole of it has a collar in {self.given.collars}, as hole '{row.text('hole')}'"
-        return row.refuse(what, "check how holes are written")
 
     def place(self, row: Row, depth: float, scale: np.ndarray) -> np.ndarray:
         """(3,) the place at a depth along a row's hole. scale: (3,) to the unit of the model."""
@@ -311,7 +261,7 @@ class Holes:
         """(3,) the collar of a row's hole, in the units of the tables; its height is NaN where it is not
         known."""
         if self._collars is not None:
-            return np.array(self._collars[self.hole_of(row)])
+            return np.array(self._collars[row.text("hole")])
         for column in ("x", "y"):
             if column not in row.columns:
                 advice = "give the table of collars = ..., or the columns of x and y"
@@ -324,7 +274,7 @@ class Holes:
 
     def way_to(self, row: Row, depth: float) -> np.ndarray:
         """(3,) how far to the east, to the north and down from the collar a depth in a row's hole is."""
-        hole = self.hole_of(row)
+        hole = row.text("hole")
         path = self._paths.get(hole)
         if path is None:
             if self.given.survey is not None:
@@ -340,7 +290,7 @@ class Holes:
 
     def refuse_deviated(self, row: Row) -> None:
         """Refuses an elevation that does not determine the position in the hole."""
-        path = self._paths.get(self.hole_of(row))
+        path = self._paths.get(row.text("hole"))
         if self._collars is not None and path is not None and not path.is_vertical:
             what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"
             raise row.refuse(
@@ -349,12 +299,6 @@ class Holes:
 
     def warnings(self) -> list[str]:
         warnings = list(self._warnings)
-        for file in dict.fromkeys(file for file, _, _ in self._taken):
-            taken = [f"'{name}' for '{hole}'" for path, name, hole in self._taken if path == file]
-            warnings.append(f"{file}: holes are taken for those with collars: {number_list(taken)}")
-        if incomplete := [hole for hole in self._incomplete if hole not in (self._collars or ())]:
-            names = number_list(incomplete)
-            warnings.append(f"{self.given.collars}: holes without x, y or z, which are not used: {names}")
         inclined = [hole for hole in self._inclined if hole not in self._paths]
         if inclined:
             warnings.append(

@@ -8,16 +8,17 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 
 from ...base.algebra import norm
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT, factors
+from ...base.units import MODEL_UNIT
 from ...settings.data_files import Boreholes
-from .hole_tables import INTERVALS, NO_VALUE, Row, rows
+from .hole_data import read_hole_rows
+from .hole_repair import repair
+from .hole_tables import NO_VALUE, Row
 from .holes import Holes
 from .observations import LeftOut, Observations, unknown_block
 from .table_layout import is_number
@@ -52,28 +53,18 @@ class Intervals:
 
 
 def read_intervals(
-    holes: Holes, units: UnitNames, scale: np.ndarray, plan_step: float | None, step: Step
+    rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray, plan_step: float | None
 ) -> Intervals:
-    """The intervals of the table of some boreholes.
+    """The intervals of the rows of a table of some boreholes.
 
     scale: (3,) from the units of the tables to that of the model. plan_step: how far places along inclined
     intervals are apart in plan at most, model units; None: by the area of the holes. Depths that differ by
     rounding are one; intervals of one block that meet are one. Raises InputRefused naming file and line.
     """
-    boreholes = holes.given
-    assert boreholes.intervals is not None
     logs: dict[str, _Hole] = {}
     left_out: list[LeftOut] = []
-    refused: InputRefused | None = None
-    for row in rows(boreholes, Path(boreholes.intervals), INTERVALS, ("hole", "from", "to", "block"), step):
-        name, code = holes.hole_of(row), row.text("block")
-        if not name:
-            raise row.refuse("the hole has no name")
-        lost = holes.without_collar(row, _first_depth(row), code)
-        if lost is not None:
-            refused = refused or holes.refuse_all(row)
-            left_out += [] if units.says_nothing(code) else [lost]
-            continue
+    for row in rows:
+        name, code = row.text("hole"), row.text("block")
         hole = logs.get(name)
         if hole is None:
             hole = logs[name] = _Hole(row, holes.begin_of(row))
@@ -81,7 +72,7 @@ def read_intervals(
         if interval is not None:
             (hole.intervals if row.is_used else hole.switched_off).append(interval)
     if not logs:
-        raise refused or InputRefused("there are no intervals in it", file=boreholes.intervals)
+        raise InputRefused("there are no intervals in it", file=holes.given.intervals)
     if plan_step is None:
         plan = np.array([hole.begin[:2] for hole in logs.values()]) * scale[:2]
         plan_step = plan_step_of(plan)
@@ -103,25 +94,14 @@ def plan_step_of(plan: np.ndarray) -> float:
     return float(np.ptp(plan, axis=0).max()) / _STEPS
 
 
-def _first_depth(row: Row) -> float | None:
-    """Where an interval begins, or ends where that is not known; None where neither is."""
-    return next((row.number(name) for name in ("from", "to") if row.has(name)), None)
-
-
 def _interval(
     row: Row, hole: str, code: str, units: UnitNames, left_out: list[LeftOut]
 ) -> tuple[float, float, str] | None:
     """(from, to, block) of a row; None where it says nothing."""
-    if units.says_nothing(code):
-        return None
-    lacking = [name for name in ("from", "to") if not row.has(name)]
-    depth = _first_depth(row)
-    at = "" if depth is None else f" at {depth:.9g}"
-    where = f"line {row.line}, hole '{hole}'{at}, '{code}'"
-    if lacking:
-        left_out.append(LeftOut("no_depth", f"{where}: '{lacking[0]}' has no value", code, hole, depth))
+    if units.says_nothing(code) or not (row.has("from") and row.has("to")):
         return None
     begin, end = row.number("from"), row.number("to")
+    where = f"line {row.line}, hole '{hole}' at {begin:.9g}, '{code}'"
     return known_interval((begin, end, code), hole, where, units, left_out)
 
 
@@ -301,26 +281,22 @@ def read_interval_values(
     """The columns of the table of intervals of some boreholes that do not say where an interval is, in the
     order of the table. A column is of numbers where all its values are numbers. Rows without a depth, and
     of holes without a collar, are left out. Raises InputRefused naming file and line."""
-    assert given.intervals is not None
-    plan, height = factors(given.units, model_unit)
-    scale = np.array([plan, plan, height])
-    holes, read, ends, depths = Holes(given), [], [], []
+    tables = read_hole_rows(given, model_unit, step, ("hole", "from", "to"))
+    repair(tables)
+    scale = tables.scale(model_unit)
+    holes, read, ends, depths = Holes(tables), [], [], []
     names: list[str] = []
-    refused: InputRefused | None = None
-    for row in rows(given, Path(given.intervals), INTERVALS, ("hole", "from", "to"), step):
+    for row in tables.intervals or ():
         if not names:
             names = _names(row)
         if not (row.has("from") and row.has("to")):
             continue
         between = row.number("from"), row.number("to")
-        if holes.without_collar(row, between[0], "") is not None:
-            refused = refused or holes.refuse_all(row)
-            continue
         ends.append([holes.place(row, depth, scale) for depth in between])
         depths.append(between)
-        read.append((holes.hole_of(row), row.entries, row.decimal))
+        read.append((row.text("hole"), row.entries, row.decimal))
     if not read:
-        raise refused or InputRefused("there are no intervals in it", file=given.intervals)
+        raise InputRefused("there are no intervals in it", file=given.intervals)
     columns = {name: _column(read, at) for at, name in enumerate(names) if name}
     places = np.array(ends, np.float64)
     texts = np.array([hole for hole, _, _ in read], str)
@@ -329,7 +305,7 @@ def read_interval_values(
 
 def _names(row: Row) -> list[str]:
     """The names of the columns as they are written; empty for those that say where an interval is."""
-    names = [name.strip() for name in row.table.layout.names or ()]
+    names = [name.strip() for name in row.header.names]
     for column in _PLACES:
         if column in row.columns and row.columns[column] < len(names):
             names[row.columns[column]] = ""

@@ -16,6 +16,7 @@ from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...notebook import ShortRepr
 from ...settings.data_files import ObservationFile
+from .hole_problems import LEFT_OUT, HoleProblem
 from .hole_tables import OBSERVED, Row, rows
 from .unit_names import UnitNames
 
@@ -247,12 +248,27 @@ def unknown_block(
     return LeftOut("unknown_block", text, code, hole, depth, place)
 
 
+def left_out_of(problems: Sequence[HoleProblem]) -> list[LeftOut]:
+    """The intervals and picks among the problems of tables that are left out."""
+    return [
+        LeftOut(
+            problem.kind,
+            problem.text,
+            problem.code,
+            problem.hole,
+            None if np.isnan(problem.depth) else problem.depth,
+        )
+        for problem in problems
+        if problem.code is not None and problem.action == LEFT_OUT
+    ]
+
+
 # Why observations are not used, by the kind of their warning: found in their tables, or from their places.
 IN_TABLES = {
     "overlap": "intervals or polygons of different blocks overlap, and what both claim is not used",
     "from_to": "intervals end above where they begin, and are not used",
-    "no_depth": "intervals have no depth, or observations no place, and are not used",
-    "no_collar": "intervals are of holes whose collars are not known, and are not used",
+    "no_depth": "intervals or picks have no depth, or observations no place, and are not used",
+    "no_collar": "intervals or picks are of holes whose collars are not known, and are not used",
     "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
     "dip_unit": "dips are of no surface or block of the rock mass, and are not used: give their meaning",
     "dip_series": "dips of a series are of no surface of it, or of a block beside one, and are not used",

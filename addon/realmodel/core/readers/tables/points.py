@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ import numpy as np
 from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import JoinPieces, in_memory, in_pieces
 from ...base.no_value import NO_VALUE
-from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
+from ...base.text import BOM, Content, FileBytes, Step, encoding_of, no_step, pieces_of, text_content
 from ...base.units import unit_text_of_column
 from ...base.work import NativeError, native_module, on_threads
 from ...settings.data_files import PointFile, list_of
@@ -35,8 +36,10 @@ from .table_layout import (
     plain_name,
     table_layout,
 )
+from .workbook import begins_as_workbook, sheet_text
 
 _MOST_THREADS = 8
+_GROUPED = r"[+-]?(\d{{1,3}}(?:{0}\d{{3}})+)({1}\d*)?"  # by a sign between thousands, and a decimal mark
 _NO_ROW = re.compile(rb"\s*(?:[#!%>]|//|$)")
 _SAY_COLUMNS = 'set columns = ["X", "Y", "Z"]'
 # Names of coordinates, and what may stand before or behind them.
@@ -58,13 +61,37 @@ _WORDS = {
 _BESIDE = (
     *("utm", "coord", "coordinate", "coordinates", "coords", "point", "rd", "pos", "position", "map", "grid"),
     *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat", "mga", "lv95", "gk"),
-    *("world", "local", "projected", "nat_grid", "nap", "nn", "nhn", "asl", "amsl", "msl", "wert", "l93"),
+    *(
+        "world",
+        "local",
+        "projected",
+        "nat_grid",
+        "value",
+        "utme",
+        "utmn",
+        "nap",
+        "nn",
+        "nhn",
+        "asl",
+        "amsl",
+        "msl",
+        "wert",
+        "l93",
+    ),
+)
+_DEPTHS = (
+    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
+    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
+)
+_SYSTEM = re.compile(
+    r"(?:utm|mga|lv|gda|epsg|zone|l|gk|cc|rt|osgb|ch|etrs|wgs|nad|nzgd|sweref|dhdn|ed|itrf)?\d+[a-z]{0,2}"
+    r"|lambert|dhdn|osgb|bng|nztm|amersfoort|stereo\d*|swissgrid|gauss|krueger|krüger|tm"
 )
 AXES = {
     axis: (
         *words,
         *(f"{beside}_{word}" for word in words for beside in _BESIDE),
-        *(f"{word}_{beside}" for word in words for beside in _BESIDE),
+        *(f"{word}_{beside}" for word in words for beside in (*_BESIDE, *(_DEPTHS if axis == "z" else ()))),
         *(f"{beside}{word}" for word in words[:3] for beside in _BESIDE),
         *(f"{word}{beside}" for word in words[:3] for beside in _BESIDE),
     )
@@ -75,10 +102,6 @@ _DEGREES = {
     "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),
     "y": ("lat", "latitude", "latitud", "breite"),
 }
-_DEPTHS = (
-    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
-    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
-)
 _NAMES = {axis: (*AXES[axis], *_DEGREES.get(axis, ()), *(_DEPTHS if axis == "z" else ())) for axis in AXES}
 KNOWN = frozenset(name for names in _NAMES.values() for name in names)
 
@@ -113,11 +136,11 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
 
     Raises InputRefused naming file and line.
     """
-    table = table_of(given)
+    table = table_of(given, step=step)
     wanted = wanted_columns(table, given.columns)
     rows = _read_rows(table, given, wanted, step, gather)
     if len(rows.points):
-        doubts = () if given.columns is not None else _doubts(table, wanted, rows.points[:, 2])
+        doubts = () if given.columns is not None else _doubts(table, wanted, rows.points[:, 2], given.z_axis)
         names = table.layout.names or ()
         named = tuple(names[column] for column in wanted) if max(wanted) < len(names) else ()
         of_names = [unit_text_of_column(name) for name in named] or [""] * 3
@@ -130,10 +153,19 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
     raise InputRefused(what, file=table.file)
 
 
-def table_of(given: PointFile, *wanted: str | int) -> TextTable:
+def table_of(given: PointFile, *wanted: str | int, step: Step = no_step) -> TextTable:
     """The open table of a file of points. wanted: further columns. Raises InputRefused."""
     columns = (*(given.columns or ()), *wanted, *given.where)
-    return open_table(Path(given.file), Expected(given.separator, columns, KNOWN), given.layer)
+    return open_table(Path(given.file), Expected(given.separator, columns, KNOWN), given.layer, step)
+
+
+def _has_columns(expected: Expected, cells: list[str]) -> bool:
+    """Whether the cells of a row are the names of the columns that are expected: those asked for, or else as
+    many as are needed."""
+    names = [name.lower() for name in expected.wanted if isinstance(name, str)]
+    if names:
+        return set(names) <= {cell.lower() for cell in cells}
+    return sum(_plain(cell) in expected.known for cell in cells) >= expected.columns
 
 
 @dataclass(frozen=True)
@@ -149,10 +181,15 @@ class TextTable:
         return column_number(self.file, self.layout, name)
 
 
-def open_table(file: Path, expected: Expected, sheet: str | None = None) -> TextTable:
-    """A table of text, or the sheet of a workbook, by name where there are several. Raises InputRefused where
-    there are no rows."""
-    raw = text_content(file)
+def open_table(file: Path, expected: Expected, sheet: str | None = None, step: Step = no_step) -> TextTable:
+    """A table of text, or the sheet of a workbook: by its name, or else the only one with the columns that
+    are expected. Raises InputRefused where there are no rows."""
+    raw: Content
+    if begins_as_workbook(FileBytes(file)[:100]):
+        raw = sheet_text(file, sheet, expected.is_header or partial(_has_columns, expected), step)
+        expected = replace(expected, separator="\t")
+    else:
+        raw = text_content(file)
     dialect = next((entry for entry in DIALECTS if entry.begins(raw[:4096], len(raw))), None)
     if dialect is not None and dialect.not_rows is not None:
         raw = dialect.not_rows.sub(b"#", raw[:])
@@ -161,9 +198,15 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None) -> Text
     return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected, dialect))
 
 
+def _plain(name: str) -> str:
+    """The name of a column, for comparing, without those of coordinate systems."""
+    words = re.split(r"[\s_.-]+", plain_name(name))
+    return "_".join([word for word in words if not _SYSTEM.fullmatch(word)] or words)
+
+
 def _named(table: TextTable) -> list[str]:
     """The names of the columns, for comparing."""
-    return [re.sub(r"[\s_.-]+", "_", plain_name(name)) for name in table.layout.names or ()]
+    return [_plain(name) for name in table.layout.names or ()]
 
 
 def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> list[int]:
@@ -185,7 +228,25 @@ def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> lis
             raise InputRefused(
                 f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
+    _require_names_of_entries(table)
     return [names.index(alias) for alias in headings.values() if alias]
+
+
+def _require_names_of_entries(table: TextTable) -> None:
+    """Refuses a header whose names are plainly not those of the entries: more of them, some with blanks in
+    them, or one less where the first entries count the rows."""
+    names, rows = table.layout.names or (), head_rows(table, 1000)
+    width = max(map(len, rows), default=0)
+    counts = len(rows) > 1 and _count_rows([row[0] for row in rows])
+    if (table.layout.separator == " " and 0 < width < len(names)) or (width > len(names) and counts):
+        what = f"the header has {len(names)} names, and the rows have {width} entries"
+        advice = "say by numbers which columns are x, y and z: columns = [1, 2, 3]"
+        raise InputRefused(what, file=table.file, line=table.layout.name_line, advice=advice)
+
+
+def _count_rows(entries: list[str]) -> bool:
+    """Whether entries are 0, 1, 2, ... or 1, 2, 3, ..."""
+    return any(entries == [str(n) for n in range(first, first + len(entries))] for first in (0, 1))
 
 
 def _require_xyz_first(table: TextTable) -> None:
@@ -194,11 +255,11 @@ def _require_xyz_first(table: TextTable) -> None:
     rows = [row for row in head_rows(table, 1000) if all(map(is_number, row[:3]))]
     if len(rows) < 2 or min(map(len, rows)) < 4:
         return
-    first, second = (np.array([float(row[n]) for row in rows]) for n in (0, 1))
+    whole = all(float(entry) % 1 == 0 for row in rows for entry in row[:2])
     what = ""
-    if np.array_equal(first, first[0] + np.arange(len(rows))) and float(first[0]) in (0.0, 1.0):
+    if _count_rows([row[0] for row in rows]):
         what = "its first column counts the rows"
-    elif {len(row) for row in rows} == {5} and not ((first % 1).any() or (second % 1).any()):
+    elif {len(row) for row in rows} == {5} and whole:
         what = "its first two columns are whole numbers, coordinates or the indices of a grid"
     if what:
         columns = [2, 3, 4] if "counts" in what else [3, 4, 5]
@@ -206,7 +267,7 @@ def _require_xyz_first(table: TextTable) -> None:
         raise InputRefused(f"{what}, and no header names x, y and z", file=table.file, advice=advice)
 
 
-def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray) -> tuple[str, ...]:
+def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str) -> tuple[str, ...]:
     """Sentences about columns that were guessed, or whose names say something else than they are read as."""
     names, called = table.layout.names or (), _named(table)
     doubts = []
@@ -214,28 +275,36 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray) -> tuple[str
     width = next((n for n, entry in enumerate(row) if entry.startswith("#")), len(row))
     if not KNOWN.isdisjoint(called):
         for axis, column in zip("xyz", wanted, strict=True):
-            same = [names[n] for n, name in enumerate(called) if name in AXES[axis]]
+            likely = (n for n, name in enumerate(called) if name in AXES[axis] and len(name) > 1)
+            same = [names[n] for n in sorted({column, *likely})]
             if len(same) > 1:
                 listed = number_list([f"'{name}'" for name in same])
                 doubts.append(f"{listed} may be {axis}, and '{names[column]}' is used: {_SAY_COLUMNS}")
         if {called[wanted[0]], called[wanted[1]]} & {*_DEGREES["x"], *_DEGREES["y"]}:
             doubts.append(
-                f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, heights "
-                "are not: project them (to UTM, say) in a GIS, or name other columns by 'columns'"
+                f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, "
+                "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
             )
-        if called[wanted[2]] in _DEPTHS and (z > 0).sum() * 2 > len(z):
+        words = re.findall(r"[^\W\d_]+", names[wanted[2]].lower())
+        if z_axis == "up" and not set(words).isdisjoint(_DEPTHS) and (z > 0).sum() * 2 > len(z):
             doubts.append(
                 f"'{names[wanted[2]]}' is read as elevations, upward: if it has depths, set z_axis = \"down\""
+            )
+        if width > len(names) and is_number(row[-1]):
+            doubts.append(
+                f"the header has {len(names)} names, the rows have {width} entries: the first are taken for "
+                "those; if that is wrong, set columns = [1, 2, 3] with their numbers"
             )
     elif len(names) == width > 2 and not any(map(is_number, names)):
         listed = ", ".join(f"'{name}'" for name in names[:3])
         doubts.append(
-            f"no column is named x, y or z: the first three, {listed}, are used; if that is wrong, {_SAY_COLUMNS}"
+            f"no column is named x, y or z: the first three, {listed}, are used; if that is wrong, "
+            f"{_SAY_COLUMNS}"
         )
-    elif width > 3:
+    elif width > max(3, len(names)):
         doubts.append(
-            f"no header names its {width} columns: the first three are used as x, y and z; if that is wrong, set "
-            "columns = [1, 2, 3] with their numbers"
+            f"no header names its {width} columns: the first three are used as x, y and z; if that is "
+            "wrong, set columns = [1, 2, 3] with their numbers"
         )
     return tuple(doubts)
 
@@ -262,7 +331,7 @@ def _read_rows(
     native = native_module()
     filters, missing = _filters(table, point_file)
     mark = point_file.decimal or "."
-    if point_file.decimal is None and table.layout.separator != ",":
+    if point_file.decimal is None:
         numeric = [column for column, (numbers, _) in filters if numbers]
         if decimal_comma(_head_entries(table, [*columns, *numeric])):
             mark = ","
@@ -270,8 +339,16 @@ def _read_rows(
         try:
             return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
-            undecided = point_file.decimal is None and mark == "." and table.layout.separator != ","
-            if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
+            plain = _without_thousands(table, columns, point_file.decimal)
+            if error.kind == "not_a_number" and plain is not None:
+                table, mark = plain
+                continue
+            if (
+                point_file.decimal is None
+                and mark == "."
+                and error.kind == "not_a_number"
+                and _has_decimal_commas(table, columns, error)
+            ):
                 mark = ","
                 continue
             raise _refused(table, columns, mark, error) from error
@@ -316,6 +393,8 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     """(P,) the values of each further column, by its name, or by its number from 1 where it has none: numbers
     (NaN where there is none), or texts if not all are numbers."""
     table, mark = rows.table, rows.decimal
+    if max(map(len, head_rows(table, 2000)), default=0) <= 3 and len(table.layout.names or ()) <= 3:
+        return {}
     filters, missing = _filters(table, given)
     separator = table.layout.separator
     lines = table.raw[table.layout.body :].split(b"\n")
@@ -388,6 +467,35 @@ def body_rows(table: TextTable) -> Iterator[list[str]]:
     return (table.layout.fields(line.decode(table.encoding, "replace").strip("\r")) for line in lines)
 
 
+def _without_thousands(
+    table: TextTable, columns: Sequence[int], decimal: str | None
+) -> tuple[TextTable, str] | None:
+    """The table without separators of thousands, and its decimal mark, where its numbers can be read in
+    one way only: 451,234.5 or 5.932.425; else None."""
+    entries = [entry for entry in _head_entries(table, columns) if entry]
+    ways = []
+    for mark in ".,":
+        for sign in (",", ".", "'", "’", " ", "\xa0", "\u202f"):
+            grouped = re.compile(_GROUPED.format(re.escape(sign), re.escape(mark)))
+            in_groups = [match for match in map(grouped.fullmatch, entries) if match]
+            others = len(entries) - len(in_groups)
+            is_sure = sign not in ",." or any(match[1].count(sign) > 1 or match[2] for match in in_groups)
+            if sign == mark or not in_groups or not is_sure or decimal not in (None, mark):
+                continue
+            if others == sum(is_number(entry, mark) and not grouped.fullmatch(entry) for entry in entries):
+                ways.append((sign, mark))
+    if len(ways) != 1:
+        return None
+    (sign, mark), encoding = ways[0], table.encoding
+    between = re.compile(rb"(?<=\d)%b(?=\d{3}(?!\d))" % re.escape(sign.encode(encoding)))
+    body = table.raw[table.layout.body :]
+    if sign == table.layout.separator:  # within quotes alone
+        body = re.sub(rb'"[^"\n]*"', lambda match: between.sub(b"", match[0]), body)
+    else:
+        body = between.sub(b"", body)
+    return replace(table, raw=table.raw[: table.layout.body] + body), mark
+
+
 def _has_decimal_commas(table: TextTable, columns: Sequence[int], error: NativeError) -> bool:
     entry = _entry(table, error)
     if "," not in entry:
@@ -431,7 +539,9 @@ def _refused(table: TextTable, columns: Sequence[int], decimal: str, error: Nati
         advice = "write decimals with a point"
     elif decimal == "," and "." in entry:
         advice = "this file has decimal commas: use them in all numbers"
-    elif not entry:
+    elif not table.layout.names and not entry[:1].isdigit():
+        advice = "say which columns are x, y and z: columns = [2, 3, 4]"
+    if not entry:
         advice = 'remove points without a value, or set nodata = ""'
     return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
 

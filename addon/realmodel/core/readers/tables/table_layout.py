@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -21,6 +21,7 @@ _COMMENTS = ("#", "!", "%", ">", "//")
 _SIGNS = "#!%/"
 _COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
+_GROUPED = re.compile(r"[+-]?\d{1,3}(?:([,.'’\xa0\u202f ])\d{3})(?:\1\d{3})*(?:[.,]\d*)?")
 _COMMENT = re.compile(r"(^|(?<=[\s,;|]))#.*$")
 _TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
 _NAMES_SHOWN = 12
@@ -63,23 +64,26 @@ def is_number(entry: str, decimal: str = ".") -> bool:
     return bool(pattern.fullmatch(entry) or NOT_FINITE.fullmatch(entry))
 
 
-def is_any_number(entry: str, separator: str) -> bool:
-    """Whether a text is a number, with a decimal point, or with a decimal comma where commas do not
-    separate."""
-    return is_number(entry) or (separator != "," and is_number(entry, ","))
+def is_any_number(entry: str) -> bool:
+    """Whether an entry of a row is a number, with a decimal point or comma, or in groups of thousands. Where
+    commas separate, an entry that has one stands in quotes."""
+    return is_number(entry) or is_number(entry, ",") or bool(_GROUPED.fullmatch(entry))
 
 
 @dataclass(frozen=True)
 class Expected:
     """What is known of a table before it is read. separator: None where it is to be found. wanted: the
-    requested columns; texts are names that the header must have. known: names that make a line a header, in
-    small letters. numbers, columns: how many of them a row has at least."""
+    requested columns; texts are names that the header must have. known: names that make a line a header,
+    in small letters. numbers, columns: how many of them a row has at least. is_header: whether texts are
+    the names of the columns that are needed, by which a sheet of a workbook is chosen; None: by wanted and
+    known."""
 
     separator: str | None = None
     wanted: Sequence[str | int] = ()
     known: Container[str] = ()
     numbers: int = 3
     columns: int = 3
+    is_header: Callable[[list[str]], bool] | None = None
 
 
 def table_layout(
@@ -112,7 +116,7 @@ def table_layout(
     first, headings, count = len(lines), [], 0
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
-        numbers = sum(is_any_number(entry, separator) for entry in entries)
+        numbers = sum(is_any_number(entry) for entry in entries)
         if numbers and not (
             numbers < expected.numbers and any(plain_name(entry) in known_names for entry in entries)
         ):
@@ -141,11 +145,11 @@ def _with_unit(name: str, unit: str) -> str:
 
 
 def _commented(text: str, separator: str, count: int) -> list[str]:
-    """The entries of a comment, as many as a row has where the sign that begins it is the name of the
-    first."""
+    """The entries of a comment, as many as a row has where the sign that begins it is the name of the first:
+    not with blanks between them, where it rather is the sign of a comment."""
     entries = fields(text.lstrip(_SIGNS + " "), separator)
     whole = fields(text, separator)
-    return whole if len(whole) == count > len(entries) else entries
+    return whole if separator != " " and len(whole) == count > len(entries) else entries
 
 
 def _is_comment(text: str) -> bool:
@@ -158,7 +162,7 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
     for text in texts:
         for separator in _SEPARATORS:
             entries = fields(_COMMENT.sub("", text), separator)
-            counted = sum(is_any_number(entry, separator) for entry in entries)
+            counted = sum(is_any_number(entry) for entry in entries)
             if len(entries) >= columns and counted >= numbers:
                 return separator
     for separator in _SEPARATORS:
@@ -179,9 +183,10 @@ def _header(
     for n, entries in [*headings, *commented]:
         if asked and set(asked) <= {entry.lower() for entry in entries}:
             return n, tuple(entries)
-    for n, entries in headings:
-        if any(plain_name(entry) in known_names for entry in entries):
-            return n, tuple(entries)
+    known = [sum(plain_name(entry) in known_names for entry in entries) for _, entries in headings]
+    if any(known):
+        n, entries = headings[known.index(max(known))]
+        return n, tuple(entries)
     for n, entries in commented:
         if {"x", "y", "z"} <= {plain_name(entry) for entry in entries}:
             return n, tuple(entries)

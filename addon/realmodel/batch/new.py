@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`realmodel new`: a folder with a project from data alone, which is built at once where outputs are named."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from . import PROGRAM
+from .options import parse as parse_build
+
+_TABLES = ("collars", "survey", "intervals", "picks")
+_USAGE = f"""{PROGRAM} new FILE --out FOLDER [options]
+       {PROGRAM} new --collars C.csv --intervals I.csv [--survey S.csv] [--picks P.csv] --out FOLDER [options]
+       {PROGRAM} new --map GEOLOGY.gpkg --ground DEM.tif [--dips D.csv] --out FOLDER [options]"""
+
+
+def parse(arguments: list[str]) -> argparse.Namespace:
+    """The options of `new`; `build`: those of the build that follows, None for none. Raises SystemExit with
+    status 2 where they are wrong."""
+    parser = argparse.ArgumentParser(
+        prog=f"{PROGRAM} new",
+        usage=_USAGE,
+        description="Writes a project that builds at once: its file with the reason of each choice, the "
+        "tables, and proposal.json. FILE has boreholes with all their tables. Options of a build, such as "
+        "--export, build the project as well.",
+        allow_abbrev=False,
+    )
+    for table in _TABLES:
+        parser.add_argument(f"--{table}", type=Path, metavar="F", help=f"the table of {table} of boreholes")
+    parser.add_argument("--map", type=Path, metavar="F", help="polygons of units: a geological map")
+    parser.add_argument("--map-layer", metavar="NAME", help="the layer of the map")
+    parser.add_argument(
+        "--map-block", metavar="NAME", help="the attribute that names units (default: found by its name)"
+    )
+    parser.add_argument("--ground", type=Path, metavar="F", help="heights of the ground: raster, points or mesh")
+    parser.add_argument("--dips", type=Path, metavar="F", help="the table of dips")
+    parser.add_argument("--region", type=Path, metavar="F", help="the outline (default: around the data)")
+    parser.add_argument("--units", metavar="UNIT", default="m", help="of lengths in the model (default: m)")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", required=True, help="the folder, a new one")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    options, rest = parser.parse_known_args(arguments)
+    is_file = rest and not rest[0].startswith("-")
+    options.file = Path(rest.pop(0)) if is_file else None
+    options.build = None
+    if rest:
+        quiet = ["--quiet"] if options.quiet else []
+        options.build = parse_build([str(options.out / "project.toml"), *rest, *quiet])
+    return options
+
+
+def run(options: argparse.Namespace) -> None:
+    """Writes the folder, and builds its project where outputs are named. Raises RealModelError."""
+    from ..core import UsageError, propose_project
+    from .run import run as run_build
+
+    tables = {name: getattr(options, name) for name in _TABLES if getattr(options, name) is not None}
+    if options.file is not None and tables:
+        raise UsageError(f"{options.file} holds all tables, so --{next(iter(tables))} is one too many")
+    map_keys = {"file": options.map, "layer": options.map_layer, "block": options.map_block}
+    map_keys = {key: value for key, value in map_keys.items() if value is not None}
+    if map_keys and options.map is None:
+        raise UsageError("--map-layer and --map-block go with --map")
+    project = propose_project(
+        boreholes=options.file or tables or None,
+        map=map_keys or None,
+        ground=options.ground,
+        region=options.region,
+        dips=options.dips,
+        units=options.units,
+        name=options.out.resolve().name,
+    )
+    files = project.save(options.out)
+    if not options.quiet:
+        for warning in project.proposal.warnings:
+            print(f"warning: {warning}")
+        print(f"units, oldest first: {', '.join(project.proposal.order)}")
+        print(f"{options.out}: {len(files)} files; build it: {PROGRAM} {options.out / 'project.toml'}")
+    if options.build is not None:
+        run_build(options.build)

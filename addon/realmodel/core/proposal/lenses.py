@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Units that lie where their age forbids: lenses, which become bodies, and conflicts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.algebra import norm
+from ..surfaces.planar_mesh import mesh_region
+from .logs import HoleLogs, Log, Part, merged
+from .order import UnitOrder
+
+_ROUND = 16  # edges of a lens that one hole has, at least
+_REACH = 2.0  # times the distance of neighboring holes: so far apart holes may be in one lens
+_OFF = 1e-3  # of the thickness: nearer to none a lens has none
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Two units in the wrong order in a hole, at a depth below its collar (NaN: not known) and elevation."""
+
+    upper: str
+    lower: str
+    hole: str
+    depth: float
+    elevation: float
+
+
+@dataclass(frozen=True)
+class Lens:
+    """name: of the body. unit: of the tables. host: the unit that encloses it. parts: of which holes, and
+    which of their parts it is."""
+
+    name: str
+    unit: str
+    host: str
+    parts: Sequence[tuple[str, Part]]
+
+
+@dataclass
+class Sorted:
+    """The logs without what is out of order (lenses are their hosts), the lenses and the conflicts."""
+
+    logs: list[Log]
+    lenses: list[Lens]
+    conflicts: list[Conflict]
+
+
+def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
+    """Of each hole the parts in order whose thickness is the greatest stay. Others are lenses where their
+    unit, or that around them, repeats in the hole; else they are in conflict with their neighbors."""
+    logs: list[Log] = []
+    inside: dict[tuple[str, str], list[tuple[str, Part]]] = {}
+    conflicts: list[Conflict] = []
+    for log in data.logs:
+        stays = _in_order(log.parts, order)
+        chain: list[Part] = []
+        for number, part in enumerate(log.parts):
+            if stays[number]:
+                chain.append(part)
+                continue
+            host = _host(log.parts, stays, number)
+            if host is None:
+                conflicts += _conflicts(log, stays, number, order)
+            else:
+                inside.setdefault((part.unit, host), []).append((log.hole, part))
+                chain.append(Part(host, part.top, part.bottom, part.depth, part.end))
+        logs.append(Log(log.hole, merged(chain), log.collar))
+    plan = {log.hole: log.plan for log in data.logs}
+    lenses: list[Lens] = []
+    for (unit, host), parts in sorted(inside.items()):
+        lenses += [Lens("", unit, host, group) for group in _groups(parts, plan)]
+    return Sorted(logs, _named(lenses, data, logs), conflicts)
+
+
+def _in_order(parts: Sequence[Part], order: UnitOrder) -> list[bool]:
+    """Which parts of a hole stay: the thickest chain that never rises to a younger unit."""
+    ranks = [order.rank(part.unit) for part in parts]
+    best, before = [0.0] * len(parts), [-1] * len(parts)
+    for at, part in enumerate(parts):
+        for earlier in range(at):
+            if ranks[earlier] >= ranks[at] and best[earlier] > best[at]:
+                best[at], before[at] = best[earlier], earlier
+        best[at] += part.thickness
+    stays = [False] * len(parts)
+    at = int(np.argmax(best))
+    while at >= 0:
+        stays[at], at = True, before[at]
+    return stays
+
+
+def _host(parts: Sequence[Part], stays: Sequence[bool], number: int) -> str | None:
+    """The unit around a part that is out of order, where it is a lens."""
+    above = next((parts[at].unit for at in range(number - 1, -1, -1) if stays[at]), None)
+    below = next((parts[at].unit for at in range(number + 1, len(parts)) if stays[at]), None)
+    if above is not None and above == below:
+        return above
+    repeats = sum(part.unit == parts[number].unit for part in parts) > 1
+    return (above or below) if repeats else None
+
+
+def _conflicts(log: Log, stays: Sequence[bool], number: int, order: UnitOrder) -> list[Conflict]:
+    """What a part that is out of order contradicts: the parts beside it, as far as they are in order."""
+    parts = log.parts
+    conflicts = []
+    for upper, lower in ((number - 1, number), (number, number + 1)):
+        if upper < 0 or lower >= len(parts):
+            continue
+        if order.rank(parts[upper].unit) < order.rank(parts[lower].unit):
+            place = parts[lower]
+            conflicts.append(
+                Conflict(
+                    parts[upper].unit, place.unit, log.hole, place.depth, float(place.top[2])
+                )
+            )
+    return conflicts
+
+
+def _groups(
+    parts: list[tuple[str, Part]], plan: dict[str, np.ndarray]
+) -> list[list[tuple[str, Part]]]:
+    """Parts of neighboring holes at about the same height are one lens."""
+    reach = _REACH * spacing(np.array(list(plan.values())))
+    groups: list[list[tuple[str, Part]]] = []
+    for hole, part in sorted(parts, key=lambda entry: (entry[0], entry[1].depth)):
+        near = [
+            group
+            for group in groups
+            if any(
+                hole != other
+                and norm(plan[hole] - plan[other]) <= reach
+                and abs(part.middle - beside.middle) <= part.thickness + beside.thickness
+                for other, beside in group
+            )
+            and all(hole != other for other, _ in group)
+        ]
+        joined = [entry for group in near[:1] for entry in group]
+        groups = [group for group in groups if not any(group is other for other in near[:1])]
+        groups.append([*joined, (hole, part)])
+    return groups
+
+
+def spacing(plan: np.ndarray) -> float:
+    """How far holes (N, 2) are from their nearest neighbors, as a median; 0 for one."""
+    plan = np.unique(plan, axis=0)
+    if len(plan) < 2:
+        return 0.0
+    nearest = []
+    for place in plan:
+        apart = np.hypot(*(plan - place).T)
+        nearest.append(apart[apart > 0].min())
+    return float(np.median(nearest))
+
+
+def _named(lenses: list[Lens], data: HoleLogs, logs: list[Log]) -> list[Lens]:
+    """Each with a name of its own: that of its unit where this is nothing else."""
+    taken = {part.unit.casefold() for log in logs for part in log.parts}
+    taken |= {unit.casefold() for unit in data.units}
+    named = []
+    for lens in lenses:
+        same = [other for other in lenses if other.unit == lens.unit]
+        is_all = len(same) == 1 and not any(part.unit == lens.unit for log in logs for part in log.parts)
+        name, number = lens.unit if is_all else f"{lens.unit} lens", 1
+        while not is_all and (name.casefold() in taken or len(same) > 1 and number == 1):
+            name = f"{lens.unit} lens {number}"
+            if name.casefold() not in taken:
+                break
+            number += 1
+        taken.add(name.casefold())
+        named.append(Lens(name, lens.unit, lens.host, lens.parts))
+    return named
+
+
+def lens_mesh(lens: Lens, plan: dict[str, np.ndarray], reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """A closed mesh, vertices (V, 3) and triangles (T, 3), as thick as the lens is in its holes, that ends
+    halfway to holes without it. plan: (2,) of all holes. reach: how far it goes where there is none, model
+    units."""
+    inside = np.array([part.top[:2] for _, part in lens.parts])
+    holes = {hole for hole, _ in lens.parts}
+    thick = np.array([part.thickness for _, part in lens.parts])
+    middles = np.array([part.middle for _, part in lens.parts])
+    inside, first = np.unique(inside, axis=0, return_index=True)
+    thick, middles = thick[first], middles[first]
+    low, high = inside.min(axis=0) - reach, inside.max(axis=0) + reach
+    without = np.array([place for hole, place in sorted(plan.items()) if hole not in holes]).reshape(-1, 2)
+    without = without[np.all((without > low) & (without < high), axis=1)]
+    outline = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+    edge = min(2 * np.pi * _radius(inside, without, reach) / _ROUND, float((high - low).min()) / 6)
+    nodes, triangles = mesh_region(outline, edge_length=edge, constraint_points=inside)
+    border = np.any((nodes <= low) | (nodes >= high), axis=1)
+    ring = nodes[border][:: max(int(border.sum() // 24), 1)]
+    at = np.vstack([inside, without, ring])
+    values = np.concatenate([thick, np.full(len(without) + len(ring), -thick.mean())])
+    thickness = _spread(at, values, nodes)
+    least = _OFF * float(thick.min())
+    thickness[np.abs(thickness) < least] = -least
+    thickness[border] = np.minimum(thickness[border], -least)
+    middle = _spread(inside, middles, nodes)
+    for place, value, height in zip(inside, thick, middles, strict=True):  # exact where it was seen
+        nearest = int(np.argmin(np.hypot(*(nodes - place).T)))
+        thickness[nearest], middle[nearest] = value, height
+    return _closed(nodes, triangles, middle, thickness)
+
+
+def _radius(inside: np.ndarray, without: np.ndarray, reach: float) -> float:
+    apart = [float(np.hypot(*(without - place).T).min()) for place in inside] if len(without) else [reach]
+    return min(reach, *apart) / 2
+
+
+def _spread(places: np.ndarray, values: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """Values at nodes (N, 2) by a linear variogram and an unknown mean, through those at places (P, 2)."""
+    count = len(places)
+    apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
+    system = np.ones((count + 1, count + 1))
+    system[:count, :count], system[count, count] = -apart, 0.0
+    weights = np.linalg.lstsq(system, np.append(values, 0.0), rcond=None)[0]
+    to_nodes = np.hypot(*(nodes[:, None] - places[None]).transpose(2, 0, 1))
+    return weights[count] - to_nodes @ weights[:count]
+
+
+def _closed(
+    nodes: np.ndarray, triangles: np.ndarray, middle: np.ndarray, thickness: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The closed surface around where the thickness is above 0, half of it above the middle and half below."""
+    vertices: list[tuple[float, float, float]] = []
+    numbers: dict[tuple, int] = {}
+
+    def vertex(key: tuple, place: np.ndarray, height: float) -> int:
+        if key not in numbers:
+            numbers[key] = len(vertices)
+            vertices.append((float(place[0]), float(place[1]), float(height)))
+        return numbers[key]
+
+    def corner(node: int, side: int) -> int:
+        return vertex((node, side), nodes[node], middle[node] + side * thickness[node] / 2)
+
+    def crossing(a: int, b: int) -> int:
+        a, b = min(a, b), max(a, b)
+        share = thickness[a] / (thickness[a] - thickness[b])
+        place = nodes[a] + share * (nodes[b] - nodes[a])
+        return vertex((a, b, "edge"), place, middle[a] + share * (middle[b] - middle[a]))
+
+    faces: list[tuple[int, int, int]] = []
+    for triangle in triangles.tolist():
+        for side in (1, -1):
+            ring = []
+            for a, b in zip(triangle, [*triangle[1:], triangle[0]], strict=True):
+                if thickness[a] > 0:
+                    ring.append(corner(a, side))
+                if (thickness[a] > 0) != (thickness[b] > 0):
+                    ring.append(crossing(a, b))
+            ring = ring[::side]
+            faces += [(ring[0], ring[at], ring[at + 1]) for at in range(1, len(ring) - 1)]
+    return np.array(vertices), np.array(faces, np.int32)

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The units along boreholes, as the readers of projects give them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..base.errors import InputRefused
+from ..base.text import no_step
+from ..base.units import MODEL_UNIT
+from ..readers.borehole_input import read_boreholes, read_repaired
+from ..readers.tables.hole_tables import normalized_name
+from ..readers.tables.unit_names import UnitNames
+from ..settings.data_files import Boreholes
+
+
+@dataclass(frozen=True)
+class Part:
+    """A unit along a hole, from a place above to a place below (3,), model units, with the depths of these
+    below the collar (NaN where they are not known)."""
+
+    unit: str
+    top: np.ndarray
+    bottom: np.ndarray
+    depth: float
+    end: float
+
+    @property
+    def thickness(self) -> float:
+        return float(self.top[2] - self.bottom[2])
+
+    @property
+    def middle(self) -> float:
+        return float(self.top[2] + self.bottom[2]) / 2
+
+
+@dataclass
+class Log:
+    """The parts of a hole, from above downward; no two of one unit in a row that touch. collar: (3,) or None.
+    """
+
+    hole: str
+    parts: list[Part]
+    collar: np.ndarray | None = None
+
+    @property
+    def plan(self) -> np.ndarray:
+        """(2,) where the hole is in plan: its collar, or the top of what is known."""
+        return (self.parts[0].top if self.collar is None else self.collar)[:2]
+
+
+@dataclass
+class HoleLogs:
+    """logs: by name of the hole. picks: of each surface that picks name (N, 3). spellings: what the tables
+    write of a unit, other than its name. warnings: sentences."""
+
+    logs: list[Log]
+    picks: dict[str, np.ndarray] = field(default_factory=dict)
+    pick_orders: list[list[tuple[str, float]]] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def units(self) -> list[str]:
+        """The units of the logs, by name."""
+        return sorted({part.unit for log in self.logs for part in log.parts})
+
+    @property
+    def places(self) -> np.ndarray:
+        """(N, 3) all ends of parts, picks and collars."""
+        ends = [place for log in self.logs for part in log.parts for place in (part.top, part.bottom)]
+        collars = [log.collar for log in self.logs if log.collar is not None]
+        return np.vstack([np.array([*ends, *collars]).reshape(-1, 3), *self.picks.values()])
+
+
+def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
+    """The logs and picks of boreholes, read as a project reads them, in order of their names. Raises
+    InputRefused naming file and line."""
+    names = _unit_names(_codes(given, units))
+    picks = read_boreholes(given, units, no_step, UnitNames(names, names))
+    logs: list[Log] = []
+    for observations in picks.observations:
+        for hole in sorted(set(observations.holes.tolist())):
+            chosen = np.flatnonzero((observations.holes == hole) & observations.in_use)
+            collar = picks.holes.get(hole, (None, []))[0]
+            if collar is not None and not np.isfinite(collar).all():
+                collar = None
+            parts = _parts(observations.some(chosen))
+            if parts:
+                logs.append(Log(hole, parts, collar))
+    orders = [
+        [(name, float(place[2])) for name, place in tops]
+        for hole, (_, tops) in sorted(picks.holes.items())
+        if not any(log.hole == hole for log in logs)
+    ]
+    if not logs and not picks.of_surfaces:
+        raise InputRefused("no unit is known in any hole", file=given.files[-1])
+    return HoleLogs(logs, picks.points, orders, picks.warnings)
+
+
+def _codes(given: Boreholes, units: str) -> list[str]:
+    """What the tables write in the columns of units."""
+    tables = read_repaired(given, units)
+    named = (*((row, "block") for row in tables.intervals or ()), *((row, "surface") for row in tables.picks or ()))
+    return [row.text(column) for row, column in named if row.has(column)]
+
+
+def _unit_names(codes: Iterable[str]) -> list[str]:
+    """The names of units: of spellings that differ in capitals, spaces and hyphens alone the commonest."""
+    empty = UnitNames()
+    count = Counter(code.strip() for code in codes if not empty.says_nothing(code))
+    names: dict[str, str] = {}
+    for code in sorted(count, key=lambda code: (-count[code], code)):
+        names.setdefault(normalized_name(code), code)
+    return sorted(names.values())
+
+
+def _parts(observations) -> list[Part]:
+    """The parts of one hole, of the places of its intervals. Those of one unit that touch are one."""
+    parts: list[Part] = []
+    for number in np.unique(observations.intervals):
+        at = np.flatnonzero(observations.intervals == number)
+        first, last = at[np.argmin(observations.depths[at])], at[np.argmax(observations.depths[at])]
+        places, depths = observations.places, observations.depths
+        unit = str(observations.blocks[first])
+        parts.append(Part(unit, places[first], places[last], float(depths[first]), float(depths[last])))
+    parts.sort(key=lambda part: part.depth)
+    return merged(parts)
+
+
+def merged(parts: Sequence[Part]) -> list[Part]:
+    """Parts of which those of one unit that follow one another are one."""
+    joined: list[Part] = []
+    for part in parts:
+        if joined and joined[-1].unit == part.unit:
+            last = joined.pop()
+            part = Part(part.unit, last.top, part.bottom, last.depth, part.end)
+        joined.append(part)
+    return joined

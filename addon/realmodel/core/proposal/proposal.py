@@ -1,0 +1,396 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A project from boreholes, or a geological map, alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..base.errors import InputRefused, UsageError, counted
+from ..base.named import keyword_only
+from ..base.units import MODEL_UNIT
+from ..project.plan_input import read_rings
+from ..project.project import Project, Rock, Surface
+from ..project.project_checks import check_project
+from ..project.structure_entries import Body, as_point_file
+from ..readers.formats import MESH, RASTER, format_of
+from ..readers.point_input import read_point_file, read_raster_heights
+from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
+from ..settings.dips import DipFile, dip_file_of
+from ..settings.method_options import OptionRefused
+from .colors import library_of
+from .extent import base_below, edge_length, region_around
+from .lenses import Conflict, Lens, Sorted, lens_mesh, sort_out, spacing
+from .logs import HoleLogs, Log, read_logs
+from .maps import MapUnits, map_file_of, read_map_units, unconformities
+from .order import Alternative, Evidence, UnitOrder, evidence_of, find_order
+from .rules import CUTS, RuleChoice, choose_rules
+
+_METHOD = "auto"  # by cross-validation
+
+
+@dataclass
+class Proposal:
+    """Why a project is as it is.
+
+    order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
+    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became
+    bodies. rules: of the surface over each unit, with reasons. reasons: of the other choices, by the key of
+    the project file. warnings: sentences.
+    """
+
+    order: list[str]
+    alternatives: list[Alternative] = field(default_factory=list)
+    conflicts: list[Conflict] = field(default_factory=list)
+    lenses: list[Lens] = field(default_factory=list)
+    rules: list[RuleChoice] = field(default_factory=list)
+    reasons: dict[str, str] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class ProposedProject(Project):
+    """A project with the reasons of its choices."""
+
+    proposal: Proposal = field(default_factory=lambda: Proposal([]), compare=False)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Writes project.toml, whose comments say why each choice was made, the tables, the library and
+        proposal.json to a new folder, whole or not at all. Returns the files. Raises OutputFailed."""
+        from .folder import save_folder
+
+        return save_folder(self, folder)
+
+
+@dataclass
+class _Data:
+    """What a project is made of. holes: None without boreholes, likewise the map."""
+
+    boreholes: Boreholes | None
+    map: MapFile | None
+    dips: DipFile | None
+    ground: PointFile | MeshFile | None
+    holes: HoleLogs | None = None
+    mapped: MapUnits | None = None
+
+    @property
+    def logs(self) -> list[Log]:
+        return [] if self.holes is None else self.holes.logs
+
+
+@keyword_only
+def propose_project(
+    *,
+    boreholes: Boreholes | Mapping | str | Path | None = None,
+    map: MapFile | Mapping | str | Path | None = None,
+    ground: PointFile | MeshFile | str | Path | None = None,
+    region: ArrayLike | MapLayer | str | Path | None = None,
+    dips: DipFile | str | Path | None = None,
+    units: str = MODEL_UNIT,
+    name: str | None = None,
+) -> ProposedProject:
+    """A project that builds at once, from data alone.
+
+    boreholes: a file that holds all tables (AGS), or Boreholes or their keys: {"collars": ..., "intervals":
+    ...}. map: a file of polygons, or a MapFile or its keys; without `block`, the attribute that names units is
+    found by its name. ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None:
+    around the data. dips: a table. units: of the model. name: of the project.
+
+    The order of units follows from which lies over which; see `ProposedProject.proposal`. Raises InputRefused
+    naming the file, UsageError.
+
+    >>> project = propose_project(
+    ...     boreholes={"collars": "c.csv", "intervals": "i.csv"}
+    ... )  # doctest: +SKIP
+    """
+    data = _Data(_boreholes(boreholes), _map(map, ground), dip_file_of(dips), _ground_of(ground))
+    if data.boreholes is None and data.map is None:
+        raise UsageError("propose_project needs boreholes or a map")
+    if data.map is not None and data.ground is None and data.boreholes is None:
+        advice = "give the heights of the ground as well: ground = a raster, points or a mesh (--ground)"
+        raise UsageError(f"a map alone has no heights: {advice}")
+    if data.boreholes is not None:
+        data.holes = read_logs(data.boreholes, units)
+    if data.map is not None:
+        heights = None if data.ground is None else _heights_of(data.ground, units)
+        data.mapped = read_map_units(data.map, data.dips, heights, units)
+    order = _order(data)
+    out = sort_out(data.holes, order) if data.holes is not None else Sorted([], [], [])
+    lens_units = {lens.unit for lens in out.lenses}
+    in_stack = {part.unit for log in out.logs for part in log.parts}
+    order.order = [unit for unit in order.order if unit in in_stack or unit not in lens_units]
+    rules = _rules(data, out, order)
+    proposal = Proposal(list(order.order), order.alternatives, out.conflicts, out.lenses, rules)
+    project = _Maker(data, out, proposal, units).project(name, region)
+    _warn(project.proposal, data)
+    check_project(project)
+    return project
+
+
+def _boreholes(given: Any) -> Boreholes | None:
+    if given is None or isinstance(given, Boreholes):
+        return given
+    keys = dict(given) if isinstance(given, Mapping) else {"file": given}
+    try:
+        boreholes = Boreholes(**{key: value for key, value in keys.items() if value is not None})
+        boreholes.check()
+    except (TypeError, OptionRefused) as error:
+        raise UsageError(f"boreholes: {error}") from error
+    return boreholes
+
+
+def _map(given: Any, ground: Any) -> MapFile | None:
+    if given is None:
+        return None
+    try:
+        map_file = map_file_of(given)
+        map_file.check()
+    except (TypeError, OptionRefused) as error:
+        raise UsageError(f"map: {error}") from error
+    return map_file
+
+
+def _ground_of(given: Any) -> PointFile | MeshFile | None:
+    if given is None or isinstance(given, (PointFile, MeshFile)):
+        return given
+    file_format = format_of(given, RASTER, MESH)
+    return MeshFile(given) if file_format is not None and file_format.holds == MESH else PointFile(given)
+
+
+def _heights_of(ground: PointFile | MeshFile, units: str):
+    """The heights of the ground at places (N, 2): of a raster, else of the nearest point."""
+
+    def heights(plan: np.ndarray) -> np.ndarray:
+        if isinstance(ground, PointFile) and (z := read_raster_heights(ground, plan, units)) is not None:
+            return z
+        points = _ground_points(ground, units)
+        nearest = [int(np.argmin(np.hypot(*(points[:, :2] - place).T))) for place in plan]
+        return points[nearest, 2]
+
+    return heights
+
+
+def _ground_points(ground: PointFile | MeshFile, units: str) -> np.ndarray:
+    if isinstance(ground, PointFile):
+        return read_point_file(ground, units)[0]
+    from ..readers import read_mesh
+
+    return read_mesh(ground.file).in_model(ground, units)[0]
+
+
+def _order(data: _Data) -> UnitOrder:
+    """The order of the units of holes and map together."""
+    columns = [[(part.unit, part.thickness) for part in log.parts] for log in data.logs]
+    names = {unit for column in columns for unit, _ in column}
+    if data.holes is not None and not data.logs:
+        columns = [[(name, 1.0) for name, _ in picks] for picks in data.holes.pick_orders]
+        names = set(data.holes.picks)
+    mapped = data.mapped
+    names |= set() if mapped is None else set(mapped.evidence.names)
+    evidence = evidence_of(sorted(names), columns)
+    if mapped is not None:
+        at = [evidence.names.index(unit) for unit in mapped.evidence.names]
+        evidence.over[np.ix_(at, at)] += mapped.evidence.over
+        evidence.adjacent[np.ix_(at, at)] += mapped.evidence.adjacent
+    return find_order(Evidence(evidence.names, evidence.over, evidence.adjacent), data.logs)
+
+
+def _rules(data: _Data, out: Sorted, order: UnitOrder) -> list[RuleChoice]:
+    rules = choose_rules(out.logs, order)
+    if data.mapped is None:
+        return rules
+    by_unit = {choice.unit: number for number, choice in enumerate(rules)}
+    for unit, older in unconformities(data.mapped, order.order).items():
+        below = order.order[order.rank(unit) - 1]
+        names = ", ".join(f"'{name}'" for name in older)
+        reason = f"it cuts older rock: on the map '{unit}' lies on {names}"
+        rules[by_unit[below]] = RuleChoice(below, CUTS, reason)
+    return rules
+
+
+class _Maker:
+    """Makes the project of a proposal, and says why in it."""
+
+    def __init__(self, data: _Data, out: Sorted, proposal: Proposal, units: str):
+        self._data, self._out, self._proposal, self._units = data, out, proposal, units
+        self._why = proposal.reasons
+
+    def project(self, name: str | None, region: Any) -> ProposedProject:
+        data, proposal = self._data, self._proposal
+        rings, given_region, holes = self._region(region)
+        plan = np.array([log.plan for log in data.logs]).reshape(-1, 2)
+        if data.holes is not None and not data.logs:
+            plan = np.unique(data.holes.places[:, :2], axis=0)
+        length, self._why["edge_length"] = edge_length(rings, plan)
+        width = float(np.ptp(np.vstack(rings), axis=0).max())
+        base, self._why["base_elevation"] = base_below(self._heights(), width, data.holes is None)
+        names = [*proposal.order, *(lens.unit for lens in proposal.lenses)]
+        library = library_of(list(dict.fromkeys(names)))
+        rock = Rock(
+            "rock",
+            self._surfaces(library),
+            region=given_region,
+            holes=holes,
+            edge_length=length,
+            base_elevation=base,
+            boreholes=data.boreholes,
+            map=self._map_file(),
+            dips=data.dips,
+        )
+        return ProposedProject(
+            name or self._name(),
+            [rock],
+            library=library,
+            units=self._units,
+            bodies=self._bodies(library, plan),
+            proposal=proposal,
+        )
+
+    def _name(self) -> str:
+        data = self._data
+        files = [*(data.boreholes.files if data.boreholes else []), *([data.map.file] if data.map else [])]
+        return Path(files[0]).stem or "site"
+
+    def _heights(self) -> np.ndarray:
+        data = self._data
+        parts = [np.empty(0)]
+        if data.holes is not None:
+            parts.append(data.holes.places[:, 2])
+        if data.mapped is not None:
+            parts.append(data.mapped.ground)
+        heights = np.concatenate(parts)
+        if not len(heights):
+            raise InputRefused("no height is known", advice="give the ground, or boreholes")
+        return heights[np.isfinite(heights)]
+
+    def _region(self, region: Any) -> tuple[list[np.ndarray], Any, Sequence]:
+        """The rings, and the region of the rock mass with its holes."""
+        if region is not None:
+            self._why["region"] = "as given"
+            outline, holes, _ = read_rings(region, (), self._units)
+            rings = outline if isinstance(outline, list) else [outline, *holes]
+            rings = [np.asarray(ring, float) for ring in rings]
+            return rings, region if isinstance(region, (str, Path, MapLayer)) else outline, ()
+        data = self._data
+        box = self._raster_box()
+        within = "" if box is None else ", as far as the ground is known"
+        if data.mapped is not None:
+            low, high = data.mapped.box
+            if box is not None:
+                low, high = np.maximum(low, box[0]), np.minimum(high, box[1])
+            if not (low < high).all():
+                file = data.map.file if data.map is not None else None
+                raise InputRefused("the map and the ground have no place in common", file=file)
+            ring = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+            self._why["region"] = f"the rectangle around the map{within}"
+        else:
+            assert data.holes is not None
+            ring, margin = region_around(data.holes.places[:, :2], box)
+            self._why["region"] = f"the convex hull of the holes and a margin of {margin:g}{within}"
+        return [ring], ring, ()
+
+    def _raster_box(self) -> np.ndarray | None:
+        """(2, 2) the corners of the raster of the ground; None where it is none."""
+        ground = self._data.ground
+        if not isinstance(ground, PointFile) or format_of(ground.file, RASTER) is None:
+            return None
+        points = _ground_points(ground, self._units)
+        return np.array([points[:, :2].min(axis=0), points[:, :2].max(axis=0)])
+
+    def _surfaces(self, library) -> list[Surface]:
+        proposal = self._proposal
+        numbers = {entry.name: entry.id for entry in library}
+        only_picks = self._data.holes is not None and not self._data.logs and self._data.mapped is None
+        order = proposal.order
+        taken = {unit.casefold() for unit in order}
+        surfaces = []
+        for choice in proposal.rules:
+            unit = choice.unit
+            surface = unit if only_picks else _free(f"{unit} top", taken)
+            block = None if only_picks else unit
+            surfaces.append(Surface(surface, method=_METHOD, rule=choice.rule, block=block, property=numbers[unit]))
+        if only_picks:
+            surfaces.append(Surface(order[-1], method=_METHOD, property=numbers[order[-1]]))
+            self._why["method"] = "the method that predicts left-out points best, of each surface by itself"
+            return surfaces
+        self._why["method"] = "the method that predicts left-out points best, of each surface by itself"
+        youngest = order[-1]
+        shape = self._ground_shape()
+        surfaces.append(
+            Surface(_free("ground", taken), rule=CUTS, block=youngest, property=numbers[youngest], **shape)
+        )
+        return surfaces
+
+    def _ground_shape(self) -> dict:
+        """The shape of the youngest surface."""
+        ground = self._data.ground
+        if isinstance(ground, MeshFile):
+            self._why["ground"] = "the mesh that is given"
+            return {"mesh": ground}
+        if ground is not None:
+            self._why["ground"] = "the heights that are given"
+            is_raster = format_of(ground.file, RASTER) is not None
+            return {"points": ground, "method": "grid" if is_raster else _METHOD}
+        tops = np.array([self._top(log) for log in self._data.logs])
+        self._why["ground"] = f"through the {counted(len(tops), 'collar')} of the holes"
+        return {"points": tops, "method": _METHOD}
+
+    @staticmethod
+    def _top(log: Log) -> np.ndarray:
+        """The collar of a hole, or the top of its log where that is not known."""
+        return log.parts[0].top if log.collar is None else log.collar
+
+    def _map_file(self) -> MapFile | None:
+        return self._data.map
+
+    def _bodies(self, library, plan: np.ndarray) -> list[Body]:
+        lenses = self._proposal.lenses
+        if not lenses:
+            return []
+        numbers = {entry.name: entry.id for entry in library}
+        at = {log.hole: log.plan for log in self._data.logs}
+        extent = float(np.ptp(plan, axis=0).max()) or 1.0
+        reach = spacing(plan) or extent
+        tops = {unit: number for number, unit in enumerate(self._proposal.order)}
+        bodies = []
+        for lens in lenses:
+            vertices, triangles = lens_mesh(lens, at, reach)
+            after = None if tops[lens.host] == len(tops) - 1 else f"{lens.host} top"
+            bodies.append(
+                Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit])
+            )
+        return bodies
+
+
+def _free(name: str, taken: set[str]) -> str:
+    """A name that no unit has."""
+    while name.casefold() in taken:
+        name += " surface"
+    taken.add(name.casefold())
+    return name
+
+
+def _warn(proposal: Proposal, data: _Data) -> None:
+    """The warnings of what is not certain."""
+    found = [*(data.holes.warnings if data.holes else []), *(data.mapped.warnings if data.mapped else [])]
+    for other in proposal.alternatives:
+        found.append(
+            f"nothing decides whether '{other.younger}' is younger than '{other.older}': taken so; "
+            f"{'; '.join(other.reasons)}. If it is not, exchange their surfaces in project.toml"
+        )
+    for conflict in proposal.conflicts:
+        found.append(
+            f"hole '{conflict.hole}', depth {conflict.depth:.9g}: '{conflict.upper}' lies over "
+            f"'{conflict.lower}', against the order of all holes; it is not used"
+        )
+    for lens in proposal.lenses:
+        found.append(
+            f"'{lens.unit}' is a lens in '{lens.host}' in {counted(len(lens.parts), 'hole')}: the body "
+            f"'{lens.name}'; where it ends between holes is a guess"
+        )
+    proposal.warnings = found

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of boreholes as a project reads them, for Python."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import UsageError
+from ..base.table import Table
+from ..base.units import MODEL_UNIT
+from ..settings.data_files import Boreholes
+from ..settings.method_options import OptionRefused
+from .borehole_input import read_repaired
+from .tables.hole_data import HoleTables
+from .tables.hole_problems import HoleProblem
+from .tables.hole_tables import Row
+from .tables.holes import end_of
+
+
+@dataclass(frozen=True)
+class BoreholeTables:
+    """Boreholes, in model units; what is not known is NaN or "".
+
+    collars: hole, x, y, z, end (the depth of the end). survey: hole, depth, azimuth (degrees clockwise from
+    north), inclination (degrees from the vertical), dip (from the horizontal). intervals: hole, from, to,
+    block. picks: hole, surface, depth, elevation. problems: of rows that were repaired, left out, or are
+    used although something is wrong. warnings: sentences.
+    """
+
+    collars: Table
+    survey: Table
+    intervals: Table
+    picks: Table
+    problems: list[HoleProblem] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **keys: Any) -> BoreholeTables:
+    """Boreholes as a project reads them, repaired.
+
+    file: of a format that holds all tables; else keys say which there are: collars, survey, intervals, picks,
+    and the other keys of Boreholes. units: of the model; file_units: of the files where they do not say it.
+    Raises InputRefused naming file and line, UsageError for an unknown key.
+
+    >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
+    """
+    given = _given(file, keys)
+    tables = read_repaired(given, units)
+    scale = tables.scale(units)
+    height = scale[2]
+    return BoreholeTables(
+        _collars(tables, scale),
+        _survey(tables, height),
+        _intervals(tables, height),
+        _picks(tables, height),
+        tables.problems,
+        tables.warnings,
+    )
+
+
+def _given(file: str | Path | None, keys: dict[str, Any]) -> Boreholes:
+    if "file_units" in keys:
+        keys = keys | {"units": keys["file_units"]}
+        del keys["file_units"]
+    if file is not None:
+        keys = keys | {"file": file}
+    try:
+        given = Boreholes(**keys)
+        given.check()
+    except (TypeError, OptionRefused) as error:
+        raise UsageError(f"read_boreholes: {error}") from error
+    return given
+
+
+def _texts(rows: list[Row], column: str) -> np.ndarray:
+    return np.array([row.text(column) if row.has(column) else "" for row in rows], str)
+
+
+def _numbers(rows: list[Row], column: str, scale: float = 1.0) -> np.ndarray:
+    """(N,) float64; NaN where there is no such column or no value."""
+    return np.array([row.number(column) if row.has(column) else np.nan for row in rows]) * scale
+
+
+def _collars(tables: HoleTables, scale: np.ndarray) -> Table:
+    """Without a table of collars, those that the rows of picks and intervals say."""
+    rows, is_table = tables.collars, tables.collars is not None
+    if rows is None:
+        by_hole: dict[str, Row] = {}
+        for row in (*(tables.intervals or ()), *(tables.picks or ())):
+            by_hole.setdefault(row.text("hole"), row)
+        rows = list(by_hole.values())
+    places = {axis: _numbers(rows, axis, scale[n]) for n, axis in enumerate("xyz")}
+    ends = np.array([end_of(row) if is_table else np.nan for row in rows]) * scale[2]
+    return Table({"hole": _texts(rows, "hole"), **places, "end": ends})
+
+
+def _survey(tables: HoleTables, height: float) -> Table:
+    rows = tables.survey or []
+    return Table(
+        {
+            "hole": _texts(rows, "hole"),
+            "depth": _numbers(rows, "depth", height),
+            "azimuth": _numbers(rows, "azimuth"),
+            "inclination": _numbers(rows, "inclination"),
+            "dip": _numbers(rows, "dip"),
+        }
+    )
+
+
+def _intervals(tables: HoleTables, height: float) -> Table:
+    rows = [row for row in tables.intervals or () if row.is_used]
+    depths = {name: _numbers(rows, name, height) for name in ("from", "to")}
+    return Table({"hole": _texts(rows, "hole"), **depths, "block": _texts(rows, "block")})
+
+
+def _picks(tables: HoleTables, height: float) -> Table:
+    rows = [row for row in tables.picks or () if row.is_used]
+    names = {name: _texts(rows, name) for name in ("hole", "surface")}
+    return Table(names | {name: _numbers(rows, name, height) for name in ("depth", "elevation")})

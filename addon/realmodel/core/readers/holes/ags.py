@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""AGS 3 and 4, the format of ground investigations: groups of a heading, units and rows in quotes.
+
+Association of Geotechnical and Geoenvironmental Specialists, *Electronic Transfer of Geotechnical and
+Geoenvironmental Data*, editions 3.1 (2004) and 4.1 (2020), ags.org.uk.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...base.errors import InputRefused
+from ...base.text import BOM, read_text
+from ..tables.hole_tables import Sheet
+
+_KINDS = {"collars": ("LOCA", "HOLE"), "intervals": ("GEOL",), "survey": ("HORN", "HDPH")}
+# Where a column has no value in any row, the other one is meant.
+_INSTEAD = {
+    "LOCA_NATE": "LOCA_LOCX",
+    "LOCA_NATN": "LOCA_LOCY",
+    "LOCA_GL": "LOCA_LOCZ",
+    "HOLE_NATE": "HOLE_LOCX",
+    "HOLE_NATN": "HOLE_LOCY",
+    "HOLE_GL": "HOLE_LOCZ",
+    "GEOL_GEOL": "GEOL_LEG",
+    "HORN_ORNT": "HDPH_ORNT",
+}
+
+
+@dataclass
+class _Group:
+    line: int
+    names: list[str] = field(default_factory=list)
+    units: list[str] = field(default_factory=list)
+    rows: list[tuple[int, list[str]]] = field(default_factory=list)
+
+
+def begins_as_ags(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is AGS 3 or 4."""
+    text = head.removeprefix(BOM).lstrip()
+    return text.startswith((b'"GROUP"', b'"**', b"**PROJ", b"GROUP,"))
+
+
+def read_ags(file: Path) -> dict[str, Sheet]:
+    """The collars, intervals and survey of a file. Raises InputRefused naming the line."""
+    groups = _groups(file)
+    sheets = {}
+    for kind, names in _KINDS.items():
+        group = next((groups[name] for name in names if name in groups and groups[name].rows), None)
+        if group is not None:
+            sheets[kind] = _sheet(group)
+    survey = sheets.get("survey")
+    if survey is not None and not any(name.endswith("_INCL") for name in survey.names):
+        del sheets["survey"]
+    for kind, names in list(_KINDS.items())[:2]:
+        if kind not in sheets:
+            raise InputRefused(f"it has no rows of {' or '.join(names)}", file=file)
+    return sheets
+
+
+def _groups(file: Path) -> dict[str, _Group]:
+    """The groups of a file by their names."""
+    groups: dict[str, _Group] = {}
+    group = _Group(0)
+    for line, entries in _entries(file):
+        first = entries[0]
+        if first.startswith("**"):
+            group = groups.setdefault(first.lstrip("*?").strip().upper(), _Group(line))
+        elif first == "GROUP":
+            group = groups.setdefault(entries[1].strip().upper() if len(entries) > 1 else "", _Group(line))
+        elif first.startswith("*"):  # the heading of AGS 3 may go on in further lines
+            group.names += [entry.lstrip("*?").strip().upper() for entry in entries if entry]
+        elif first == "HEADING":
+            group.names = [entry.strip().upper() for entry in entries[1:]]
+        elif first == "UNIT":
+            group.units = entries[1:]
+        elif first == "<UNITS>":
+            group.units = ["", *entries[1:]]
+        elif first == "<CONT>":
+            _continue(file, line, group, entries)
+        elif first == "DATA":
+            group.rows.append((line, entries[1:]))
+        elif first != "TYPE":
+            group.rows.append((line, entries))
+    return groups
+
+
+def _entries(file: Path) -> Iterator[tuple[int, list[str]]]:
+    for line, text in enumerate(read_text(file).split("\n"), 1):
+        if text.strip():
+            yield line, [entry.strip() for entry in next(csv.reader([text.strip().rstrip("\x1a")]))] or [""]
+
+
+def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:
+    """Texts of AGS 3 that go on in a further line are added to those of the row before."""
+    if not group.rows:
+        raise InputRefused("<CONT> continues no row", file=file, line=line)
+    before = group.rows[-1][1]
+    before += [""] * (len(entries) - len(before))
+    for at, entry in enumerate(entries[1:], 1):
+        before[at] += entry
+
+
+def _sheet(group: _Group) -> Sheet:
+    names = list(group.names)
+    for name, other in _INSTEAD.items():
+        if (
+            name in names
+            and other in names
+            and not any(_entry(row, names.index(name)) for _, row in group.rows)
+        ):
+            names[names.index(name)], names[names.index(other)] = "", name
+    return Sheet(names, group.rows, group.line, group.units)
+
+
+def _entry(row: list[str], at: int) -> str:
+    return row[at] if at < len(row) else ""

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of boreholes as they are read, row by row, whatever format they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused, number_list
+from ...base.text import Step, no_step
+from ...base.units import factor, factors, other_units, unit_of, unit_of_column, unknown_unit
+from ...settings.data_files import Boreholes
+from ..formats import HOLES, format_of
+from .hole_problems import HoleProblem
+from .hole_tables import COLLARS, INTERVALS, LENGTHS, SURVEY, Columns, Header, Row, Sheet, rows, sheet_rows
+
+MEANINGS: dict[str, Columns] = {
+    "collars": COLLARS,
+    "survey": SURVEY,
+    "picks": COLLARS,
+    "intervals": INTERVALS,
+}
+_NEEDED = {
+    "collars": ("hole", "x", "y", "z"),
+    "survey": ("hole", "depth", "azimuth"),
+    "picks": ("hole", "surface"),
+    "intervals": ("hole", "from", "to", "block"),
+}
+
+
+@dataclass
+class HoleTables:
+    """given: what they were read from. collars, survey, picks, intervals: their rows, None where there is no
+    such table. problems: what was wrong with rows, as far as they are repaired. warnings: sentences."""
+
+    given: Boreholes
+    collars: list[Row] | None = None
+    survey: list[Row] | None = None
+    picks: list[Row] | None = None
+    intervals: list[Row] | None = None
+    problems: list[HoleProblem] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def scale(self, model_unit: str) -> np.ndarray:
+        """(3,) the factors of x, y and of heights and depths to the model's unit."""
+        plan, height = factors(self.given.units, model_unit)
+        return np.array([plan, plan, height])
+
+
+def read_hole_rows(
+    given: Boreholes, model_unit: str, step: Step = no_step, needed: tuple[str, ...] | None = None
+) -> HoleTables:
+    """The rows of the tables of some boreholes as they are, lengths in the units of `given`, or else of the
+    model. needed: the columns of intervals that there must be; None: with the block. Raises InputRefused
+    naming file and line."""
+    required = _NEEDED | ({} if needed is None else {"intervals": needed})
+    given, sheets = _whole_files(given)
+    tables = HoleTables(given)
+    for kind, known in MEANINGS.items():
+        file = getattr(given, kind)
+        if file is None:
+            continue
+        slow = step if kind in ("picks", "intervals") else no_step
+        if kind in sheets:
+            found = sheet_rows(given, Path(file), sheets[kind], known, required[kind])
+        else:
+            found = list(rows(given, Path(file), known, required[kind], slow))
+        setattr(tables, kind, _in_one_unit(tables, found, model_unit))
+    return tables
+
+
+def _whole_files(given: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
+    """The same with the tables of files that hold all of them in the places of those that are not given, and
+    these tables by their kind."""
+    sheets: dict[str, Sheet] = {}
+    for file in dict.fromkeys(given.files):
+        file_format = format_of(file, HOLES)
+        if file_format is None:
+            if file == given.file:
+                what = "it does not hold all tables of boreholes"
+                advice = "name its tables: collars = ..., intervals = ..., picks = ..."
+                raise InputRefused(what, file=file, advice=advice)
+            continue
+        said = [kind for kind in MEANINGS if getattr(given, kind) is not None]
+        here = [kind for kind in said if Path(getattr(given, kind)) == file]
+        given = replace(given, file=None, **dict.fromkeys(here))
+        for kind, sheet in file_format.read(file).items():
+            if getattr(given, kind) is None:
+                sheets[kind] = sheet
+                given = replace(given, **{kind: file})
+        if given.downward_dip is None and "survey" in sheets:
+            given = replace(given, downward_dip=file_format.downward_dip)
+    return given, sheets
+
+
+def _in_one_unit(tables: HoleTables, found: list[Row], model_unit: str) -> list[Row]:
+    """Rows with lengths in the units in which they are read: where the user does not say it, in that of the
+    model. Raises InputRefused for a unit that is not known."""
+    if not found:
+        return found
+    header, units = found[0].header, tables.given.units
+    units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
+    factors_of: dict[str, float] = {}
+    said: dict[str, list[str]] = {}
+    for meaning, text in header.units.items():
+        unit, read = unit_of(text), units.get("xy" if meaning in ("x", "y") else "z")
+        if meaning not in LENGTHS or read is not None:
+            continue
+        if unit is None and unknown_unit(text):
+            what = (
+                f"the unit of column '{header.names[header.columns[meaning]].strip()}' is not one of length"
+            )
+            raise InputRefused(what, file=header.file, line=header.line, advice="say it: units = ...")
+        if unit not in (None, model_unit):
+            factors_of[meaning] = factor(unit, model_unit)
+            said.setdefault(unit, []).append(f"'{header.names[header.columns[meaning]].strip()}'")
+    tables.warnings += [
+        f"{header.file}: the header says {unit} for {number_list(names)}: converted to {model_unit}; "
+        "set units if it is another"
+        for unit, names in said.items()
+    ]
+    tables.warnings += _contradicted(header, units, model_unit)
+    return [row.scaled(factors_of) for row in found] if factors_of else found
+
+
+def _contradicted(header: Header, units: Mapping, model_unit: str) -> list[str]:
+    """The warnings about units in a header other than those that the user says."""
+    columns: dict[str, str | None] = {}
+    for meaning, text in header.units.items():
+        read = units.get("xy" if meaning in ("x", "y") else "z")
+        if meaning in LENGTHS and read is not None:
+            name = header.names[header.columns[meaning]].strip()
+            columns[name if unit_of_column(name) else f"{name} ({text})"] = read
+    return other_units(header.file, columns, model_unit)

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is wrong with rows of tables of boreholes, and what was done about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import counted, number_list
+from .hole_tables import Row
+
+USED, REPAIRED, LEFT_OUT = "used", "repaired", "left out"
+_LISTED = 3
+
+# By the kind of a problem; those of intervals and picks that are left out have theirs in observations.KINDS.
+HOLE_PROBLEMS = {
+    "hole_name": "holes are taken for those with collars",
+    "double": "rows are there twice, and count once",
+    "two_collars": "holes have two collars, of which one is used",
+    "no_place": "holes are without x, y or z, and are not used",
+    "null": "values that stand for none are taken as not known",
+    "number": "numbers are written otherwise, and are read as such",
+    "no_row": "rows are no data, and are not used",
+    "station": "stations of surveys make no sense, and are not used",
+    "azimuth": "azimuths are turned into 0 to 360",
+    "dip_sign": "dips have the wrong sign, which is changed",
+    "two_directions": "holes have two directions at one depth, of which one is used",
+    "order": "rows are out of order, and are sorted, or are used as they are where the hole may be right",
+    "below_end": "data are deeper than the hole, and are used: the collar's depth or they are wrong",
+    "gap": "gaps between intervals are closed at their middle",
+    "overlap": "overlaps of intervals are closed at their middle",
+    "reversed": "intervals end above where they begin, and are turned around",
+    "elevations": "depths are heights, and are converted: the collar's height less them",
+    "minus_sign": "depths have a minus sign, which is taken away",
+    "not_reached": "picks are without a depth, as the hole did not reach the surface",
+}
+
+
+@dataclass(frozen=True)
+class HoleProblem:
+    """A fault of a row of a table of boreholes.
+
+    kind: what is wrong, as "gap", "overlap", "null", "double", "elevations", "no_collar". file, line: of the
+    row; line 0 where the format has none. hole: its name. depth: along it, as the table has it, NaN where
+    there is none. text: what is wrong, and what was done. action: "used" as it is, "repaired", or "left out".
+    code: the unit or surface of an interval or a pick, None of other rows.
+    """
+
+    kind: str
+    file: Path
+    line: int
+    hole: str
+    depth: float
+    text: str
+    action: str
+    code: str | None = None
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.text} ({self.action})"
+
+
+class ProblemList(list[HoleProblem]):
+    """Problems as they are found."""
+
+    def note(
+        self, kind: str, action: str, row: Row, what: str, depth: float | None = None, code: str | None = None
+    ) -> None:
+        """Adds a problem of a row. what: the end of its text. depth: None or NaN where it is not known. code:
+        the unit or surface of an interval or a pick."""
+        hole = row.text("hole") if row.has("hole") else ""
+        depth = float("nan") if depth is None else float(depth)
+        at, named = "" if np.isnan(depth) else f" at {depth:.9g}", "" if code is None else f", '{code}'"
+        text = f"line {row.line}, hole '{hole}'{at}{named}: {what}"
+        if kind == "overlap" and action == LEFT_OUT:
+            text = f"hole '{hole}' {what}"
+        self.append(HoleProblem(kind, row.file, row.line, hole, depth, text, action, code))
+
+    def taken(self, row: Row, column: str) -> str:
+        """Takes the problem of a value of a row that stands for none out, as the row is left out for it: what
+        it says; "" where there is none."""
+        for n in range(len(self) - 1, -1, -1):
+            problem = self[n]
+            if problem.kind == "null" and (problem.file, problem.line) == (row.file, row.line):
+                _, _, what = problem.text.partition(": ")
+                if what.startswith(f"{column} is"):
+                    del self[n]
+                    return what
+        return ""
+
+
+def problem_warnings(problems: Iterable[HoleProblem]) -> list[str]:
+    """A sentence for each file and kind of problems, but those of intervals and picks that are left out: a
+    build lists them."""
+    texts: dict[tuple[Path, str], list[str]] = {}
+    for problem in problems:
+        if problem.code is None or problem.action != LEFT_OUT:
+            texts.setdefault((problem.file, problem.kind), []).append(problem.text)
+    sentences = []
+    for (file, kind), listed in texts.items():
+        if kind == "not_reached":
+            sentences.append(f"{file}: left out: {counted(len(listed), 'pick')} without a depth")
+        elif kind == "hole_name":
+            names = dict.fromkeys(
+                text.partition("hole ")[2].replace(": taken for", " for") for text in listed
+            )
+            sentences.append(f"{file}: {HOLE_PROBLEMS[kind]}: {number_list(names)}")
+        else:
+            sentences.append(f"{file}: {HOLE_PROBLEMS[kind]} ({len(listed)}): {number_list(listed, _LISTED)}")
+    return sentences

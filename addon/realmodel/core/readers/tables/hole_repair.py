@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds what is wrong with the rows of tables of boreholes, mends it or leaves it out, and lists it. Rows
+that are right stay as they are."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...base.errors import InputRefused, number_list
+from .hole_data import HoleTables
+from .hole_problems import LEFT_OUT, REPAIRED, USED, ProblemList, problem_warnings
+from .hole_tables import NULL_NUMBERS, Row, column_key, normalized_name
+from .holes import end_of
+from .interval_repair import repair_intervals
+from .survey_repair import repair_survey
+from .table_layout import is_number
+from .unit_names import UnitNames
+
+_NUMBERS = {
+    "collars": ("x", "y", "z", "end", "depth", "azimuth", "dip", "inclination"),
+    "survey": ("depth", "azimuth", "dip", "inclination"),
+    "picks": ("x", "y", "z", "depth", "elevation"),
+    "intervals": ("x", "y", "z", "from", "to"),
+}
+_HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be what else stands for no value
+_ALWAYS = frozenset(value for value in NULL_NUMBERS if value != round(value) or abs(value) > 1e9)
+_OTHERS = 3  # holes that have two surfaces in the other order make a hole look wrong
+# Beyond the range of the others by so many times it, a collar is none of them.
+_FAR = 1.0
+
+
+def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
+    """Repairs tables, and lists their problems and warnings. units: what the names of units mean. Raises
+    InputRefused where nothing of a table can be used."""
+    units = units or UnitNames()
+    problems = ProblemList()
+    for kind, columns in _NUMBERS.items():
+        rows = getattr(tables, kind)
+        if rows is not None:
+            setattr(tables, kind, _cleaned(rows, columns, problems))
+    lacking: dict[str, str] = {}
+    if tables.collars is not None:
+        tables.collars, lacking = _complete_collars(tables, problems)
+        _rename(tables, problems)
+    with_collar = _with_collars(tables, lacking, units, problems)
+    tables.survey, tables.picks, tables.intervals = with_collar
+    if tables.collars is not None:
+        tables.collars = _one_collar_each(tables, problems)
+    if tables.survey is not None:
+        tables.survey = repair_survey(tables, problems)
+    if tables.intervals is not None:
+        tables.intervals = repair_intervals(tables, units, problems)
+    if tables.picks is not None:
+        tables.picks = _repaired_picks(tables, units, problems)
+    tables.problems = problems
+    tables.warnings += problem_warnings(problems)
+
+
+def _cleaned(rows: list[Row], columns: Sequence[str], problems: ProblemList) -> list[Row]:
+    """Rows whose numbers can be read, or are empty. Columns that mostly hold none stay as they are: their
+    readers refuse them."""
+    if not rows:
+        return rows
+    header = rows[0].header
+    names = [column_key(name) for name in header.names]
+    if names:
+        repeated = [row for row in rows if [column_key(entry) for entry in row.entries] == names]
+        for row in repeated:
+            problems.note("no_row", LEFT_OUT, row, "the header again")
+        rows = [row for row in rows if row not in repeated] if repeated else rows
+    for column in columns:
+        if column in header.columns:
+            rows = _cleaned_column(rows, column, problems)
+    return rows
+
+
+def _cleaned_column(rows: list[Row], column: str, problems: ProblemList) -> list[Row]:
+    values = [_number(row, column) for row in rows]
+    wrong = [n for n, value in enumerate(values) if value is None]
+    if 2 * len(wrong) > len(rows):
+        return rows
+    usual = np.array([value for value in values if value is not None and np.isfinite(value)])
+    nulls = _nulls(usual, column)
+    cleaned = list(rows)
+    for n, (row, value) in enumerate(zip(rows, values, strict=True)):
+        if value is None:
+            cleaned[n] = _mended(row, column, problems)
+        elif value in nulls or (np.isinf(value) and np.isfinite(usual).any()):
+            problems.note("null", REPAIRED, row, f"{column} is {row.text(column)}: no value")
+            cleaned[n] = row.with_values({column: ""})
+    return cleaned
+
+
+def _number(row: Row, column: str) -> float | None:
+    """The number of a column, NaN where there is no value; None where it is none."""
+    if not row.has(column):
+        return float("nan")
+    entry = row.text(column)
+    return float(entry.replace(",", ".")) if is_number(entry, row.decimal) else None
+
+
+def _nulls(values: np.ndarray, column: str) -> set[float]:
+    """The numbers among those of a column that stand for no value: of heights and coordinates those that lie
+    far from all others."""
+    found = {value for value in set(values.tolist()) if value in NULL_NUMBERS or abs(value) >= 1e30}
+    others = values[~np.isin(values, list(found))]
+    signed = column in _HEIGHTS or (others < 0).sum() * 2 > (others != 0).sum()
+    if not found or not signed or not len(others):
+        return found
+    low, high = others.min(), others.max()
+    reach = high - low
+    return {value for value in found if value in _ALWAYS or not low - reach <= value <= high + reach}
+
+
+def _mended(row: Row, column: str, problems: ProblemList) -> Row:
+    """A row with a number that is written otherwise, or without one that cannot be read."""
+    entry = row.text(column)
+    other = "," if row.decimal == "." else "."
+    plain = entry.strip("'\" ").replace("\u2212", "-").replace("\u00a0", "")
+    if is_number(plain, row.decimal):
+        text = plain
+    elif is_number(plain, other) and len(plain.rpartition(other)[2]) != 3:  # else it may part thousands
+        text = plain.replace(other, row.decimal)
+    else:
+        problems.note("null", REPAIRED, row, f"{column} is '{entry:.40}': no value")
+        return row.with_values({column: ""})
+    problems.note("number", REPAIRED, row, f"{column} is '{entry}': read as {text}")
+    return row.with_values({column: text})
+
+
+def _complete_collars(tables: HoleTables, problems: ProblemList) -> tuple[list[Row], dict[str, str]]:
+    """The rows of collars with a place, and why others have none, by their holes."""
+    assert tables.collars is not None
+    complete, lacking = [], dict[str, str]()
+    for row in tables.collars:
+        missing = [axis for axis in "xyz" if not row.has(axis)]
+        if missing or not row.has("hole"):
+            what = f"no {missing[0]}" if missing else "no name of a hole"
+            if row.has("hole"):
+                lacking[row.text("hole")] = f"line {row.line} of {row.file} has {what}"
+            said = problems.taken(row, missing[0]) if missing else ""
+            problems.note("no_place", LEFT_OUT, row, said or f"it has {what}")
+        else:
+            complete.append(row)
+    if not complete:
+        what = next(iter(lacking.values()), "there are no holes in it")
+        raise InputRefused(what, file=tables.given.collars)
+    return complete, lacking
+
+
+def _rename(tables: HoleTables, problems: ProblemList) -> None:
+    """Writes the holes of other tables as those of the collars, where these have other capitals, spaces,
+    hyphens or underscores."""
+    places: dict[str, dict[str, tuple]] = {}
+    for row in tables.collars or ():
+        place = tuple(row.number(axis) for axis in "xyz")
+        places.setdefault(normalized_name(row.text("hole")), {})[row.text("hole")] = place
+    known = {hole for holes in places.values() for hole in holes}
+    for kind in ("survey", "picks", "intervals"):
+        rows = getattr(tables, kind) or []
+        for n, row in enumerate(rows):
+            hole = row.text("hole") if row.has("hole") else ""
+            if not hole or hole in known:
+                continue
+            alike = places.get(normalized_name(hole), {})
+            if len(set(alike.values())) == 1:
+                name = next(iter(alike))
+                problems.note("hole_name", REPAIRED, row, f"taken for '{name}'")
+                rows[n] = row.with_values({"hole": name})
+
+
+def _with_collars(
+    tables: HoleTables, lacking: dict[str, str], units: UnitNames, problems: ProblemList
+) -> list[list[Row] | None]:
+    """The rows of survey, picks and intervals whose holes have a name and a collar."""
+    known = None if tables.collars is None else {row.text("hole") for row in tables.collars}
+    found: list[list[Row] | None] = []
+    for kind, named in (("survey", ""), ("picks", "surface"), ("intervals", "block")):
+        rows = getattr(tables, kind)
+        if rows is None:
+            found.append(None)
+            continue
+        having = [row for row in rows if row.has("hole") and (known is None or row.text("hole") in known)]
+        if rows and not having and known is not None and named:
+            advice = "check how holes are written"
+            what = f"no hole of it has a collar in {tables.given.collars}, as hole '{rows[0].text('hole')}'"
+            raise rows[0].refuse(what, advice)
+        kept = set(map(id, having))
+        for row in rows if named else ():
+            code = row.text(named) if named in row.columns and row.has(named) else ""
+            if id(row) in kept or not row.is_used or units.says_nothing(code):
+                continue
+            hole = row.text("hole") if row.has("hole") else ""
+            reason = lacking.get(
+                hole, f"it has no collar in {tables.given.collars}" if hole else "it has no name"
+            )
+            problems.note("no_collar", LEFT_OUT, row, reason, depth_of(row), code)
+        found.append(having if named else [row for row in rows if row.has("hole")])
+    return found
+
+
+def depth_of(row: Row) -> float | None:
+    """The depth of a row, None where it says none."""
+    for name in ("depth", "from", "to"):
+        if name in row.columns and row.has(name) and is_number(row.text(name), row.decimal):
+            return row.number(name)
+    return None
+
+
+def _one_collar_each(tables: HoleTables, problems: ProblemList) -> list[Row]:
+    """The rows of collars, one for each hole."""
+    by_hole: dict[str, list[Row]] = {}
+    for row in tables.collars or ():
+        by_hole.setdefault(row.text("hole"), []).append(row)
+    deepest = _deepest(tables)
+    single = [rows[0] for rows in by_hole.values() if len(rows) == 1]
+    places = np.array([[row.number(axis) for axis in "xyz"] for row in single]).reshape(-1, 3)
+    chosen = []
+    for hole, rows in by_hole.items():
+        if len(rows) == 1:
+            chosen += rows
+            continue
+        best = min(rows, key=lambda row: (_far(row, places), _too_short(row, deepest.get(hole, 0.0))))
+        for row in rows:
+            if row is best:
+                continue
+            if all(row.number(axis) == best.number(axis) for axis in "xyz"):
+                problems.note("double", REPAIRED, row, f"the collar of line {best.line} again")
+                best = _joined(best, row)
+            else:
+                what = f"another collar than in line {best.line}, which is used"
+                problems.note("two_collars", LEFT_OUT, row, what)
+        chosen.append(best)
+    return chosen
+
+
+def _joined(row: Row, other: Row) -> Row:
+    """A row with what it lacks from another one."""
+    return row.with_values(
+        {
+            name: other.text(name)
+            for name, at in row.columns.items()
+            if at < len(row.entries) and not row.has(name) and other.has(name)
+        }
+    )
+
+
+def _far(row: Row, places: np.ndarray) -> bool:
+    """Whether a collar is far from those of other holes (N, 3)."""
+    if len(places) < 2:
+        return False
+    low, high = places.min(axis=0), places.max(axis=0)
+    place, reach = np.array([row.number(axis) for axis in "xyz"]), _FAR * (high - low)
+    return bool(((place < low - reach) | (place > high + reach)).any())
+
+
+def _too_short(row: Row, depth: float) -> bool:
+    return bool(end_of(row) < depth)
+
+
+def _deepest(tables: HoleTables) -> dict[str, float]:
+    """How deep the intervals and picks of each hole reach."""
+    deepest: dict[str, float] = {}
+    for row in (*(tables.intervals or ()), *(tables.picks or ())):
+        for name in ("to", "depth"):
+            if row.has(name):
+                hole, depth = row.text("hole"), row.number(name)
+                deepest[hole] = max(depth, deepest.get(hole, depth))
+    return deepest
+
+
+def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList) -> list[Row]:
+    """Picks with a surface and a depth or an elevation, each once."""
+    rows, kept, seen = tables.picks or [], list[Row](), dict[tuple, Row]()
+    if not rows:
+        return rows
+    column = next((name for name in ("depth", "elevation", "z") if name in rows[0].columns), None)
+    ends = {row.text("hole"): end_of(row) for row in tables.collars or ()}
+    for row in rows:
+        if not row.is_used or column is None:
+            kept.append(row)
+            continue
+        if not row.has("surface"):
+            problems.note("no_row", LEFT_OUT, row, "the surface has no name", depth_of(row))
+            continue
+        code = row.text("surface")
+        if not row.has(column):
+            if what := problems.taken(row, column):
+                problems.note("no_depth", LEFT_OUT, row, what, None, code)
+            else:
+                problems.note("not_reached", LEFT_OUT, row, f"no {column}")
+            continue
+        value = row.number(column)
+        if column == "depth" and value < 0:
+            problems.note("minus_sign", REPAIRED, row, f"depth is {value:g}", value)
+            row, value = row.with_values({"depth": -value}), -value
+        key = (row.text("hole"), code, value, *(row.text(axis) for axis in "xyz" if row.has(axis)))
+        if key in seen:
+            problems.note("double", REPAIRED, row, f"the pick of line {seen[key].line} again", value)
+            continue
+        seen[key] = row
+        end = ends.get(row.text("hole"), np.nan)
+        if column == "depth" and value > end * (1 + 1e-6):
+            problems.note("below_end", USED, row, f"the hole ends at {end:g}", value)
+        kept.append(row)
+    if column is not None:
+        _note_order(kept, column, problems)
+    return kept
+
+
+def _note_order(rows: list[Row], column: str, problems: ProblemList) -> None:
+    """Lists picks that lie above one that all other holes have above theirs."""
+    sign = 1.0 if column == "depth" else -1.0
+    by_hole: dict[str, list[tuple[float, str, Row]]] = {}
+    for row in rows:
+        if row.is_used and row.has(column):
+            by_hole.setdefault(row.text("hole"), []).append(
+                (sign * row.number(column), row.text("surface"), row)
+            )
+    above: Counter[tuple[str, str]] = Counter()
+    pairs: dict[str, set[tuple[str, str]]] = {}
+    for hole, picks in by_hole.items():
+        picks.sort(key=lambda pick: pick[0])
+        pairs[hole] = {
+            (a, b)
+            for n, (_, a, _) in enumerate(picks)
+            for depth, b, _ in picks[n + 1 :]
+            if a != b and depth > picks[n][0]
+        }
+        above.update(pairs[hole])
+    for hole, picks in by_hole.items():
+        for depth, name, row in picks:
+            others = [b for a, b in pairs[hole] if a == name and above[a, b] == 1 and above[b, a] >= _OTHERS]
+            if others:
+                what = f"'{name}' lies above {number_list(sorted(others))} here alone"
+                problems.note("order", USED, row, what, sign * depth)
