@@ -494,6 +494,8 @@ def test_surfaces_of_surpac(put):
     with pytest.raises(InputRefused, match=r"'top\.str', which is not beside it"):
         read_mesh(path)
     strings = put("top.str", STRINGS)
+    table = put("t.csv", "id,x,y,z,a,b,c\n0,1,2,3,4,5,6\n1,2,3,4,5,6,7\n")
+    assert read_points(table).xyz.tolist() == [[1, 2, 3], [2, 3, 4]]  # a table alike
     mesh = read_mesh(path)
     assert mesh.vertices.tolist() == [[10, 100, 5], [20, 100, 6], [10, 110, 7], [20, 110, 8]]
     assert mesh.triangles.tolist() == [[0, 1, 2], [1, 3, 2]]
@@ -616,3 +618,8 @@ def test_drawings_of_ezdxf_with_blocks_anyhow(tmp_path, release, seed):
         else:
             read = read_points(path, layer=layer).xyz
         assert np.allclose(np.sort(read, axis=0), np.sort(places, axis=0), atol=1e-8)
+
+
+def test_formats_that_are_not_public_say_what_to_export(put):
+    with pytest.raises(InputRefused, match="export it from Vulcan as DXF or OBJ"):
+        read_mesh(put("top.00t", b"\1\2\3\0"))

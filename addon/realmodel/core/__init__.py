@@ -31,11 +31,11 @@ from .project.project import Project, Rock, Surface
 from .project.project_file import load_library, load_project
 from .project.series import Series
 from .project.structure_entries import Body, Fault
-from .proposal import ProposedProject, propose_project
 from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
+from .proposal import ProposedProject, propose_project
 from .readers.borehole_tables import BoreholeTables, read_boreholes
 from .readers.mesh_data import MeshData, read_mesh
 from .readers.point_input import PointData, read_points
