@@ -394,6 +394,10 @@ def test_wells_of_gocad(put):
         ("Top A", pytest.approx([115, 200, 30])),
         ("B", pytest.approx([160, 200, -30])),
     ]
+    feet = WELL.replace("ZPOSITIVE", 'AXIS_UNIT "ft" "ft" "ft"\nZPOSITIVE')
+    in_feet = read_boreholes(Boreholes(picks=put("f.wl", feet)))
+    assert np.allclose(in_feet.holes["W1"][0], np.array([100, 200, 50]) * 0.3048)
+    assert any("ft" in text and "units" in text for text in in_feet.warnings)
     units = UnitNames(["sand", "clay"], ["sand", "clay"])
     logged = read_boreholes(Boreholes(intervals=path), units=units, plan_step=1000.0)
     assert [(name, place.tolist()) for name, place in logged.holes["W1"][1]] == [

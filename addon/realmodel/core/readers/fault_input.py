@@ -38,8 +38,8 @@ def read_fault_points(
 
     A file of polylines has x y z in each line, and 999 999 999 ends a stick. stick: the column of a table, by
     name or by number from 1, with one value for each stick; default: the column named "stick", and without
-    such a column the points are scattered. Lines of an object of a file are sticks, too. Raises InputRefused naming the file, and the line where it has
-    lines.
+    such a column the points are scattered. Lines of an object of a file are sticks, too. Raises InputRefused
+    naming the file, and the line where it has lines.
     """
     file = Path(given.file)
     if format_of(file, RASTER, SHAPES):

@@ -14,7 +14,6 @@ from .meshes.triangle_mesh import TriangleMesh
 from .object_input import objects_in, read_object
 from .objects.geo_object import SURFACE
 
-
 # Formats whose layout is not public, or that hold solids of curved faces, and the programs that write them.
 _CLOSED = {
     ".00t": "Vulcan",

@@ -52,9 +52,9 @@ def _surface(file: Path, element: ElementTree.Element, unit: str | None) -> list
             if kind == "F":
                 if part.get("i") != "1":
                     faces.append(tuple([index[word] for word in words[:3]]))
-            elif kind == "P" and "id" in part.attrib:
+            elif kind == "P":
                 north, east, up = map(float, words[:3])
-                index[part.attrib["id"]] = len(vertices)
+                index[part.get("id", str(len(vertices) + 1))] = len(vertices)
                 vertices.append((east, north, up))
         except (ValueError, KeyError) as error:
             what = f"surface '{name}': '{' '.join(words):.40}' cannot be read"

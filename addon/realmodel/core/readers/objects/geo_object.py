@@ -77,6 +77,22 @@ class GeoObject:
         """What is known of its vertices."""
         return next((values.columns for values in self.values if values.ends is None), {})
 
+    def scaled(self, scale: np.ndarray) -> GeoObject:
+        """The same with all places times a scale (3,), depths times that of z."""
+        if (scale == 1.0).all():
+            return self
+        values = [
+            replace(
+                some,
+                places=some.places * scale,
+                ends=None if some.ends is None else some.ends * scale,
+                depths=None if some.depths is None else some.depths * scale[2],
+            )
+            for some in self.values
+        ]
+        collar = None if self.collar is None else self.collar * scale
+        return replace(self, vertices=self.vertices * scale, values=values, collar=collar)
+
 
 class OpenFile(Protocol):
     """A file of objects that is open. Its methods may raise anything that the library does."""
@@ -131,6 +147,12 @@ def _joined(pieces: list[GeoObject]) -> GeoObject:
     is_whole = all(piece.face_of_triangle is None for piece in pieces)
     owners = None if is_whole else np.concatenate(faces)
     return replace(joined, triangles=np.concatenate(triangles), face_of_triangle=owners)
+
+
+def stated_text(unit: str | None) -> str | None:
+    """The text by which a file names a unit; None where it names none."""
+    plain = (unit or "").strip()
+    return None if plain.lower() in ("", "none", "unknown", "unitless", "undefined") else plain
 
 
 def object_units(

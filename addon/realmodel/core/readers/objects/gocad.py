@@ -20,11 +20,10 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step, text_lines
 from ...base.units import unit_of
 from ..meshes.triangle_mesh import UNREADABLE, surface_object
-from .geo_object import HOLE, LINES, POINTS, STICK, GeoObject, ObjectName, Values, point_object
+from .geo_object import HOLE, LINES, POINTS, STICK, GeoObject, ObjectName, Values, point_object, stated_text
 
 _WORD = re.compile(r'"([^"]*)"|(\S+)')
 _NAME = re.compile(r"\*?name\s*:\s*(.*?)\s*(?:\}.*)?$", re.IGNORECASE)
-_NO_UNIT = ("", "none", "unknown", "unitless", "undefined")
 _TYPES = {"TSurf": "surface", "VSet": POINTS, "PLine": LINES, "Well": HOLE}
 
 
@@ -106,7 +105,7 @@ def _read_line(obj: _Object, words: list[str], line: str, number: int) -> None:
     elif key == "ZPOSITIVE":
         obj.up = -1.0 if words[1].lower() == "depth" else 1.0
     elif key == "AXIS_UNIT":
-        obj.units = [_stated(word) for word in words[1:4]]
+        obj.units = [stated_text(word) for word in words[1:4]]
     elif key == "PROPERTIES":
         obj.properties = words[1:]
     elif key == "NO_DATA_VALUES":
@@ -162,11 +161,6 @@ def _units(file: Path, obj: _Object) -> str | dict | None:
         what = f"its axes x and y have different units, {x} and {y}"
         raise InputRefused(what, file=file, item=f"object '{obj.name}'", advice="correct AXIS_UNIT")
     return x if x == z else {"xy": x, "z": z}
-
-
-def _stated(word: str) -> str | None:
-    """The text of a unit, where it names one."""
-    return None if word.strip().lower() in _NO_UNIT else word.strip()
 
 
 def _columns(obj: _Object) -> dict[str, np.ndarray]:
