@@ -80,8 +80,8 @@ def _chosen(
     if layer is None:
         fitting = [obj for obj in objects if obj.kind in kinds and not obj.is_part]
     else:
-        named = [obj for obj in objects if obj.is_called(layer)]
-        named = named or [obj for obj in objects if obj.is_called_like(layer)]
+        named = [obj for obj in objects if obj.name == layer]
+        named = named or [obj for obj in objects if obj.name.casefold() == layer.casefold()]
         if not named:
             raise InputRefused(f"it has no object '{layer}'", file=file, advice=listed)
         fitting = [obj for obj in named if obj.kind in kinds]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -22,7 +22,7 @@ import numpy as np
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ..meshes.triangle_mesh import mesh_of_corners, object_of_mesh
-from .dxf_tags import BINARY, Entity, read_entities
+from .dxf_tags import BINARY, Drawing, Entity
 from .geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
 
 _BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
@@ -76,11 +76,11 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     of faces at the same place become one vertex. A layer with faces and others has two objects. Raises
     InputRefused naming file and line."""
     file = Path(file)
-    entities, blocks, unit = read_entities(file, step)
+    drawing = Drawing()
     layers: dict[str, _Layer] = {}
     inserted: dict[str, _Layer] = {}
-    reader = _Drawing(file, blocks)
-    for entity, shape, layer, within in reader.shapes(entities):
+    reader = _Shapes(file, drawing.blocks)
+    for entity, shape, layer, within in reader.shapes(drawing.entities(file, step)):
         targets = [layers.setdefault(layer.casefold(), _Layer(layer))]
         targets += [inserted.setdefault(name.casefold(), _Layer(name)) for name in within]
         for target in targets:
@@ -89,7 +89,7 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
             else:
                 target.add(shape)
     # many programs write the unit of their template, so that nothing is converted by it
-    said_unit = _UNIT_NAMES.get(unit or 0)
+    said_unit = _UNIT_NAMES.get(drawing.unit or 0)
     objects = [obj for layer in layers.values() for obj in _objects(file, layer, said_unit, False)]
     parts = [layer for name, layer in inserted.items() if name not in layers]
     objects += [obj for layer in parts for obj in _objects(file, layer, said_unit, True)]
@@ -124,7 +124,7 @@ def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) ->
         yield ObjectName(points.name, points.kind, points.key, is_part=is_part)
 
 
-class _Drawing:
+class _Shapes:
     """Gives the shapes of entities, those of blocks where they are inserted."""
 
     def __init__(self, file: Path, blocks: dict[str, Entity]):
@@ -132,7 +132,7 @@ class _Drawing:
 
     def shapes(
         self,
-        entities: list[Entity],
+        entities: Iterable[Entity],
         change: np.ndarray | None = None,
         on: str = "0",
         within: tuple[str, ...] = (),

@@ -26,21 +26,12 @@ STICK = "stick"  # the column with the number of the line that a vertex of lines
 @dataclass(frozen=True)
 class ObjectName:
     """An object in a file: its name and what it is: POINTS, LINES, SURFACE, HOLE. key: by which the library
-    finds it. aliases: other names for it. is_part: of an object that is listed, too."""
+    finds it. is_part: of an object that is listed, too."""
 
     name: str
     kind: str
     key: Any = None
-    aliases: tuple[str, ...] = ()
     is_part: bool = False
-
-    def is_called(self, name: str) -> bool:
-        """Whether this is its name, or another one for it."""
-        return name == self.name or name in self.aliases
-
-    def is_called_like(self, name: str) -> bool:
-        """The same in any case."""
-        return name.casefold() in (known.casefold() for known in (self.name, *self.aliases))
 
 
 @dataclass(frozen=True, eq=False)
