@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..base.errors import InputRefused
 from ..base.text import Step, no_step
-from ..base.units import MODEL_UNIT, factors
+from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from .object_input import is_object_file, read_hole_objects
 from .point_input import refuse_keys
@@ -43,8 +41,7 @@ def read_boreholes(
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    plan, height = factors(given.units, model_unit)
-    picks = read_hole_objects(given, np.array([plan, plan, height]), units, plan_step)
+    picks = read_hole_objects(given, model_unit, units, plan_step)
     step(1.0)
     return picks
 
