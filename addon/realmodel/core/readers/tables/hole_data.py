@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -108,13 +109,15 @@ def _whole_files(given: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
                 advice = "name its tables: collars = ..., intervals = ..., picks = ..."
                 raise InputRefused(what, file=file, advice=advice)
             continue
-        said = [kind for kind in MEANINGS if getattr(given, kind) is not None]
-        here = [kind for kind in said if Path(getattr(given, kind)) == file]
-        given = replace(given, file=None, **dict.fromkeys(here))
-        for kind, sheet in file_format.read(file).items():
-            if getattr(given, kind) is None:
-                sheets[kind] = sheet
-                given = replace(given, **{kind: file})
+        read = file_format.read(file)
+        said = {kind: getattr(given, kind) for kind in MEANINGS}
+        others: dict[str, Any] = {
+            kind: table for kind, table in said.items() if table is not None and Path(table) != file
+        }
+        here = [kind for kind in read if kind not in others]
+        sheets |= {kind: read[kind] for kind in here}
+        tables: dict[str, Any] = dict.fromkeys(MEANINGS) | others | dict.fromkeys(here, file)
+        given = replace(given, file=None, **tables)
         if given.downward_dip is None and "survey" in sheets:
             given = replace(given, downward_dip=file_format.downward_dip)
     return given, sheets

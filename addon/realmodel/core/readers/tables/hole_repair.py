@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...base.errors import InputRefused, number_list
+from ...base.no_value import OFTEN_NO_VALUE
 from .hole_data import HoleTables
 from .hole_problems import LEFT_OUT, NOT_REACHED, REPAIRED, USED, ProblemList, problem_warnings
-from .hole_tables import NULL_NUMBERS, Row, column_key, normalized_name
+from .hole_tables import Row, column_key, normalized_name
 from .holes import end_of
 from .interval_repair import repair_intervals
 from .survey_repair import repair_survey
@@ -25,8 +26,9 @@ _NUMBERS = {
     "picks": ("x", "y", "z", "depth", "elevation"),
     "intervals": ("x", "y", "z", "from", "to"),
 }
-_HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be what else stands for no value
-_ALWAYS = frozenset(value for value in NULL_NUMBERS if value != round(value) or abs(value) > 1e9)
+_HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be below 0
+_NULLS = frozenset(OFTEN_NO_VALUE)
+_ALWAYS = 1e19  # so large nothing is
 _OTHERS = 3  # holes that have two surfaces in the other order make a hole look wrong
 # Beyond the range of the others by so many times it, a collar is none of them.
 _FAR = 1.0
@@ -106,16 +108,22 @@ def _number(row: Row, column: str) -> float | None:
 
 
 def _nulls(values: np.ndarray, column: str) -> set[float]:
-    """The numbers among those of a column that stand for no value: of heights and coordinates those that lie
-    far from all others."""
-    found = {value for value in set(values.tolist()) if value in NULL_NUMBERS or abs(value) >= 1e30}
+    """The numbers among those of a column that stand for no value: of heights, coordinates and depths that
+    may be real only those that lie far from all others."""
+    found = {value for value in set(values.tolist()) if value in _NULLS or abs(value) > _ALWAYS}
     others = values[~np.isin(values, list(found))]
-    signed = column in _HEIGHTS or (others < 0).sum() * 2 > (others != 0).sum()
-    if not found or not signed or not len(others):
+    if not found or not len(others):
         return found
+    signed = column in _HEIGHTS or (others < 0).sum() * 2 > (others != 0).sum()
     low, high = others.min(), others.max()
     reach = high - low
-    return {value for value in found if value in _ALWAYS or not low - reach <= value <= high + reach}
+    return {
+        value
+        for value in found
+        if abs(value) > _ALWAYS
+        or (value < 0 and not (signed and value == round(value)))
+        or not low - reach <= value <= high + reach
+    }
 
 
 def _mended(row: Row, column: str, problems: ProblemList) -> Row:
