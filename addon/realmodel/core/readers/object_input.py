@@ -14,10 +14,10 @@ from ..base.algebra import norm
 from ..base.errors import InputRefused, RealModelError, counted
 from ..base.text import Step, no_step
 from ..settings.data_files import Boreholes
-from .formats import OBJECTS, FileFormat, format_of
+from .formats import HOLES, OBJECTS, FileFormat, format_of
 from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values
 from .tables.boreholes import Pick, Picks
-from .tables.hole_tables import INTERVALS, PICKS
+from .tables.hole_tables import INTERVALS, PICKS, Sheet
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
 from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
@@ -28,7 +28,8 @@ _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE:
 
 def is_object_file(file: Path) -> bool:
     """Whether a file is one of objects. Raises InputRefused where it cannot be read."""
-    return format_of(file, OBJECTS) is not None
+    file_format = format_of(file, HOLES, OBJECTS)
+    return file_format is not None and file_format.holds == OBJECTS
 
 
 def objects_in(file: Path) -> list[ObjectName]:
@@ -131,6 +132,39 @@ def read_hole_objects(
     for _, places in picks.holes.values():
         places.sort(key=lambda pick: -pick[1][2])
     return picks
+
+
+def hole_sheets(given: Boreholes, file: Path) -> dict[str, Sheet]:
+    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks, those
+    that it has. Raises as read_object."""
+    rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
+    for obj in read_objects(file, given.layer, (HOLE,) if given.layer is None else _KINDS):
+        collar = np.full(3, np.nan) if obj.collar is None else obj.collar
+        if np.isfinite(collar).all():
+            rows["collars"].append((0, [obj.name, *map(repr, collar.tolist())]))
+        for values in obj.values:
+            meaning, aliases = ("surface", (*PICKS["surface"], *INTERVALS["block"]))
+            if values.ends is not None:
+                meaning, aliases = ("block", INTERVALS["block"])
+            column = _column(values, given.columns.get(meaning), aliases)
+            if column is None:
+                continue
+            names, holes = _texts(values.columns[column]), _holes(obj, values, given)
+            numbers = values.places
+            if values.ends is not None:
+                along = values.depths
+                numbers = _depths(values.places, values.ends, holes) if along is None else along
+            kind = "picks" if values.ends is None else "intervals"
+            rows[kind] += [
+                (0, [hole, *map(repr, row), name])
+                for hole, row, name in zip(holes, numbers.tolist(), names, strict=True)
+            ]
+    columns = {
+        "collars": ("hole", "x", "y", "z"),
+        "intervals": ("hole", "from", "to", "block"),
+        "picks": ("hole", "x", "y", "z", "surface"),
+    }
+    return {kind: Sheet(columns[kind], found) for kind, found in rows.items() if found}
 
 
 def _add_picks(

@@ -66,12 +66,18 @@ class HoleTables:
 
 
 def read_hole_rows(
-    given: Boreholes, model_unit: str, step: Step = no_step, needed: tuple[str, ...] | None = None
+    given: Boreholes,
+    model_unit: str,
+    step: Step = no_step,
+    needed: tuple[str, ...] | None = None,
+    sheets: dict[str, Sheet] | None = None,
 ) -> HoleTables:
     """The rows of the tables of some boreholes as they are. needed: the columns of intervals that there must
-    be; None: with the block. Raises InputRefused naming file and line."""
+    be; None: with the block. sheets: tables of files that are read already. Raises InputRefused naming file
+    and line."""
     required = _NEEDED | ({} if needed is None else {"intervals": needed})
-    given, sheets = _whole_files(given)
+    if sheets is None:
+        given, sheets = _whole_files(given)
     tables = HoleTables(given)
     for kind, known in MEANINGS.items():
         file = getattr(given, kind)
