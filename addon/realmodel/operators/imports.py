@@ -39,6 +39,7 @@ from ..core.readers.contents import column_values
 from ..core.readers.formats import ARRAY, MESH, OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.object_input import read_objects
 from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
+from ..core.readers.tables.hole_tables import normalized_name
 from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
@@ -358,7 +359,8 @@ def _objects_of(paths):
 def _row_of(scene, rock, surface, units, warnings):
     """The row that takes a new surface: that of its name, where it has no data yet, or is named in a file;
     else another one."""
-    row = rock.surfaces.get(units.surface(surface.name))
+    alike = [row for row in rock.surfaces if _letters(row.name) == _letters(surface.name)]
+    row = rock.surfaces.get(units.surface(surface.name)) or (alike[0] if len(alike) == 1 else None)
     has_data = row is not None and (row.object or row.filepath or row.stored or row.stored_mesh)
     if row is not None and (surface.is_named or not has_data) and surface.path is not None:
         if has_data:
@@ -370,6 +372,10 @@ def _row_of(scene, rock, surface, units, warnings):
     row.name = settings.free_name(rock.surfaces, surface.name, own=row)
     row.property_id = library_rows.for_surface(scene, row.name)
     return row
+
+
+def _letters(name):
+    return normalized_name(name).replace("_", "")
 
 
 def _read(surface, unit):
