@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dialogs of imports: what the menus of columns say is what is read, objects of a file are chosen and
-matched by name, and choices are remembered as profiles."""
+"""The dialogs of imports: what the menus of columns say is what is read, and choices are remembered as
+profiles."""
 
 import json
 from unittest import mock
@@ -11,7 +11,6 @@ from realmodel.bl.project import profiles
 from realmodel.core import InputRefused
 from realmodel.props_import import IGNORED
 from realmodel.ui.panel import wrapped
-from test_object_files import ObjectFiles
 
 
 def headings(path, columns, of="points"):
@@ -70,35 +69,6 @@ class Menus(PanelCase):
         self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["Top Sand", "Clay"])
         ops.surface_add(filepath=str(path), split=True)
         self.assertEqual(len(self.model.rocks[0].surfaces), 2)
-
-
-class Objects(ObjectFiles):
-    def rows(self, path, **sizes):
-        kinds = {"file": str(path), "kind": "surface", "chosen": True}
-        return [{**kinds, "name": name, "size": size} for name, size in sizes.items()]
-
-    def test_chosen_ones_are_matched_by_name(self):
-        """Whatever the capitals and the signs between words; what is not ticked is not imported."""
-        path = self.written()
-        for name in ("s_1", "other"):
-            ops.surface_add(name=name, empty=True)
-        chosen = self.rows(path, S0=2, S1=2)
-        chosen[0]["chosen"] = False
-        ops.surface_add(filepath=str(path), objects=chosen)
-        rows = self.model.rocks[0].surfaces
-        self.assertEqual([(row.name, row.layer) for row in rows], [("s_1", "S1"), ("other", "")])
-        chosen[0]["chosen"] = True
-        ops.surface_add(filepath=str(path), objects=chosen)
-        self.assertEqual([row.name for row in rows], ["s_1", "other", "S0"])
-
-    def test_filters(self):
-        path = self.written()
-        chosen = self.rows(path, S0=2, S1=900)
-        ops.surface_add(filepath=str(path), objects=chosen, object_size=10)
-        self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["S1"])
-        ops.surface_add(filepath=str(path), objects=chosen, object_name="*0")
-        self.assertEqual({row.name for row in self.model.rocks[0].surfaces}, {"S0", "S1"})
-        self.refused(ops.surface_add, "no object", filepath=str(path), objects=chosen, object_kind="points")
 
 
 class Profiles(PanelCase):
