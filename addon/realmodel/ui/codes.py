@@ -25,6 +25,7 @@ class REALMODEL_UL_codes(OfRows, bpy.types.UIList):
 
     def draw_row(self, _context, row, item):
         code, holes, length, unit = _columns(row)
+        code.use_property_split = False
         code.prop(item, "chosen", text=item.name)
         right_label(holes, str(item.holes))
         right_label(length, f"{item.length:,.0f}" if item.length else "")
