@@ -34,6 +34,10 @@ def read_boreholes(
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
         tables = read_repaired(given, model_unit, step, units)
+        if tables.picks is None and tables.intervals is None:
+            advice = "give a table of them: picks = ... or intervals = ..."
+            what = "it has neither picks nor intervals of blocks"
+            raise InputRefused(what, file=given.files[-1], advice=advice)
         return picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):

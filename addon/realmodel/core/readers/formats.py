@@ -12,6 +12,10 @@ from typing import Any
 
 from ..base.text import reading
 from .holes.ags import begins_as_ags, read_ags
+from .holes.diggs import begins_as_diggs, read_diggs
+from .holes.gocad_wells import begins_as_gocad_well, read_gocad_wells
+from .holes.las import begins_as_las, read_las
+from .holes.well_tops import begins_as_well_tops, read_well_tops
 from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
@@ -94,6 +98,10 @@ FORMATS = (
     FileFormat("STL", (".stl",), MESH, begins_as_stl, read_stl, by_ending=True),
     FileFormat("OBJ", (".obj",), MESH, begins_as_obj, read_obj, by_ending=True),
     FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
+    FileFormat("DIGGS", (".xml", ".diggs"), HOLES, begins_as_diggs, read_diggs),
+    FileFormat("Petrel well tops", (".tops", ".asc", ".txt"), HOLES, begins_as_well_tops, read_well_tops),
+    FileFormat("GOCAD wells", (".wl",), HOLES, begins_as_gocad_well, read_gocad_wells),
+    FileFormat("LAS", (".las",), HOLES, begins_as_las, read_las),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     FileFormat(
         "table of text",

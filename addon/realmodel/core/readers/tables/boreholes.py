@@ -25,8 +25,8 @@ class Picks:
     """of_surfaces: where holes met surfaces, by the names of these; holes: of each hole by name its collar
     (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
     highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
-    of the blocks of intervals; left_out: intervals that are not used. switched_off: as points, those of rows
-    that are. problems: of rows that were repaired, left out, or are used although something is wrong."""
+    of the blocks of intervals; left_out: intervals and picks that are not used. switched_off: as points,
+    those of rows that are. problems: what was wrong with rows of tables."""
 
     of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -83,9 +83,9 @@ def picks_of_tables(
     picks.of_surfaces = dict(sorted(picks.of_surfaces.items()))
     picks.ends = dict(sorted(picks.ends.items()))
     picks.holes = dict(sorted(picks.holes.items()))
+    picks.problems = tables.problems
     picks.left_out = [*left_out_of(tables.problems), *picks.left_out]
     picks.warnings += [*tables.warnings, *holes.warnings()]
-    picks.problems = tables.problems
     return picks
 
 

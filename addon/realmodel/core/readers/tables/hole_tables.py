@@ -174,6 +174,7 @@ OBSERVED = {
     "on": ("seen_on",),
     "error": ("height_error",),
 }
+_GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 # What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
@@ -233,13 +234,14 @@ class Header:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table in a file that holds several: the names of its columns, the lines and entries of its rows, and
-    what units its columns have, as they are written, "" for none."""
+    """A table in a file that holds several: the names of its columns, the lines and entries of its rows, what
+    units its columns have, as they are written, "" for none, and what was chosen for the user to know."""
 
     names: Sequence[str]
     rows: Sequence[tuple[int, list[str]]]
     line: int = 1
     units: Sequence[str] = ()
+    choice: str = ""
 
 
 @dataclass(frozen=True)
@@ -456,4 +458,7 @@ def _require(reading: Reading, header: Header, needed: Sequence[str]) -> None:
             called = reading.columns.get(column)
             what = f"the header has no column {called or column}"
             advice = f'name it: columns = {{ {column} = "..." }}'
+            if column in ("x", "y") and _named(header.names, _GEOGRAPHIC) is not None:
+                what = "places are longitude and latitude"
+                advice = "give x and y in a projected system, in meters or feet"
             raise InputRefused(what, file=header.file, line=header.line, advice=advice)
