@@ -12,7 +12,7 @@ from damages import damaged_bytes
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from realmodel.core import BuildFailed, InputRefused, PointFile, load_library, load_project
-from realmodel.core.readers import read_mesh, read_point_file, read_points, read_region
+from realmodel.core.readers import read_mesh, read_point_file, read_region
 from realmodel.core.readers.fault_input import read_fault_points
 
 PROJECT = b"""format = 1
@@ -109,7 +109,7 @@ LEAPFROG += struct.pack("<6i12d", 0, 1, 2, 0, 2, 3, *range(12))
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
-    "p.csv": (POINTS, read_points),
+    "p.csv": (POINTS, read_points_of),
     "g.asc": (GRID, read_points_of),
     **{path.name: (path.read_bytes(), read_points_of) for path in sorted(GRIDS.iterdir())},
     "c.cps3": (CPS3, read_points_of),
@@ -179,7 +179,7 @@ def test_read_or_refused(folder, name):
             assert str(error).count(path.name) == 1  # no refusal stands within another
         else:
             outcomes["read"] += 1
-            if read is read_points:
+            if read is read_points_of:
                 assert np.isfinite(result).all()
                 assert result.shape[1] == 3
             if read is read_mesh:

@@ -36,7 +36,7 @@ def test_dxf_of_ezdxf(tmp_path, release):
     space = document.modelspace()
     space.add_line((0, 0), (1, 1))
     space.add_3dface(VERTICES[SQUARE].tolist(), dxfattribs={"layer": "Ground"})
-    space.add_3dface(VERTICES[TRIANGLE].tolist())
+    space.add_3dface(VERTICES[TRIANGLE].tolist(), dxfattribs={"layer": "GROUND"})
     document.saveas(tmp_path / "m.txt")
     assert facets(read_mesh(tmp_path / "m.txt")) == expected()
 
@@ -137,7 +137,7 @@ def test_landxml_and_its_unit(write):
     assert warnings == [f"{path}: its lengths are in ft, according to the file"]
     vertices, warnings = mesh.in_model(MeshFile(path, units="m"), "m")
     assert vertices == pytest.approx(VERTICES)
-    assert warnings == []
+    assert warnings == [f"{path}: it says that its lengths are in ft; it is read in m, as 'units' says"]
     model = build(Project("x", [Rock("r", [Surface("S", mesh=path)])]))
     assert any("its lengths are in ft" in str(warning) for warning in model.warnings)
 
@@ -175,19 +175,29 @@ def test_a_unit_in_the_header_of_dxf_is_a_warning_and_converts_nothing(write):
 
 
 @pytest.mark.parametrize(
-    ("axes", "unit", "warnings"),
+    ("axes", "top", "said"),
     [
-        ('"ft" "ft" "ft"', "ft", 0),
-        ('" m " " m " " m "', "m", 0),
-        ('"m" "m" "ft"', None, 1),
-        ('"rods" "rods" "rods"', None, 0),
+        ('"ft" "ft" "ft"', (0.3048, 0.3048), ["its lengths are in ft, according to the file"]),
+        ('" m " " m " " m "', (1.0, 1.0), []),
+        ('"Metres" "METERS" "Feet"', (1.0, 0.3048), ["its lengths are in m (x, y) and ft (z), according to the file"]),
+        ('"none" "none" "none"', (1.0, 1.0), []),
+        ("m m m", (1.0, 1.0), []),
     ],
-)
-def test_the_unit_of_tsurf(write, axes, unit, warnings):
-    mesh = read_mesh(write("m.ts", TSURF_AXES.replace("AXES", axes)))
-    assert mesh.unit == unit
-    assert len(mesh.warnings) == warnings
-    assert all("its axes have different units (ft, m)" in text for text in mesh.warnings)
+)  # fmt: skip
+def test_each_unit_of_an_axis_of_gocad_is_obeyed(write, axes, top, said):
+    path = write("m.ts", TSURF_AXES.replace("AXES", axes))
+    vertices, warnings = read_mesh(path).in_model(MeshFile(path), "m")
+    assert (vertices[:, 0].max(), vertices[:, 2].max()) == top
+    assert warnings == [f"{path}: {text}" for text in said]
+
+
+def test_an_unknown_unit_is_refused_and_one_that_is_said_is_used(write):
+    path = write("m.ts", TSURF_AXES.replace("AXES", '"furlongs" "furlongs" "furlongs"'))
+    with pytest.raises(InputRefused, match=r"'furlongs', is not known; say it in 'units'"):
+        read_mesh(path).in_model(MeshFile(path), "m")
+    vertices, warnings = read_mesh(path).in_model(MeshFile(path, units="km"), "m")
+    assert vertices[:, 2].max() == 1000.0
+    assert warnings == [f"{path}: it says that its lengths are in furlongs; it is read in km, as 'units' says"]
 
 
 TSURF_AXES = """GOCAD TSurf 1
@@ -300,7 +310,7 @@ def test_a_damaged_msh_of_leapfrog_is_refused(write, content, match):
         ("m.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]>" + landxml(), "document type"),
         ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n10\nx\n0\nENDSEC\n0\nEOF\n", r"m\.dxf:6: a 3DFACE that cannot"),  # noqa: E501
         ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n10\n", r"m\.dxf:8: the file has no EOF"),
-        ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\nENDSEC\n0\nEOF\n", "no 3D faces"),
+        ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\nENDSEC\n0\nEOF\n", "no 3D faces, lines or points"),
         ("m.dxf", "0\nSECTION\nxx\nENTITIES\n", r"m\.dxf:3: 'xx' is no group code"),
         ("m.msh", "$MeshFormat\n3 0 8\n$EndMeshFormat\n$Nodes\n$EndNodes\n$Elements\n$EndElements\n", "MSH 3 is not read"),  # noqa: E501
         ("m.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", "no whole section Nodes"),

@@ -92,7 +92,7 @@ def test_numbers_are_those_of_python(write):
     ]
     texts = texts[: len(texts) // 3 * 3]
     rows = [" ".join(texts[at : at + 3]) for at in range(0, len(texts), 3)]
-    read = read_points(write("p.xyz", "\n".join(rows)))
+    read = read_points(write("p.xyz", "\n".join(rows))).xyz
     assert read.tobytes() == np.array([float(text) for text in texts]).tobytes()
 
 
@@ -252,18 +252,37 @@ def test_guessed_columns_are_a_warning(write):
 
 
 @pytest.mark.parametrize(
-    ("heights", "words"),
+    ("heights", "left_out", "words"),
     [
-        ((100, 120, -9999, -9999), "2 points have the height -9999, far from all others"),
-        ((100, 120, 1e30), "1 point has the height 1e+30"),
-        ((-3000, -2950, -999.25), "1 point has the height -999.25"),
-        ((9990, 9999, 10010), None),  # among the others
-        ((-1400, -200, -999), None),
-        ((-9999, -9999), None),  # there is no other
+        ((100, 120, -9999, -9999), 2, "2 points have the height -9999, far from all others"),
+        ((100, 120, 1e30), 1, "1 point has the height 1e+30"),
+        ((-3000, -2950, -999.25), 1, "1 point has the height -999.25"),
+        ((-1400.5, -200, -999.25), 1, "1 point has the height -999.25, which often means no data, and"),
+        (
+            (-1400, -200, -999, -999),
+            0,
+            "2 points have the height -999, which often means no data: it is used",
+        ),
+        ((9990, 9999, 10010), 0, None),  # among the others
+        ((-1400, -200, -999), 0, None),
+        ((-9999, -9999), 0, "2 points have the height -9999, which often means no data: it is used"),
     ],
 )
-def test_heights_that_often_mean_no_data_are_a_warning(write, heights, words):
+def test_heights_that_often_mean_no_data(write, heights, left_out, words):
     rows = "".join(f"{k},{2 * k},{z}\n" for k, z in enumerate(heights))
-    points, warnings = read_point_file(PointFile(write("p.csv", rows)))
-    assert len(points) == len(heights)
-    assert [words in text for text in warnings] == ([] if words is None else [True])
+    file = write("p.csv", rows)
+    points, warnings = read_point_file(PointFile(file))
+    assert points[:, 2].tolist() == list(heights[: len(heights) - left_out])
+    assert [words in text and "nodata" in text for text in warnings] == ([] if words is None else [True])
+    points, warnings = read_point_file(PointFile(file, nodata="none"))
+    assert len(points) == len(heights) and not warnings
+
+
+def test_coordinates_that_mean_no_data(write):
+    file = write(
+        "p.csv", "x,y,z,id\n451000,5932000,-1600,a\n-999.25,-999.25,-1605,b\n451100,5932100,-1610,c\n"
+    )
+    read = read_points(file)
+    assert read.xyz[:, 2].tolist() == [-1600, -1610]
+    assert read.columns["id"].tolist() == ["a", "c"]
+    assert len(read.warnings) == 2 and all("nodata" in text for text in read.warnings)

@@ -255,7 +255,7 @@ def test_nodata_scale_and_place(tmp_path):
     with pytest.raises(InputRefused, match="has no georeference"):
         read_point_file(PointFile(bare))
     (tmp_path / "w.tfw").write_text("2\n0\n0\n-3\n101\n198.5\n")
-    points, _ = read_point_file(PointFile(bare))
+    points, _ = read_point_file(PointFile(bare, nodata="none"))
     assert points[:, :2].tolist() == [[101, 198.5], [103, 198.5], [101, 195.5], [103, 195.5]]
 
     lowest = np.array([[np.finfo(np.float32).min, 2], [3, 4]], np.float32)

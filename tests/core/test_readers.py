@@ -4,7 +4,9 @@
 import numpy as np
 import pytest
 from realmodel.core import Cancelled, InputRefused
-from realmodel.core.readers import read_off, read_points, read_region
+from realmodel.core import PointFile
+from realmodel.core.readers import read_off, read_point_file, read_points, read_region
+from realmodel.core.readers.tables.points import read_point_rows
 
 POINTS = [[1.0, 2.0, 3.0], [-4.5, 5e3, 0.25]]
 
@@ -30,7 +32,7 @@ POINTS = [[1.0, 2.0, 3.0], [-4.5, 5e3, 0.25]]
     ],
 )
 def test_points_in_every_spelling(write, text):
-    assert read_points(write("p.csv", text)).tolist() == POINTS
+    assert read_points(write("p.csv", text)).xyz.tolist() == POINTS
 
 
 @pytest.mark.parametrize(
@@ -77,7 +79,7 @@ def test_a_million_points(tmp_path):
     path = tmp_path / "p.csv"
     path.write_text(text)
     steps = []
-    read = read_points(path, steps.append)
+    read = read_point_rows(PointFile(path), steps.append).points
     assert np.array_equal(read, points)
     assert len(steps) >= 50
     assert steps == sorted(steps)
@@ -86,7 +88,7 @@ def test_a_million_points(tmp_path):
         raise Cancelled("stop")
 
     with pytest.raises(Cancelled):
-        read_points(path, stop)
+        read_point_rows(PointFile(path), stop)
 
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build
 from realmodel.core.readers import read_mesh
-from realmodel.core.readers.formats import MESH, endings
+from realmodel.core.readers.formats import MESH, OBJECTS, endings
 
 SQUARE = np.array([[0.5, 0, 1], [1.5, 0, 2], [1.5, 1, 3], [0.5, 1, 4]])
 
@@ -123,7 +123,8 @@ def test_stl_shares_vertices(write, content):
         ("m.obj", "v 1 nan 2\nf 1 1 1\n", "vertex 1 is not finite"),
         ("m.obj", OBJ, "has no faces; if it holds points"),
         ("m.ts", TSURF.replace("TRGL 1 2 8", "TRGL 1 2 6"), r"m\.ts:14: 'TRGL 1 2 6' cannot be read"),
-        ("m.ts", "GOCAD PLine 1\n", "a GOCAD PLine, which is no triangulated surface"),
+        ("m.ts", "GOCAD Voxet 1\nHEADER {\nname: a\n}\nEND\n", "a GOCAD Voxet, which is not read"),
+        ("m.ts", "GOCAD PLine 1\nVRTX 1 0 0 0\nVRTX 2 1 0 0\nSEG 1 2\nEND\n", "has no faces; if it holds points"),
         ("m.ply", PLY.replace("4 0 1 2 3", "4 0 1 2 9"), "face 1 has a corner"),
         ("m.ply", PLY.replace("4 0 1 2 3", "4 0 1 2 0.5"), "face 1 has a corner"),
         ("m.ply", PLY.replace("vertex 4", "vertex 400000000000"), "not a PLY file"),
@@ -143,4 +144,4 @@ def test_a_project_takes_such_meshes(write):
     surfaces = [Surface("floor", mesh=floor), Surface("top", mesh=write("top.ts", TSURF))]
     model = build(Project("p", [Rock("r", surfaces)]))
     assert model.volume > 0
-    assert {".obj", ".stl", ".ply", ".ts"} <= set(endings(MESH))
+    assert {".obj", ".stl", ".ply", ".ts"} <= set(endings(MESH, OBJECTS))

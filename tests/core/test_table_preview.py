@@ -61,11 +61,11 @@ def test_too_many_values_name_no_surfaces(table):
 
 
 def test_a_missing_column_is_said_and_can_be_chosen(table):
-    path = table("x,depth,north\n1,2,3\n4,5,6\n")
+    path = table("x,thickness,north\n1,2,3\n4,5,6\n")
     found = preview_table(path)
     assert found.problem == "the header has no column z"
     assert found.axes == {"x": "x", "y": "north"}
-    assert list(preview_table(path, ["x", "north", "depth"]).axes.values()) == ["x", "north", "depth"]
+    assert list(preview_table(path, ["x", "north", "thickness"]).axes.values()) == ["x", "north", "thickness"]
 
 
 def test_what_is_no_table(table):

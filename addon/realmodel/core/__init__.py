@@ -37,6 +37,7 @@ from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
 from .readers.borehole_tables import BoreholeTables, read_boreholes
+from .readers.point_input import PointData, read_points
 from .readers.tables.hole_problems import HoleProblem
 from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
@@ -101,6 +102,7 @@ __all__ = [
     "ObservedContact",
     "OutputFailed",
     "PlannedHole",
+    "PointData",
     "PointFile",
     "Project",
     "Property",
@@ -140,6 +142,7 @@ __all__ = [
     "open_tiles",
     "propose_project",
     "read_boreholes",
+    "read_points",
     "save_mesh",
     "triangulate_polygon",
 ]

@@ -11,7 +11,7 @@ import sys
 import sysconfig
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -22,14 +22,17 @@ from .errors import BuildFailed, UsageError
 FOLDER = f"{__package__.removesuffix('.core.base')}.vendor"
 
 
-def vendored(module: str, package: str, purpose: str) -> ModuleType:
-    """A module of the folder vendor, or else the one that this Python has.
+def vendored(module: str, package: str, purpose: str, by_its_name: bool = False) -> ModuleType:
+    """A module of the folder vendor, or else the one that this Python has. by_its_name: its modules import
+    one another by its name, so it is the one of this Python, or else that of the folder.
 
     Raises BuildFailed where there is neither.
     """
-    for name in (f"{FOLDER}.{module}", module):
+    names = (module,) if by_its_name else (f"{FOLDER}.{module}", module)
+    for name in names:
         try:
-            return importlib.import_module(name)
+            with _vendor_on_path() if by_its_name else nullcontext():
+                return importlib.import_module(name)
         except ModuleNotFoundError as error:
             if error.name not in (name, FOLDER):
                 raise BuildFailed(f"{package} cannot be loaded ({error})") from error
@@ -37,6 +40,17 @@ def vendored(module: str, package: str, purpose: str) -> ModuleType:
         f"{purpose} needs the package {package}, which is missing: install it with pip, or run "
         "scripts/build.sh in a clone of the repository"
     )
+
+
+@contextmanager
+def _vendor_on_path() -> Iterator[None]:
+    """Within it modules are looked for in the folder vendor, too, after all others."""
+    folder = str(PACKAGE / "vendor")
+    sys.path.append(folder)
+    try:
+        yield
+    finally:
+        sys.path.remove(folder)
 
 
 def extra(module: str, purpose: str, name: str = "notebook") -> Any:

@@ -24,6 +24,8 @@ BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 
 BOM = codecs.BOM_UTF8
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+# Letters of code page 850 (ü, ä, ö, é and others) that cp1252 does not have, or has as signs.
+_OF_DOS = re.compile(rb"[\x81\x8d\x8f\x90\x9d]|[A-Za-z][\x82\x84\x85\x87-\x8a\x93\x94][a-z\x81-\xa5\xe1]")
 
 Step = Callable[[float], None]
 
@@ -98,7 +100,7 @@ def reading(file: Path) -> Iterator[None]:
 def content_of(file: Path) -> Content:
     """The content of a file, in pieces; text in UTF-16 as UTF-8, as a whole. Raises InputRefused."""
     content = FileBytes(Path(file))
-    return read_bytes(file) if content[:2] in _UTF_16 else content
+    return read_bytes(file) if _utf_16(content[:64]) else content
 
 
 def text_content(file: Path) -> Content:
@@ -151,7 +153,8 @@ def _with_plain_ends(text: str) -> str:
 
 
 def encoding_of(content: Content) -> str:
-    """utf-8, or latin-1 where the bytes are not valid UTF-8."""
+    """utf-8, or where the bytes are not valid UTF-8 the code page of Windows, or that of DOS where the bytes
+    stand in words as its letters and are none in the other."""
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         for at in range(0, len(content), BYTES_AT_ONCE):
@@ -160,7 +163,8 @@ def encoding_of(content: Content) -> str:
                 decoder.decode(piece)
         decoder.decode(b"", final=True)
     except UnicodeDecodeError:
-        return "latin-1"
+        pieces = (content[at : at + BYTES_AT_ONCE] for at in range(0, len(content), BYTES_AT_ONCE))
+        return "cp850" if any(map(_OF_DOS.search, pieces)) else "cp1252"
     return "utf-8"
 
 
@@ -168,12 +172,29 @@ def read_bytes(file: Path) -> bytes:
     """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
     with reading(file):
         raw = Path(file).read_bytes()
-    if raw[:2] in _UTF_16:
+    if encoding := _utf_16(raw[:64]):
         try:
-            return raw.decode("utf-16").encode()
+            return raw.decode(encoding).encode()
         except UnicodeDecodeError as error:
             raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
     return raw
+
+
+def _utf_16(head: bytes) -> str | None:
+    """The encoding of text in UTF-16, which begins with its mark, or has NUL in every second byte; None of
+    other content."""
+    if head[:2] in _UTF_16:
+        return "utf-16"
+    for encoding, high, low in (("utf-16-le", head[1::2], head[::2]), ("utf-16-be", head[::2], head[1::2])):
+        if len(high) > 7 and not any(high) and min(low) >= ord("\t"):
+            return encoding
+    return None
+
+
+def as_utf8(head: bytes) -> bytes:
+    """The beginning of a file as UTF-8 where it is text in UTF-16."""
+    encoding = _utf_16(head[:64])
+    return head if encoding is None else head[: len(head) // 2 * 2].decode(encoding, "ignore").encode()
 
 
 def line_of_word(content: Content, number: int, begin: int = 0, stop: int | None = None) -> int:
@@ -202,11 +223,7 @@ def read_text(file: Path) -> str:
     """The text of a file. Numbers are ASCII, so that names in any 8-bit encoding do no harm."""
     raw = read_bytes(file)
     require_text(file, raw)
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    return _with_plain_ends(text)
+    return _with_plain_ends(raw.removeprefix(BOM).decode(encoding_of(raw)))
 
 
 def column_numbers(

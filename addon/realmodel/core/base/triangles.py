@@ -331,3 +331,47 @@ def fanned(offsets: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.nda
     first = offsets[owner]
     at = first + np.arange(len(owner)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2) + 1
     return np.column_stack([corners[first], corners[at], corners[at + 1]]), owner
+
+
+_FOLDED = 1e-12  # of the area of a polygon: what a triangle of its fan may stand out of it by rounding
+
+
+def concave_divided(
+    vertices: np.ndarray, triangles: np.ndarray, first: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What replaces fans that do not lie within their polygons, as seen along the normal of these: rows (R,) of
+    triangles (T, 3), which come fan by fan, new triangles (R, 3), and the fans (K,) of polygons that cross
+    themselves, which stay. first: (F,) rows where fans begin."""
+    corners = vertices[triangles]
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    vector_areas = np.add.reduceat(normals, first)
+    fan = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(triangles))))
+    turned = dot(normals, vector_areas[fan]) < -_FOLDED * dot(vector_areas, vector_areas)[fan]
+    rows, replaced, crossing = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)], []
+    ends = np.append(first[1:], len(triangles))
+    for number in np.unique(fan[turned]).tolist():
+        some = triangles[first[number] : ends[number]]
+        ring = np.concatenate([some[0, :2], some[:, 2]])
+        divided = _ears(vertices[ring], vector_areas[number])
+        if divided is None:
+            crossing.append(number)
+            continue
+        rows.append(np.arange(first[number], ends[number]))
+        replaced.append(ring[divided])
+    return np.concatenate(rows), np.concatenate(replaced), np.array(crossing, np.int64)
+
+
+def _ears(ring: np.ndarray, normal: np.ndarray) -> np.ndarray | None:
+    """(N - 2, 3) the triangles of a polygon (N, 3) by the numbers of its corners; where corners repeat, some of
+    them are without area. None: it crosses itself."""
+    native, axis = native_module(), int(np.abs(normal).argmax())
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    above = ring[:, axis] - ring[0, axis]
+    plan = np.column_stack([ring[:, k] - (normal[k] / normal[axis]) * above for k in (i, j)])
+    try:
+        triangles = native.triangulate_polygon([plan])
+    except native.InputError:
+        return None
+    if normal[axis] < 0:
+        triangles = triangles[:, ::-1]
+    return np.concatenate([triangles, np.zeros((len(ring) - 2 - len(triangles), 3), np.int32)])

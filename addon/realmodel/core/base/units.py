@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
-from .errors import number_list
+from .errors import InputRefused, number_list
 
 MODEL_UNIT = "m"  # of a project without units
 # Metres in each, exactly. Coordinates of old surveys in the United States are in survey feet.
@@ -42,49 +42,20 @@ _SPELLINGS = {
     "cm": ("cm", "centimeter", "centimeters", "centimetre", "centimetres"),
     "m": (
         *("m", "mt", "mtr", "mtrs", "mts", "meter", "meters", "metre", "metres", "metro", "metros", "mètre"),
-        *(
-            "mètres",
-            "metri",
-            "internationalmeter",
-            "internationalmetre",
-            "masl",
-            "mamsl",
-            "mbsl",
-            "mnn",
-            "mnhn",
-        ),
+        *("mètres", "metri", "internationalmeter", "internationalmetre", "masl", "mamsl", "mbsl"),
+        *("mnn", "mnhn"),
         *("münn", "münhn", "müm", "mnap", "mahd", "msnm"),
     ),
     "km": ("km", "kms", "kilometer", "kilometers", "kilometre", "kilometres"),
     "in": ("in", "inch", "inches", '"'),
     "ft": (
-        *(
-            "ft",
-            "fts",
-            "foot",
-            "feet",
-            "ift",
-            "intft",
-            "ftint",
-            "fti",
-            "internationalfoot",
-            "footinternational",
-        ),
+        *("ft", "fts", "foot", "feet", "ift", "intft", "ftint", "fti", "internationalfoot"),
+        "footinternational",
         *("internationalfeet", "feetinternational", "pieds", "pies", "fuß", "'"),
     ),
     "us-ft": (
-        *(
-            "usft",
-            "ftus",
-            "ussft",
-            "sft",
-            "usfoot",
-            "usfeet",
-            "footus",
-            "feetus",
-            "ussurveyfoot",
-            "ussurveyfeet",
-        ),
+        *("usft", "ftus", "ussft", "sft", "usfoot", "usfeet", "footus", "feetus", "ussurveyfoot"),
+        "ussurveyfeet",
         *("ussurveyft", "surveyfoot", "surveyfeet", "footussurvey", "feetussurvey", "ftussurvey", "surveyft"),
         *("usfootsurvey", "ftsurvey"),
     ),
@@ -95,46 +66,14 @@ _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spellin
 # Units that a coordinate may be in, and which have no factor here.
 _NO_FACTOR = frozenset(
     (
-        *(
-            "dm",
-            "decimeter",
-            "decimeters",
-            "decimetre",
-            "decimetres",
-            "fathom",
-            "fathoms",
-            "fm",
-            "ftm",
-            "chain",
-        ),
+        *("dm", "decimeter", "decimeters", "decimetre", "decimetres", "fathom", "fathoms", "fm", "ftm"),
+        "chain",
         *("chains", "ch", "link", "links", "rod", "rods", "furlong", "furlongs", "nmi", "nauticalmile"),
         *("nauticalmiles", "league", "leagues", "toise", "toises", "ms", "msec", "msecs", "millisecond"),
-        *(
-            "milliseconds",
-            "s",
-            "sec",
-            "second",
-            "seconds",
-            "twt",
-            "deg",
-            "degs",
-            "degree",
-            "degrees",
-            "°",
-            "dd",
-        ),
-        *(
-            "decimaldegrees",
-            "rad",
-            "radian",
-            "radians",
-            "gon",
-            "grad",
-            "dms",
-            "arcsec",
-            "arcsecond",
-            "arcseconds",
-        ),
+        *("milliseconds", "s", "sec", "second", "seconds", "twt", "deg", "degs", "degree", "degrees"),
+        *("°", "dd"),
+        *("decimaldegrees", "rad", "radian", "radians", "gon", "grad", "dms", "arcsec", "arcsecond"),
+        "arcseconds",
     )
 )
 _SIGNS = r"[\s._(){}<>\[\]-]+"  # which spellings are without
@@ -164,11 +103,11 @@ def unknown_unit(text: str) -> bool:
 
 
 def unit_text_of_column(name: str) -> str:
-    """What stands where the name of a column has its unit: in brackets behind it, else the last of several
-    words if that is a unit: "Elevation_ft", "Depth (m)"; "" where there is none."""
+    """The unit in the name of a column, as it is written, in brackets or as the last of several words:
+    "Elevation_ft", "Depth (m)"; "" where there is none."""
     plain = name.strip().strip("\"'").strip()
     if bracket := _IN_BRACKETS.search(plain):
-        return bracket[1]
+        return bracket[1] if unit_of(bracket[1]) or unknown_unit(bracket[1]) else ""
     word = _TWO_WORDS.search(plain) or _LAST_WORD.search(plain)
     # "in" and "mi" end names of other meanings
     is_unit = word is not None and (unit_of(word[1]) not in (None, "in", "mi") or unknown_unit(word[1]))
@@ -193,6 +132,40 @@ def other_units(file: Path, columns: Mapping[str, str | None], model_unit: str =
         "table or of the project, or correct the header"
         for (said, read), names in names_by_unit.items()
     ]
+
+
+def stated_units(
+    file: Path, coordinates: Sequence[tuple[str, str, str | None]], model_unit: str = MODEL_UNIT
+) -> tuple[list[str | None], list[str]]:
+    """The unit in which each coordinate or column of a file is read, None for that of the model, and
+    warnings, sentences. coordinates: of each its name, the text of the file that names its unit ("":
+    nothing), and its unit by the key `units` (None: the key is not given). The key decides; without it the
+    file does, with a warning where that is another unit than the model's. Raises InputRefused where the
+    unit of the file is not known."""
+    units: list[str | None] = []
+    names: dict[tuple[str, str | None], list[str]] = {}
+    for name, text, unit in coordinates:
+        said = unit_of(text)
+        if text and said is None and unit is None:
+            what = f"the unit '{text.strip()}' of '{name}' is not known"
+            raise InputRefused(
+                what, file=file, advice=f"set units, one of {', '.join(METERS)}, or convert it"
+            )
+        units.append(unit or said)
+        read = unit or model_unit
+        if said is not None and said != read and not (said == "ft" and unit == "us-ft"):
+            names.setdefault((said, unit), []).append(f"'{name}'")
+    warnings = []
+    unsaid = [f"'{name}'" for (name, *_), unit in zip(coordinates, units, strict=True) if unit is None]
+    if unsaid and any(unit is None for _, unit in names):
+        warnings.append(
+            f"{file}: it does not say the unit of {number_list(unsaid)}, read as {model_unit}: set units"
+        )
+    for (said, unit), listed in names.items():
+        used = f"converted to {model_unit}" if unit is None else f"but the unit is {unit} by 'units'"
+        other = "if that is wrong, set units" if unit is None else "correct one of them if it is wrong"
+        warnings.append(f"{file}: the header says {said} for {number_list(listed)}, {used}: {other}")
+    return units, warnings
 
 
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import InputRefused
+from ..base.no_value import OFTEN_NO_VALUE
 from ..base.text import Step, no_step, read_bytes
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import MapLayer, PointFile
@@ -21,10 +22,10 @@ from .formats import RASTER, SHAPES, STICKS, format_of
 from .map_input import read_shapes
 from .maps.shapes import Heights, Shapes
 from .maps.wkt import parse_wkt
-from .point_input import OFTEN_NO_VALUE, in_model, read_point_file, refuse_keys
-from .tables.points import KNOWN, body_rows, open_table
+from .point_input import in_model, read_point_file, refuse_keys
+from .tables.points import body_rows, table_of
 from .tables.sticks import begins_as_sticks, read_sticks
-from .tables.table_layout import Expected, plain_name
+from .tables.table_layout import plain_name
 
 _COLUMN = "stick"  # the column of a stick's name or number, where none is given
 
@@ -45,20 +46,19 @@ def read_fault_points(
             raise InputRefused("it is no table, so 'stick' has no effect", file=file, advice="take it out")
         return read_point_file(given, model_unit, step)
     if format_of(file, STICKS) or begins_as_sticks(read_bytes(file)):  # the first stick may be long
-        sticks = [in_model(points, given, model_unit) for points in read_sticks(file, step)]
+        units = given.plan_unit, given.height_unit
+        sticks = [in_model(points, units, given.z_axis, model_unit) for points in read_sticks(file, step)]
         return sticks, []
-    column = _stick_column(given, file, stick)
+    column = _stick_column(given, stick)
     if column is None:
         return read_point_file(given, model_unit, step)
     return _table_sticks(given, file, column, model_unit)
 
 
-def _stick_column(source: PointFile, file: Path, stick: str | int | None) -> str | None:
+def _stick_column(source: PointFile, stick: str | int | None) -> str | None:
     """The column of sticks as `where` of a PointFile names it; None where there is none."""
     wanted = () if stick is None else (stick,)
-    table = open_table(
-        file, Expected(source.separator, (*(source.columns or ()), *wanted, *source.where), KNOWN)
-    )
+    table = table_of(source, *wanted)
     if stick is not None:
         return str(table.column(stick) + 1)
     names = [plain_name(name) for name in table.layout.names or ()]
@@ -68,7 +68,7 @@ def _stick_column(source: PointFile, file: Path, stick: str | int | None) -> str
 def _table_sticks(
     source: PointFile, file: Path, column: str, model_unit: str
 ) -> tuple[list[np.ndarray], list[str]]:
-    table = open_table(file, Expected(source.separator, (*(source.columns or ()), *source.where), KNOWN))
+    table = table_of(source)
     at = int(column) - 1
     names = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
     sticks, warnings = [], []
@@ -144,7 +144,7 @@ def read_fault_trace(
         name: all_attributes.get(name, {})
         for name in (_feature(all_attributes, line_name) for line_name, _ in shapes.lines)
     }
-    lines = [in_model(line, given, model_unit) for line in lines]
+    lines = [in_model(line, (given.plan_unit, given.height_unit), given.z_axis, model_unit) for line in lines]
     return FaultLines(lines, file, attributes, (*missing, *OFTEN_NO_VALUE))
 
 

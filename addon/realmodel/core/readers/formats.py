@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..base.text import reading
+from ..base.text import as_utf8, reading
 from .holes.ags import begins_as_ags, read_ags
 from .holes.diggs import begins_as_diggs, read_diggs
 from .holes.gocad_wells import begins_as_gocad_well, read_gocad_wells
@@ -20,24 +20,28 @@ from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
 from .maps.wkt import begins_as_wkt_file, read_wkt
-from .meshes.dxf_mesh import begins_as_dxf, read_dxf
+from .objects.dxf import begins_as_dxf, read_dxf
 from .meshes.gmsh_mesh import begins_as_msh, read_msh
 from .meshes.landxml import begins_as_landxml, read_landxml
 from .meshes.leapfrog import begins_as_leapfrog, read_leapfrog
+from .meshes.obj_mesh import begins_as_obj, read_obj
 from .meshes.off import begins_as_off, read_off
-from .meshes.ply_mesh import begins_as_ply, read_ply
+from .meshes.ply_mesh import begins_as_ply, begins_as_ply_points, read_ply, read_ply_points
 from .meshes.stl_mesh import begins_as_stl, read_stl
-from .meshes.surface_meshes import begins_as_obj, begins_as_tsurf, read_obj, read_tsurf
 from .meshes.vtk_mesh import begins_as_vtk_xml, read_vtk_xml
+from .objects.geo_object import as_a_whole
 from .objects.geoh5_file import begins_as_geoh5, open_geoh5
+from .objects.gocad import begins_as_gocad, read_gocad
 from .objects.omf_file import begins_as_omf, open_omf
 from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
 from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
 from .rasters.geotiff import is_tiff, read_geotiff
 from .rasters.irap_grid import is_irap_grid, read_irap_grid
 from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
+from .tables.dialects import DIALECTS
 from .tables.points import begins_as_array, read_point_array, read_point_rows
 from .tables.sticks import begins_as_sticks, read_sticks
+from .tables.workbook import begins_as_workbook
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
@@ -50,9 +54,9 @@ class FileFormat:
 
     holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
-    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. in_pieces: read takes
-    where its arrays are kept, for files that are larger than the memory. has_layers: `layer` names one of
-    several things in a file. downward_dip: of boreholes, which dips go down where the format says it.
+    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer` names
+    one of several layers of shapes, or sheets, in a file. downward_dip: of boreholes, which dips go down where
+    the format says it.
     """
 
     label: str
@@ -61,7 +65,6 @@ class FileFormat:
     begins: Callable[[bytes, int], bool]
     read: Callable[..., Any]
     by_ending: bool = False
-    in_pieces: bool = False
     has_layers: bool = False
     downward_dip: str | None = None
 
@@ -74,8 +77,8 @@ FORMATS = (
     FileFormat("CPS-3", (".cps3", ".cps"), RASTER, is_cps3_grid, read_cps3_grid),
     FileFormat("IRAP classic", (".gri", ".irap"), RASTER, is_irap_grid, read_irap_grid),
     FileFormat("NumPy array", (".npy",), ARRAY, begins_as_array, read_point_array),
-    FileFormat("OMF", (".omf",), OBJECTS, begins_as_omf, open_omf, has_layers=True),
-    FileFormat("geoh5", (".geoh5",), OBJECTS, begins_as_geoh5, open_geoh5, has_layers=True),
+    FileFormat("OMF", (".omf",), OBJECTS, begins_as_omf, open_omf),
+    FileFormat("geoh5", (".geoh5",), OBJECTS, begins_as_geoh5, open_geoh5),
     FileFormat("GeoPackage", (".gpkg",), SHAPES, is_geopackage, read_geopackage, has_layers=True),
     FileFormat("shapefile", (".shp",), SHAPES, is_shapefile, read_shapefile),
     FileFormat(
@@ -87,22 +90,41 @@ FORMATS = (
         by_ending=True,
     ),
     FileFormat("well-known text", (".wkt",), SHAPES, begins_as_wkt_file, read_wkt),
-    FileFormat("OFF", (".off",), MESH, begins_as_off, read_off, by_ending=True, in_pieces=True),
-    FileFormat("PLY", (".ply",), MESH, begins_as_ply, read_ply, by_ending=True, in_pieces=True),
-    FileFormat("GOCAD TSurf", (".ts",), MESH, begins_as_tsurf, read_tsurf, by_ending=True),
-    FileFormat("VTK XML", (".vtp", ".vtu"), MESH, begins_as_vtk_xml, read_vtk_xml, by_ending=True),
-    FileFormat("Gmsh", (".msh",), MESH, begins_as_msh, read_msh, by_ending=True),
-    FileFormat("Leapfrog", (".msh",), MESH, begins_as_leapfrog, read_leapfrog),
-    FileFormat("LandXML", (".xml", ".landxml"), MESH, begins_as_landxml, read_landxml, by_ending=True),
-    FileFormat("DXF", (".dxf",), MESH, begins_as_dxf, read_dxf, by_ending=True),
-    FileFormat("STL", (".stl",), MESH, begins_as_stl, read_stl, by_ending=True),
-    FileFormat("OBJ", (".obj",), MESH, begins_as_obj, read_obj, by_ending=True),
+    FileFormat("OFF", (".off",), MESH, begins_as_off, read_off, by_ending=True),
+    FileFormat("PLY points", (".ply",), OBJECTS, begins_as_ply_points, as_a_whole(read_ply_points)),
+    FileFormat("PLY", (".ply",), MESH, begins_as_ply, read_ply, by_ending=True),
+    FileFormat(
+        "GOCAD",
+        (".ts", ".vs", ".pl", ".wl", ".gocad"),
+        OBJECTS,
+        begins_as_gocad,
+        as_a_whole(read_gocad),
+        by_ending=True,
+    ),
+    FileFormat(
+        "VTK XML", (".vtp", ".vtu"), OBJECTS, begins_as_vtk_xml, as_a_whole(read_vtk_xml), by_ending=True
+    ),
+    FileFormat("Gmsh", (".msh",), OBJECTS, begins_as_msh, as_a_whole(read_msh), by_ending=True),
+    FileFormat("Leapfrog", (".msh",), OBJECTS, begins_as_leapfrog, as_a_whole(read_leapfrog)),
+    FileFormat(
+        "LandXML",
+        (".xml", ".landxml"),
+        OBJECTS,
+        begins_as_landxml,
+        as_a_whole(read_landxml),
+        by_ending=True,
+    ),
+    FileFormat("DXF", (".dxf",), OBJECTS, begins_as_dxf, as_a_whole(read_dxf), by_ending=True),
+    FileFormat("STL", (".stl",), OBJECTS, begins_as_stl, as_a_whole(read_stl), by_ending=True),
+    FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
     FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
     FileFormat("DIGGS", (".xml", ".diggs"), HOLES, begins_as_diggs, read_diggs),
     FileFormat("Petrel well tops", (".tops", ".asc", ".txt"), HOLES, begins_as_well_tops, read_well_tops),
     FileFormat("GOCAD wells", (".wl",), HOLES, begins_as_gocad_well, read_gocad_wells),
     FileFormat("LAS", (".las",), HOLES, begins_as_las, read_las),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
+    *(FileFormat(d.label, d.endings, TABLE, d.begins, read_point_rows) for d in DIALECTS),
+    FileFormat("Excel", (".xlsx", ".xlsm"), TABLE, begins_as_workbook, read_point_rows, has_layers=True),
     FileFormat(
         "table of text",
         (".csv", ".xyz", ".txt", ".dat", ".tsv"),
@@ -118,7 +140,7 @@ def format_of(file: str | Path, *holds: str) -> FileFormat | None:
     Raises InputRefused where it cannot be read."""
     file = Path(file)
     with reading(file), file.open("rb") as opened:
-        head = opened.read(_HEAD)
+        head = as_utf8(opened.read(_HEAD))
         size = opened.seek(0, os.SEEK_END)
     able = [entry for entry in FORMATS if entry.holds in holds]
     by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)

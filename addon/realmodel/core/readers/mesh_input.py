@@ -9,16 +9,19 @@ from ..base.errors import InputRefused
 from ..base.mapped_arrays import MakeRows, Rows
 from ..base.text import Step, no_step
 from ..settings.data_files import MeshFile
-from .formats import MESH, OBJECTS, endings, format_of, labels
-from .meshes.triangle_mesh import TriangleMesh, mesh_of_faces
-from .object_input import read_object
+from .formats import MESH, OBJECTS, format_of, labels
+from .meshes.triangle_mesh import TriangleMesh
+from .object_input import objects_in, read_object
 from .objects.geo_object import SURFACE
 
 
 def is_mesh_file(file: str | Path) -> bool:
-    """Whether a file is one of a mesh, by its content or else by its ending. Raises InputRefused where it
+    """Whether there is a surface in a file, by its content or else by its ending. Raises InputRefused where it
     cannot be read."""
-    return format_of(file, MESH) is not None
+    file_format = format_of(file, OBJECTS, MESH)
+    if file_format is None or file_format.holds == MESH:
+        return file_format is not None
+    return any(obj.kind == SURFACE for obj in objects_in(Path(file)))
 
 
 def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
@@ -29,13 +32,20 @@ def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows 
     file = Path(file.file if isinstance(file, MeshFile) else file)
     file_format = format_of(file, OBJECTS, MESH)
     if file_format is not None and file_format.holds == OBJECTS:
-        surface = read_object(file, layer, (SURFACE,))
+        surface = read_object(file, layer, (SURFACE,), step)
         assert surface.triangles is not None
-        return mesh_of_faces(file, surface.vertices, surface.triangles)
+        return TriangleMesh(
+            surface.vertices,
+            surface.triangles,
+            surface.face_of_triangle,
+            surface.unit,
+            surface.said_unit,
+            surface.warnings,
+        )
     if layer is not None:
-        what = f"it is not a file of objects ({', '.join(endings(OBJECTS))}), so it has no '{layer}'"
+        what = f"it is not a file of objects, so it has no '{layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     if file_format is None:
         what = f"neither its content nor its extension is that of a mesh ({labels(MESH, OBJECTS)})"
         raise InputRefused(what, file=file)
-    return file_format.read(file, step, rows) if file_format.in_pieces else file_format.read(file, step)
+    return file_format.read(file, step, rows)

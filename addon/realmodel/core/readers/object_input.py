@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.errors import InputRefused, RealModelError, counted
+from ..base.text import Step, no_step
 from ..settings.data_files import Boreholes
 from .formats import OBJECTS, FileFormat, format_of
 from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values
@@ -40,54 +41,64 @@ def objects_in(file: Path) -> list[ObjectName]:
         return opened.names()
 
 
-def read_object(file: Path, layer: str | None, kinds: Collection[str]) -> GeoObject:
+def read_object(file: Path, layer: str | None, kinds: Collection[str], step: Step = no_step) -> GeoObject:
     """The object of this name, or the only one of these kinds. Raises InputRefused, UsageError where the
     library is missing."""
-    (geo_object,) = read_objects(file, layer, kinds, several=False)
+    (geo_object,) = read_objects(file, layer, kinds, False, step)
     return geo_object
 
 
 def read_objects(
-    file: Path, layer: str | None, kinds: Collection[str], several: bool = True
+    file: Path, layer: str | None, kinds: Collection[str], several: bool = True, step: Step = no_step
 ) -> list[GeoObject]:
     """The object of this name, or those of these kinds, if there may be several. Raises as read_object."""
     file_format = format_of(file, OBJECTS)
     assert file_format is not None
-    with _opened(file, file_format) as opened:
+    with _opened(file, file_format, step) as opened:
         return [opened.read(obj) for obj in _chosen(file, opened.names(), layer, kinds, several)]
 
 
 def _chosen(
     file: Path, objects: list[ObjectName], layer: str | None, kinds: Collection[str], several: bool
 ) -> list[ObjectName]:
-    fitting = [obj for obj in objects if obj.kind in kinds]
+    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name has
+    several kinds the first of `kinds` counts."""
     said = " or ".join(_PLURALS[kind] for kind in kinds)
     listed = f"it has {names_shown([obj.name for obj in objects])}" if objects else None
-    if layer is not None:
-        named = [obj for obj in objects if obj.name == layer]
-        named = named or [obj for obj in objects if obj.name.lower() == layer.lower()]
+    if layer is None:
+        fitting = [obj for obj in objects if obj.kind in kinds and not obj.is_part]
+    else:
+        named = [obj for obj in objects if obj.is_called(layer)]
+        named = named or [obj for obj in objects if obj.is_called_like(layer)]
         if not named:
             raise InputRefused(f"it has no object '{layer}'", file=file, advice=listed)
         fitting = [obj for obj in named if obj.kind in kinds]
         if not fitting:
             what = f"'{layer}' is of the kind {named[0].kind}, and {said} are needed"
             raise InputRefused(what, file=file)
-        if len(fitting) > 1:
-            advice = "give each object another name"
-            raise InputRefused(f"it has {len(fitting)} objects '{layer}'", file=file, advice=advice)
+    if not fitting and objects and tuple(kinds) == (SURFACE,):
+        advice = f"if it holds points, read it as points: {listed}"
+        raise InputRefused("it has no faces", file=file, advice=advice)
     if not fitting:
         raise InputRefused(f"it has no {said}", file=file, advice=listed)
-    if len(fitting) > 1 and not several:
-        advice = f'say which: layer = "..."; it has {names_shown([obj.name for obj in fitting])}'
-        raise InputRefused(f"it has {len(fitting)} {said}", file=file, advice=advice)
-    return fitting
+    if several or len(fitting) == 1:
+        return fitting
+    kinds_there = [kind for kind in kinds if kind in {obj.kind for obj in fitting}]
+    if len({obj.name for obj in fitting}) == 1 and len(kinds_there) == len(fitting):
+        return [next(obj for obj in fitting if obj.kind == kinds_there[0])]
+    if layer is not None:
+        what, advice = f"it has {len(fitting)} objects '{layer}'", "give each object another name"
+        raise InputRefused(what, file=file, advice=advice)
+    names = [obj.name for obj in objects if obj.kind in kinds]
+    advice = f'say which: layer = "..."; it has {names_shown(list(dict.fromkeys(names)))}'
+    raise InputRefused(f"it has {len(fitting)} {said}", file=file, advice=advice)
 
 
 @contextmanager
-def _opened(file: Path, file_format: FileFormat) -> Iterator[OpenFile]:
+def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterator[OpenFile]:
     """Raises InputRefused in the place of whatever a library raises for a damaged file."""
     try:
-        with file_format.read(file) as opened:
+        with file_format.read(file, step) as opened:
             yield opened
     except RealModelError:
         raise

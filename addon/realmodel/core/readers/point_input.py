@@ -3,25 +3,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..base.errors import HeightsMissing, InputRefused, counted
-from ..base.mapped_arrays import JoinPieces, in_memory
+from ..base.errors import HeightsMissing, InputRefused, UsageError, counted
+from ..base.mapped_arrays import JoinPieces, in_memory, in_pieces
+from ..base.no_value import OFTEN_NO_VALUE
 from ..base.text import Step, no_step
-from ..base.units import MODEL_UNIT, factor, other_units
-from ..settings.data_files import MapLayer, PointFile, list_of
-from .formats import ARRAY, OBJECTS, RASTER, SHAPES, TABLE, FileFormat, format_of
+from ..base.units import MODEL_UNIT, factor, stated_units
+from ..settings.data_files import MapLayer, PointFile, checked_unit, list_of
+from ..settings.method_options import OptionRefused
+from ..settings.setting import settings_of
+from .formats import ARRAY, MESH, OBJECTS, RASTER, SHAPES, STICKS, TABLE, FileFormat, format_of
 from .map_input import map_companions, read_shapes
 from .maps.shapes import Heights
 from .object_input import read_object
-from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject
+from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, object_units
 from .rasters.geotiff import world_file
 from .rasters.raster import Raster
+from .tables.points import PointRows, other_columns
 from .tables.table_layout import names_shown
 
 
@@ -52,14 +56,19 @@ def read_map_points(
     return points, warnings
 
 
+_END_OF_LINE = 999.0  # in all three columns, of IRAP's points
+_BY_CHANCE = 1e-3  # of all points
+_LOOKED_FOR = (*OFTEN_NO_VALUE, _END_OF_LINE)
 OF_POINTS = (POINTS, LINES, SURFACE, HOLE)
 
 
-def read_object_points(given: PointFile, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
-    """(P, 3) float64, in the file's unit, and warnings, sentences. gather: where the points are kept. Raises
-    InputRefused naming the file and the object."""
+def read_object_points(
+    given: PointFile, obj: GeoObject, gather: JoinPieces, columns: dict[str, np.ndarray] | None = None
+) -> tuple[np.ndarray, list[str]]:
+    """(P, 3) float64, in the file's unit, and warnings, sentences. gather: where the points are kept.
+    columns: where its attributes go, if they are wanted. Raises InputRefused naming the file and the
+    object."""
     file = Path(given.file)
-    obj = read_object(file, given.layer, OF_POINTS)
     label = f"object '{obj.name}'"
     places = np.array(obj.vertices, np.float64)
     if given.height is not None:
@@ -80,6 +89,8 @@ def read_object_points(given: PointFile, gather: JoinPieces) -> tuple[np.ndarray
     has_height = np.isfinite(places[:, 2]) & ~np.isin(places[:, 2], missing)
     if not has_height.any():
         raise InputRefused("none of its points has a value", file=file, item=label)
+    if columns is not None:
+        columns |= {name: values[chosen][has_height] for name, values in obj.columns.items()}
     left_out = int((~has_height).sum())
     warnings = [f"{file}: left out: {counted(left_out, 'point')} without a value"] if left_out else []
     return gather([places[has_height]], np.empty((0, 3))), warnings
@@ -113,22 +124,45 @@ def _values_there(obj: GeoObject, source: PointFile) -> str | None:
     return None
 
 
-# Values that many programs write for "no data".
+@dataclass(frozen=True, eq=False)
+class PointData:
+    """What read_points gives. xyz: (N, 3) float64 in the model's unit, z upward. columns: (N,) of each
+    other column of a table or attribute of an object, by name: numbers (NaN: none) or texts. warnings:
+    sentences."""
+
+    xyz: np.ndarray
+    columns: dict[str, np.ndarray] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
 
 
-OFTEN_NO_VALUE = (
-    -9999.0,
-    -99999.0,
-    -999.0,
-    -999.25,
-    -32768.0,
-    9999.0,
-    99999.0,
-    999.25,
-    9999900.0,
-    1e30,
-    -1e30,
-)
+def read_points(
+    file: str | Path, units: str = MODEL_UNIT, *, file_units: str | Mapping | None = None, **keys: Any
+) -> PointData:
+    """The points of a file in any format of points, as a project reads them.
+
+    units: of the model. file_units: of the file, "ft", or {"xy": "m", "z": "ft"}, where the file does not
+    state them or is wrong; None: what it states, or else those of the model. keys: those of PointFile:
+    columns, where, separator, decimal, nodata, height, layer, z_axis. Raises UsageError for an unknown
+    unit or key, InputRefused naming the file, and the line where it has lines.
+    """
+    given = reading_keys(PointFile, file, units, file_units, keys)
+    columns: dict[str, np.ndarray] = {}
+    points, warnings = _read(given, units, no_step, in_memory, columns)
+    return PointData(points, columns, warnings)
+
+
+def reading_keys(of: type, file: Any, units: str, file_units: Any, keys: Mapping[str, Any]) -> Any:
+    """A PointFile, MeshFile or Boreholes with the reading keys of a call. Raises UsageError."""
+    known = [key for key in settings_of(of) if key not in ("file", "units")]
+    if unknown := [key for key in keys if key not in known]:
+        raise UsageError(f"there is no key '{unknown[0]}'; there are {', '.join([*known, 'file_units'])}")
+    try:
+        checked_unit("units", units)
+        given = of(file, units=file_units, **keys)
+        given.check()
+    except OptionRefused as error:
+        raise UsageError(str(error)) from error
+    return given
 
 
 def read_point_file(
@@ -138,109 +172,187 @@ def read_point_file(
 
     Raises InputRefused naming the file, and the line where it has lines.
     """
+    return _read(given, model_unit, step, gather, None)
+
+
+def _read(
+    given: PointFile, model_unit: str, step: Step, gather: JoinPieces, columns: dict[str, np.ndarray] | None
+) -> tuple[np.ndarray, list[str]]:
+    """As read_point_file. columns: where other columns go, if they are wanted."""
     file = Path(given.file)
-    gather_in_model = _InModel(given, model_unit, gather)
-    file_format = format_of(file, RASTER, ARRAY, OBJECTS, SHAPES, TABLE)
+    values = _Values(gather, file, given)
+    file_format = format_of(file, RASTER, ARRAY, OBJECTS, SHAPES, STICKS, MESH, TABLE)
     assert file_format is not None
     if file_format.holds == RASTER:
-        points, warnings = _raster_points(given, file, file_format, step, gather, gather_in_model)
-    elif file_format.holds == ARRAY:
-        chosen = ["where"] if given.where else []
-        refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
-        points, warnings = file_format.read(file, gather_in_model), []
-    elif file_format.holds == OBJECTS:
-        refuse_keys(file, "has objects", given.only_for_tables)
-        points, warnings = read_object_points(given, gather_in_model)
-    elif file_format.holds == SHAPES:
-        refuse_keys(file, "has shapes", given.only_for_tables)
-        points, warnings = read_map_points(given, step, gather_in_model)
-    else:
-        refuse_keys(file, "is a table", given.only_for_shapes)
-        rows = file_format.read(given, step, gather_in_model)
-        points, warnings = rows.points, _other_units(given, file, rows.columns, model_unit)
-        if rows.taken_for_xyz:
-            names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
-            warnings.append(
-                f"{file}: no column is named x, y or z: the first three, {names}, are used; if that "
-                'is wrong, set columns = ["X", "Y", "Z"]'
-            )
+        raster = _raster(given, file, file_format, step, gather)
+        stated = [("x and y", raster.units[0], given.plan_unit), ("z", raster.units[1], given.height_unit)]
+        (plan, height), warnings = stated_units(file, stated, model_unit)
+        units = (plan, height)
+        warnings += [] if given.units else [f"{file}: {text}" for text in raster.warnings]
+        points = raster.points(file, values)
+    elif file_format.holds == TABLE:
+        refuse_keys(
+            file, "is a table", given.only_for_shapes, () if not file_format.has_layers else ("layer",)
+        )
+        rows = file_format.read(given, step, values)
+        points = rows.points
+        units, warnings = _table_units(given, file, rows, model_unit)
+        warnings += [f"{file}: {text}" for text in rows.doubts]
+        if columns is not None:
+            columns |= other_columns(given, rows)
+        values.nodata = rows.table.layout.nodata
         if rows.missing:
             warnings.append(f"{file}: left out: {counted(rows.missing, 'point')} without a value")
-    warnings += [f"{file}: {text}" for text in gather_in_model.heights.like_no_value()]
-    return points, warnings
+    elif file_format.holds == OBJECTS:
+        refuse_keys(file, "has objects", given.only_for_tables)
+        obj = read_object(file, given.layer, OF_POINTS, step)
+        units, warnings = object_units(given, obj, model_unit)
+        points, more = read_object_points(given, obj, values, columns)
+        warnings = [*(f"{file}: {text}" for text in obj.warnings), *warnings, *more]
+    else:
+        units = (given.plan_unit, given.height_unit)
+        points, warnings = _others(given, file, file_format, step, values, columns)
+    points = values.without_often_none(points, columns)
+    return in_model(points, units, given.z_axis, model_unit, gather), [*warnings, *values.warnings]
 
 
-def _other_units(source: PointFile, file: Path, columns: Sequence[str], model_unit: str) -> list[str]:
-    """The warnings about units in the header of a table. columns: the names of x, y and z, if it has them."""
-    units = (source.plan_unit, source.plan_unit, source.height_unit)
-    return other_units(file, dict(zip(columns, units, strict=True)) if columns else {}, model_unit)
+def _others(
+    given: PointFile,
+    file: Path,
+    file_format: FileFormat,
+    step: Step,
+    gather: JoinPieces,
+    columns: dict[str, np.ndarray] | None,
+) -> tuple[np.ndarray, list[str]]:
+    """(P, 3) points of arrays, shapes and polylines, in the file's unit, and warnings."""
+    chosen = ["where"] if given.where else []
+    if file_format.holds == ARRAY:
+        refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
+        return file_format.read(file, gather), []
+    if file_format.holds == SHAPES:
+        refuse_keys(file, "has shapes", given.only_for_tables)
+        return read_map_points(given, step, gather)
+    refuse_keys(file, f"is {file_format.label}", [*given.only_for_tables, *chosen, *given.only_for_shapes])
+    if file_format.holds == STICKS:
+        sticks = file_format.read(file, step)
+        if columns is not None:
+            columns["stick"] = np.repeat(np.arange(1.0, len(sticks) + 1), [len(stick) for stick in sticks])
+        return gather(sticks, np.empty((0, 3))), []
+    what = f"it is a mesh ({file_format.label}), not points"
+    raise InputRefused(what, file=file, advice="give it as the mesh of a surface")
 
 
-class _InModel:
-    """Gathers points of a file in the model's unit. heights: of the file, examined on the way."""
+def _table_units(
+    given: PointFile, file: Path, rows: PointRows, model_unit: str
+) -> tuple[tuple[str | None, str | None], list[str]]:
+    """The units of x and y, and of z, and warnings."""
+    of_key = (given.plan_unit, given.plan_unit, given.height_unit)
+    stated = zip(rows.columns or ("x", "y", "z"), rows.units, of_key, strict=True)
+    (x, y, z), warnings = stated_units(file, list(stated), model_unit)
+    if (x or model_unit) != (y or model_unit):
+        what = f"x is in {x or 'no unit'} and y in {y or 'no unit'}, by the names of their columns"
+        raise InputRefused(what, file=file, advice='set units = { xy = "m" } or correct the names')
+    return (x, z), warnings
 
-    def __init__(self, given: PointFile, model_unit: str, gather: JoinPieces):
-        self._given, self._unit, self._gather = given, model_unit, gather
-        self.heights = _Heights()
+
+def in_model(
+    points: np.ndarray,
+    units: tuple[str | None, str | None],
+    z_axis: str,
+    model_unit: str,
+    gather: JoinPieces = in_memory,
+) -> np.ndarray:
+    """Points (P, 3) of a file in the model's unit, z upward. units: of x and y, and of z."""
+    scale = np.array([factor(units[0], model_unit)] * 2 + [factor(units[1], model_unit)])
+    scale[2] *= -1.0 if z_axis == "down" else 1.0
+    if (scale == 1.0).all():
+        return points
+    return gather((piece * scale for piece in in_pieces(points)), np.empty((0, 3)))
+
+
+class _Values:
+    """Gathers points, and looks among their coordinates, piece by piece, for values that programs write
+    for no data. nodata: the one of the file's format. warnings: sentences."""
+
+    def __init__(self, gather: JoinPieces, file: Path, given: PointFile):
+        self._gather, self._file, self._given = gather, file, given
+        self.nodata: float | None = None
+        self.warnings: list[str] = []
+        self._clear()
 
     def __call__(self, pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
-        self.heights = _Heights()
-        return self._gather(map(self._converted, pieces), empty)
+        self._clear()
+        return self._gather(map(self._looked_at, pieces), empty)
 
-    def _converted(self, points: np.ndarray) -> np.ndarray:
-        self.heights.add(points[:, 2])
-        return in_model(points, self._given, self._unit)
-
-
-def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarray:
-    """Points (P, 3) of a file in the model's unit, z upward."""
-    points = np.array(points, np.float64, order="C")
-    for columns, unit in ((slice(0, 2), given.plan_unit), (slice(2, 3), given.height_unit)):
-        if (scale := factor(unit, model_unit)) != 1.0:
-            points[:, columns] *= scale
-    if given.z_axis == "down":
-        points[:, 2] *= -1.0
-    return points
-
-
-class _Heights:
-    """Looks among heights, piece by piece, for values that programs write for no data."""
-
-    def __init__(self) -> None:
+    def _clear(self) -> None:
         self._count = 0
-        self._of_value = dict.fromkeys(OFTEN_NO_VALUE, 0)
-        self._low, self._high = np.inf, -np.inf  # of the others
+        self._counts: list[dict[float, int]] = [{}, {}, {}]  # of such values among x, y, z
+        self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)  # of the others
 
-    def add(self, z: np.ndarray) -> None:
-        self._count += len(z)
-        often = np.isin(z, OFTEN_NO_VALUE)
-        if often.any():
-            for value in OFTEN_NO_VALUE:
-                self._of_value[value] += int((z == value).sum())
-            z = z[~often]
-        if len(z):
-            self._low, self._high = min(self._low, float(z.min())), max(self._high, float(z.max()))
+    def _looked_at(self, points: np.ndarray) -> np.ndarray:
+        self._count += len(points)
+        for axis in range(3 if len(points) else 0):
+            column = points[:, axis]
+            low, high = column.min(), column.max()
+            if any(low <= value <= high for value in _LOOKED_FOR):
+                often = np.isin(column, _LOOKED_FOR)
+                counts = self._counts[axis]
+                for value, count in zip(*np.unique(column[often], return_counts=True), strict=True):
+                    counts[float(value)] = counts.get(float(value), 0) + int(count)
+                column = column[~often]
+                low, high = (column.min(), column.max()) if len(column) else (np.inf, -np.inf)
+            self._low[axis], self._high[axis] = min(self._low[axis], low), max(self._high[axis], high)
+        return points
 
-    def like_no_value(self) -> list[str]:
-        """Warnings about such heights where no other height is near. Their points are not left out: the
-        heights may be real."""
-        said = []
-        for value, count in self._of_value.items():
-            if not count or count == self._count or self._low > self._high:
-                continue
-            near = min(abs(value - self._low), abs(value - self._high))
-            if near > max(self._high - self._low, 0.5 * abs(value)):
-                number = "1 point has" if count == 1 else f"{count} points have"
-                said.append(
-                    f"{number} the height {value:g}, far from all others, which often means no data: if so, "
-                    f"set nodata = {value:g}"
+    def without_often_none(self, points: np.ndarray, columns: dict[str, np.ndarray] | None) -> np.ndarray:
+        """The points without those that have such a value far from all others, and without the rows 999 999
+        999 that end lines; and the columns without theirs."""
+        if self._given.nodata_values:
+            return points
+        ends = {counts.pop(_END_OF_LINE, 0) for counts in self._counts}
+        far = [self._far(axis) for axis in range(3)]
+        has_ends = len(ends) == 1 and ends != {0} and not self._low[0] <= _END_OF_LINE <= self._high[0]
+        if not any(far) and not has_ends:
+            return points
+
+        def is_known(piece: np.ndarray) -> np.ndarray:
+            unknown = np.any([np.isin(piece[:, axis], far[axis]) for axis in range(3)], axis=0)
+            return ~(unknown | (has_ends & (piece == _END_OF_LINE).all(axis=1)))
+
+        for name, values in (columns or {}).items():
+            assert columns is not None
+            columns[name] = values[is_known(points)]
+        return self._gather((piece[is_known(piece)] for piece in in_pieces(points)), np.empty((0, 3)))
+
+    def _far(self, axis: int) -> list[float]:
+        """The values of an axis that stand for none."""
+        low, high, name = self._low[axis], self._high[axis], "xyz"[axis]
+        called = "height" if axis == 2 else name
+        values = []
+        for value, count in self._counts[axis].items():
+            number = "1 point has" if count == 1 else f"{count} points have"
+            what = f"{self._file}: {number} the {called} {value:.9g}"
+            near = min(abs(value - low), abs(value - high))
+            has_others = low <= high
+            is_far = has_others and near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
+            # among others such a number comes by chance, where there are many of them
+            is_rare = low <= value <= high and count <= _BY_CHANCE * self._count
+            if has_others and (is_far or value == self.nodata or (value % 1 and not is_rare)):
+                values.append(value)
+                self.warnings.append(
+                    f"{what}, {'far from all others, ' if is_far else ''}which often means no data, and left "
+                    'out: if it is a value, set nodata = "none"'
                 )
-        return said
+            elif value % 1 or (count > 1 and not is_rare):
+                self.warnings.append(
+                    f"{what}, which often means no data: it is used; if it is none, set nodata = {value:g}"
+                )
+        return values
 
 
-def refuse_keys(file: Path, what: str, keys: list[str]) -> None:
-    """Refuses options that have no effect on a file."""
-    if keys:
+def refuse_keys(file: Path, what: str, keys: Iterable[str], but: Container[str] = ()) -> None:
+    """Refuses options that have no effect on a file. but: those that do."""
+    if keys := [key for key in keys if key not in but]:
         raise InputRefused(f"it {what}, so '{keys[0]}' has no effect", file=file, advice="take it out")
 
 
@@ -262,10 +374,11 @@ def read_raster_heights(
     if file_format is None:
         return None
     raster = _raster(given, file, file_format, no_step, in_memory)
-    z = raster.heights_at(plan / factor(given.plan_unit, model_unit))
-    return in_model(np.column_stack([plan, z]), replace(given, units={"z": given.height_unit}), model_unit)[
-        :, 2
-    ]
+    stated = [("x and y", raster.units[0], given.plan_unit), ("z", raster.units[1], given.height_unit)]
+    (of_plan, of_height), _ = stated_units(file, stated, model_unit)
+    z = raster.heights_at(plan / factor(of_plan, model_unit))
+    points = np.column_stack([plan, z])
+    return in_model(points, (None, of_height), given.z_axis, model_unit)[:, 2]
 
 
 def _raster(source: PointFile, file: Path, file_format: FileFormat, step: Step, gather: JoinPieces) -> Raster:
@@ -273,16 +386,3 @@ def _raster(source: PointFile, file: Path, file_format: FileFormat, step: Step, 
     refuse_keys(file, "is a raster", [*source.only_for_tables, *chosen, *source.only_for_shapes])
     nodata = [value for value in source.nodata_values if not isinstance(value, str)]
     return file_format.read(file, nodata, step, gather)
-
-
-def _raster_points(
-    source: PointFile,
-    file: Path,
-    file_format: FileFormat,
-    step: Step,
-    gather: JoinPieces,
-    gather_in_model: JoinPieces,
-) -> tuple[np.ndarray, list[str]]:
-    raster = _raster(source, file, file_format, step, gather)
-    warnings = [] if source.units else [f"{file}: {text}" for text in raster.warnings]
-    return raster.points(file, gather_in_model), warnings

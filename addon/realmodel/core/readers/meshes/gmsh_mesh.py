@@ -12,7 +12,8 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step, line_of_word, no_step, read_bytes
-from .triangle_mesh import TriangleMesh, mesh_of_faces
+from ..objects.geo_object import ObjectName
+from .triangle_mesh import surface_object
 
 # Nodes of each type of element; of those with more nodes than corners the corners come first.
 _NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 15: 1, 16: 8}
@@ -25,8 +26,8 @@ def begins_as_msh(head: bytes, _size: int = 0) -> bool:
     return head.lstrip().startswith(b"$MeshFormat")
 
 
-def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
-    """Reads the faces of a mesh, and the nodes that they use. Raises InputRefused naming the file."""
+def read_msh(file: str | Path, step: Step = no_step) -> list[ObjectName]:
+    """Reads the faces of a mesh. Raises InputRefused naming the file."""
     file = Path(file)
     raw = read_bytes(file)
     sections = {}
@@ -73,10 +74,8 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     if not len(tags):
         raise InputRefused("it has no nodes", file=file)
     numbers = [_numbers(file, tags, corners) for corners in faces if len(corners)]
-    used = np.unique(np.concatenate([some.ravel() for some in numbers]))
-    numbers = [np.searchsorted(used, some) for some in numbers]
     listed = numbers[0] if len(numbers) == 1 else [row for some in numbers for row in some.tolist()]
-    return mesh_of_faces(file, places[used], listed)
+    return [surface_object(file, file.stem, places, listed)]
 
 
 def _numbers(file: Path, tags: np.ndarray, corners: np.ndarray) -> np.ndarray:

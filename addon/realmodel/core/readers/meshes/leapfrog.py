@@ -10,10 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from ...base.text import Step, no_step, read_bytes
-from .triangle_mesh import UNREADABLE, TriangleMesh, mesh_of_faces, unreadable
+from ..objects.geo_object import ObjectName
+from .triangle_mesh import UNREADABLE, surface_object, unreadable
 
 _MAGIC = b"%ARANZ-1.0"
 _ARRAY = re.compile(rb"^\s*(\w+) (\w+) (\d{1,9}) (\d{1,9});\s*$", re.MULTILINE)  # name, type, columns, rows
+_NAME = re.compile(rb"""^\s*Name\s*[:= ]\s*["']?([^"';\r\n]+)""", re.IGNORECASE | re.MULTILINE)
 _BINARY = b"[binary]"
 _BEFORE = range(12, 15)  # bytes between that word and the arrays: a mark, behind the end of a line in some
 _TYPES = {"Integer": "<i4", "Double": "<f8", "Float": "<f4", "Single": "<f4"}
@@ -24,8 +26,8 @@ def begins_as_leapfrog(head: bytes, _size: int = 0) -> bool:
     return head.startswith(_MAGIC)
 
 
-def read_leapfrog(file: str | Path, _step: Step = no_step) -> TriangleMesh:
-    """Reads the triangles. Raises InputRefused."""
+def read_leapfrog(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
+    """Reads the triangles; it is called as in its index, or else as its file. Raises InputRefused."""
     file = Path(file)
     index, _, content = read_bytes(file).partition(_BINARY)
     arrays: dict[str, np.ndarray] = {}
@@ -47,4 +49,6 @@ def read_leapfrog(file: str | Path, _step: Step = no_step) -> TriangleMesh:
         raise unreadable(file, "Leapfrog", ValueError(f"unknown or missing: {error}")) from error
     except UNREADABLE as error:
         raise unreadable(file, "Leapfrog", error) from error
-    return mesh_of_faces(file, vertices, triangles)
+    name = _NAME.search(index)
+    label = name[1].decode("utf-8", "replace").strip() if name else file.stem
+    return [surface_object(file, label, vertices, triangles)]

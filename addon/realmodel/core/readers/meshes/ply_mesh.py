@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes in the format of Stanford's PLY, binary and as text."""
+"""Stanford's PLY, binary and as text (Turk, "The PLY polygon file format"): faces, strips of triangles, and points
+where there are none."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
 from ...base.text import FileBytes, Step, line_of_word, no_step, pieces_of, with_newlines
+from ..objects.geo_object import ObjectName, point_object
 from .triangle_mesh import UNREADABLE, DamagedError, MeshRows, TriangleMesh, unreadable
 
 _ORDERS = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -34,12 +37,43 @@ _TYPES = {
 }
 _CORNERS = ("vertex_indices", "vertex_index")
 _END = b"end_header"
+_FACES = re.compile(rb"\n\s*element\s+(?:face|tristrips)\s+[1-9]")
 _HEAD_BYTES = 1 << 12
 
 
 def begins_as_ply(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
-    return head.startswith((b"ply\n", b"ply\r"))
+    return bool(re.match(rb"ply\s", head))
+
+
+def begins_as_ply_points(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is one without faces."""
+    header, end, _ = head.partition(_END)
+    return begins_as_ply(head) and bool(end) and not _FACES.search(header)
+
+
+def read_ply_points(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
+    """Reads the vertices of a PLY without faces, binary or text, with their other properties as columns. Raises
+    InputRefused."""
+    file = Path(file)
+    raw = FileBytes(file)
+    try:
+        kind, begins, elements = _read_header(raw)
+        body = _Numbers(raw, begins, Rows) if kind == "ascii" else _Bytes(raw, begins)
+        at = 0
+        for name, (count, properties) in elements.items():
+            row = _row_of(properties)
+            if name == "vertex":
+                table = np.frombuffer(body.some(at, count * row.itemsize), row)
+                break
+            at += count * row.itemsize
+        else:
+            raise ValueError("its header has no format, vertices or faces")
+        places = np.column_stack([table[axis].astype(np.float64) for axis in "xyz"])
+        columns = {name: np.array(table[name]) for name in row.names or () if name not in tuple("xyz")}
+    except UNREADABLE as error:
+        raise unreadable(file, "PLY", error) from error
+    return [point_object(file.stem, places, columns=columns)]
 
 
 def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
@@ -50,20 +84,21 @@ def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
     mesh = MeshRows(file, rows)
     begins, kind = 0, ""
     try:
-        head, begins = _head(raw)
-        kind, elements = _header(head.decode("latin-1").splitlines())
-        if not (kind and begins) or not {"vertex", "face"} <= elements.keys():
+        kind, begins, elements = _read_header(raw)
+        faces = next((name for name in ("face", "tristrips") if name in elements), "")
+        if not faces or "vertex" not in elements:
             raise ValueError("its header has no format, vertices or faces")
         body = _Numbers(raw, begins, rows) if kind == "ascii" else _Bytes(raw, begins)
         at, names_read = 0, set()
         for name, (count, properties) in elements.items():
-            if name in ("vertex", "face"):
-                at = (_vertices if name == "vertex" else _faces)(body, at, count, properties, mesh, step)
+            if name in ("vertex", faces):
+                read = _vertices if name == "vertex" else _faces if name == "face" else _strips
+                at = read(body, at, count, properties, mesh, step)
                 names_read.add(name)
             elif len(names_read) == 2:
                 break
             else:
-                at += count * np.dtype([(key, form) for key, _, form in properties]).itemsize
+                at = _behind(body, at, count, properties)
     except _CutOffError as error:
         place = {"byte": begins + error.at}
         if kind == "ascii":
@@ -75,6 +110,31 @@ def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
     except UNREADABLE as error:
         raise unreadable(file, "PLY", error) from error
     return mesh.mesh()
+
+
+def _read_header(raw: FileBytes) -> tuple[str, int, dict[str, tuple]]:
+    """As _header, with the byte where the rest begins. Raises ValueError."""
+    head, begins = _head(raw)
+    kind, elements = _header(head.decode("latin-1").splitlines())
+    if not (kind and begins):
+        raise ValueError("its header has no format, vertices or faces")
+    return kind, begins, elements
+
+
+def _row_of(properties: list[tuple]) -> np.dtype:
+    """A row of an element without lists. Raises ValueError."""
+    if any(length for _, length, _ in properties):
+        raise ValueError("its vertices have a list")
+    return np.dtype([(name, form) for name, _, form in properties])
+
+
+def _behind(body: _Bytes, at: int, count: int, properties: list[tuple]) -> int:
+    """Where the rows of an element end that begin at a byte."""
+    if not any(length for _, length, _ in properties):
+        return at + count * _row_of(properties).itemsize
+    for _ in range(count):
+        _, _, at = _face(body, at, properties, "")
+    return at
 
 
 def _head(raw: FileBytes) -> tuple[bytes, int]:
@@ -139,7 +199,7 @@ def _header(lines: list[str]) -> tuple[str, dict[str, tuple]]:
 
 def _vertices(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: MeshRows, step: Step) -> int:
     """Reads the vertices from a byte on; where they end."""
-    row = np.dtype([(name, form) for name, _, form in properties])
+    row = _row_of(properties)
     if not 0 <= count * row.itemsize <= len(body) - at:
         raise _CutOffError(min(at, len(body)))
     for begin in range(0, count, ROWS_AT_ONCE):
@@ -160,6 +220,25 @@ def _faces(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: Mes
         faces, at = _some_faces(body, at, min(count, ROWS_AT_ONCE), properties, keys[0])
         mesh.add_faces(faces)
         count -= len(faces)
+    return at
+
+
+def _strips(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: MeshRows, step: Step) -> int:
+    """Reads strips of triangles from a byte on, each next one turned; -1 begins another. Where they end."""
+    keys = [name for name, length, _ in properties if length and name in _CORNERS]
+    if len(keys) != 1:
+        raise ValueError("its strips have no list of vertices")
+    for _ in range(count):
+        row, _, at = _face(body, at, properties, keys[0])
+        corners = np.asarray(row, np.float64)
+        place = np.arange(len(corners))
+        begins = np.maximum.accumulate(np.where(corners == -1, place, -1)) + 1
+        odd = ((place - begins)[:-2] % 2 == 1)[:, None]
+        faces = np.column_stack([corners[:-2], corners[1:-1], corners[2:]])
+        faces = np.where(odd, faces[:, [1, 0, 2]], faces)
+        is_face = (faces != -1).all(axis=1) & (faces != faces[:, [1, 2, 0]]).all(axis=1)
+        mesh.add_faces(faces[is_face])
+        step(at / len(body))
     return at
 
 

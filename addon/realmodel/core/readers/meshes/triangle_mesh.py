@@ -4,35 +4,38 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.algebra import begins_run
-from ...base.errors import InputRefused
+from ...base.errors import InputRefused, counted
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeRows, Rows, in_memory, in_pieces
-from ...base.triangles import fanned
+from ...base.triangles import concave_divided, fanned
 from ...settings.data_files import MeshFile
+from ..objects.geo_object import SURFACE, GeoObject, ObjectName, Values, object_units
 
 _MOST_VERTICES = np.iinfo(np.int32).max
 
 
 @dataclass(frozen=True)
 class TriangleMesh:
-    """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner.
+    """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner, or divided
+    within themselves where a fan would leave them.
 
     face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
-    unit: of its lengths (units.METERS), where the file says one; said_unit: one that may not be meant.
-    warnings: sentences.
+    unit: of its lengths, as the file names it, or {"xy": ..., "z": ...}; None: it states none. said_unit: one of
+    units.METERS that may not be meant. warnings: sentences.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     face_of_triangle: np.ndarray | None = None
-    unit: str | None = None
+    unit: str | Mapping | None = None
     said_unit: str | None = None
     warnings: tuple[str, ...] = ()
 
@@ -42,13 +45,9 @@ class TriangleMesh:
         """The vertices in the model's unit, z upward, and warnings. given: the import options of the user;
         where they have no unit, the unit of the file is used. gather: where the vertices are kept."""
         warnings = [f"{given.file}: {text}" for text in self.warnings]
-        if given.units is None and self.unit not in (None, model_unit):
-            given = replace(given, units=self.unit)
-            warnings.append(f"{given.file}: its lengths are in {self.unit}, according to the file")
-        if given.units is None and self.said_unit not in (None, model_unit):
-            what = f"its header says {self.said_unit}; it is read in the unit of the model, {model_unit}"
-            warnings.append(f'{given.file}: {what}: write units = "{self.said_unit}" if the header is right')
-        plan_scale, height_scale = given.scale(model_unit)
+        (plan, height), of_units = object_units(given, self, model_unit)
+        warnings += of_units
+        plan_scale, height_scale = replace(given, units={"xy": plan, "z": height}).scale(model_unit)
         if (plan_scale, height_scale) == (1.0, 1.0):
             return self.vertices, warnings
         scale = np.array([plan_scale, plan_scale, height_scale])
@@ -111,6 +110,7 @@ class MeshRows:
         self.faces += len(sizes)
 
     def mesh(self) -> TriangleMesh:
+        """The mesh; concave polygons are divided within themselves."""
         if not self.faces:
             advice = "if it holds points, read it as points"
             raise InputRefused("the mesh has no faces", file=self._file, advice=advice)
@@ -121,7 +121,40 @@ class MeshRows:
             face = bad if owners is None else int(owners[bad])
             line = None if self._lines is None else int(self._lines.array()[face])
             raise InputRefused(f"face {face + 1} has a corner that is no vertex", file=self._file, line=line)
-        return TriangleMesh(self._vertices.array(), triangles, owners)
+        vertices = self._vertices.array()
+        if owners is None:
+            return TriangleMesh(vertices, triangles)
+        triangles, crossing = self._divided(vertices, triangles, owners)
+        warnings = []
+        if crossing:
+            what = "its border crosses itself" if crossing == 1 else "their borders cross themselves"
+            warnings = [f"{counted(crossing, 'face')} cannot be divided rightly: {what}"]
+        return TriangleMesh(vertices, triangles, owners, warnings=tuple(warnings))
+
+    def _divided(
+        self, vertices: np.ndarray, triangles: np.ndarray, owners: np.ndarray
+    ) -> tuple[np.ndarray, int]:
+        """The triangles with concave polygons divided within themselves, and how many cross themselves."""
+        rows, replaced, begin, crossing = [], [], 0, 0
+        while begin < len(triangles):
+            last = owners[min(begin + ROWS_AT_ONCE, len(triangles)) - 1]
+            end = int(np.searchsorted(owners, last, "right"))
+            first = np.flatnonzero(begins_run(owners[begin:end, None]))
+            changed, new, crossed = concave_divided(vertices, triangles[begin:end], first)
+            rows.append(begin + changed)
+            replaced.append(new)
+            crossing += len(crossed)
+            begin = end
+        changed_rows, new_triangles = np.concatenate(rows), np.concatenate(replaced)
+        if not len(changed_rows):
+            return triangles, crossing
+        divided = self._rows(np.empty((0, 3), np.int32))
+        for begin in range(0, len(triangles), ROWS_AT_ONCE):
+            piece = np.array(triangles[begin : begin + ROWS_AT_ONCE])
+            at = slice(*np.searchsorted(changed_rows, (begin, begin + len(piece))).tolist())
+            piece[changed_rows[at] - begin] = new_triangles[at]
+            divided.add(piece)
+        return divided.array(), crossing
 
     def _first_bad(self, triangles: np.ndarray) -> int:
         begin = 0
@@ -161,6 +194,41 @@ def mesh_of_corners(file: Path, corners: ArrayLike, sizes: Sequence[int] = (3,))
     ends = itertools.accumulate(sizes, initial=0)
     numbers = index.tolist()
     return mesh_of_faces(file, vertices, [numbers[begin:end] for begin, end in itertools.pairwise(ends)])
+
+
+def surface_object(
+    file: Path,
+    name: str,
+    vertices: ArrayLike,
+    faces: Sequence | np.ndarray,
+    lines: Sequence[int] | None = None,
+    is_part: bool = False,
+    **more: Any,
+) -> ObjectName:
+    """A surface of a file by its vertices (V, 3), of which others may be used by others, and the corners of its
+    faces; arguments as of mesh_of_faces, which is called when it is read. is_part: as of an ObjectName. more: as
+    of a GeoObject."""
+
+    def made() -> GeoObject:
+        return object_of_mesh(name, mesh_of_faces(file, vertices, faces, lines), **more)
+
+    return ObjectName(name, SURFACE, made, is_part=is_part)
+
+
+def object_of_mesh(name: str, mesh: TriangleMesh, warnings: Sequence[str] = (), **more: Any) -> GeoObject:
+    """A surface with the vertices that its triangles use. more: as of a GeoObject."""
+    used, index = np.unique(mesh.triangles, return_inverse=True)
+    vertices, triangles = mesh.vertices[used], index.reshape(-1, 3).astype(np.int32)
+    return GeoObject(
+        name,
+        SURFACE,
+        vertices,
+        triangles,
+        [Values(vertices, {})],
+        face_of_triangle=mesh.face_of_triangle,
+        warnings=(*warnings, *mesh.warnings),
+        **more,
+    )
 
 
 UNREADABLE = (ValueError, IndexError, KeyError, OverflowError, TypeError)

@@ -17,7 +17,8 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step, parse_xml, read_bytes
-from .triangle_mesh import TriangleMesh, mesh_of_faces
+from ..objects.geo_object import ObjectName
+from .triangle_mesh import surface_object
 
 _TYPES = {
     f"{name}{bits}": f"{kind}{bits // 8}"
@@ -41,8 +42,8 @@ def begins_as_vtk_xml(head: bytes, _size: int = 0) -> bool:
     return bool(_BEGINNING.match(head))
 
 
-def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
-    """Reads the polygons, and the nodes that they use. Raises InputRefused."""
+def read_vtk_xml(file: str | Path, step: Step = no_step) -> list[ObjectName]:
+    """Reads the polygons; it is called as its file. Raises InputRefused."""
     file = Path(file)
     raw = read_bytes(file)
     appended = _Body(b"", False)
@@ -82,10 +83,7 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
         advice = "save the surface, not the solid (Extract Surface)"
         raise InputRefused("it has no triangles or polygons", file=file, advice=advice)
     listed = faces[0] if len(faces) == 1 else [face for some in faces for face in some]
-    mesh = mesh_of_faces(file, np.concatenate(vertices), listed)
-    used, index = np.unique(mesh.triangles, return_inverse=True)
-    triangles = index.reshape(-1, 3).astype(np.int32)
-    return TriangleMesh(mesh.vertices[used], triangles, mesh.face_of_triangle)
+    return [surface_object(file, file.stem, np.concatenate(vertices), listed)]
 
 
 _Faces = np.ndarray | list  # corners of faces, (F, K) or of any number

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...base.packages import extra, quiet
+from ...base.text import Step, no_step
 from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
@@ -24,7 +25,7 @@ def begins_as_geoh5(head: bytes, _size: int = 0) -> bool:
 
 
 @contextmanager
-def open_geoh5(file: Path) -> Iterator[OpenFile]:
+def open_geoh5(file: Path, _step: Step = no_step) -> Iterator[OpenFile]:
     """A file, while it is open. Raises UsageError where the library is missing."""
     library = extra("geoh5py", "reading geoh5", "geoh5")
     if file.suffix != _ENDING:

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ...base.packages import omf_library, quiet
+from ...base.text import Step, no_step
 from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
 
 _MAGIC = b"\x84\x83\x82\x81"
@@ -24,7 +25,7 @@ def begins_as_omf(head: bytes, _size: int = 0) -> bool:
 
 
 @contextmanager
-def open_omf(file: Path) -> Iterator[OpenFile]:
+def open_omf(file: Path, _step: Step = no_step) -> Iterator[OpenFile]:
     """A file, while it is open. Raises UsageError where the library is missing."""
     omf = omf_library("reading OMF")
     with quiet(), file.open("rb") as opened:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Grids of text in columns from west to east, each from north to south: CPS-3 (Schlumberger), with lines of
-keys (FS...), and ZMAP+ (Landmark), with comments (!) and a header between two @."""
+keys (FS...), and ZMAP+ (Landmark), with comments (! and +) and a header between two @.
+
+The layouts are those of GDAL's driver ZMap and of xtgeo (`surface/_zmap_parser.py`, `test_zmap_spec.py`)."""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from pathlib import Path
 
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import JoinPieces, in_memory
-from ...base.text import Step, no_step, text_content
+from ...base.text import BYTES_AT_ONCE, Content, Step, no_step, text_content
 from .grid_text import (
     NO_HEIGHT_WORDS,
     GridText,
@@ -23,7 +25,7 @@ from .grid_text import (
 from .raster import Raster, known_heights
 
 _CPS3 = re.compile(rb"(?:\s*!.*\n)*\s*FS(?:ASCI|ATTR|LIMI|NROW|XINC)\s")
-_ZMAP = re.compile(rb"(?:\s*!.*\n)*\s*@[^\n]*,\s*GRID\s*,", re.IGNORECASE)
+_ZMAP = re.compile(rb"(?:\s*[!+].*\n)*\s*@[^\n]*,\s*GRID\s*,", re.IGNORECASE)
 _NO_HEIGHT = 1e30  # of CPS-3
 
 
@@ -77,7 +79,7 @@ def read_zmap_grid(
         if text.startswith("@") and header:
             break
         by_gdal = by_gdal or (text.startswith("!") and "created by gdal" in text.lower())
-        if text and not text.startswith("!"):
+        if text and not text.startswith(("!", "+")):
             header.append((line, text))
     else:
         raise InputRefused("the header has no second @", file=file, line=line, advice="the file is cut off")
@@ -93,8 +95,14 @@ def read_zmap_grid(
         for low, count in ((2, layout[1]), (4, layout[0])):
             half = (layout[low + 1] - layout[low]) / max(count, 1.0) / 2
             layout[low], layout[low + 1] = layout[low] + half, layout[low + 1] - half
-    heights = GridText(file, raw, at, line + 1)
+    heights = GridText(file, raw, at, line + 1, comments=_comments(raw, at))
     return _columns(heights, layout, (of_numbers, of_numbers), [*none, *nodata], step, gather)
+
+
+def _comments(raw: Content, begin: int) -> bytes:
+    """The signs that begin comments among the heights; a plus is also one of a number."""
+    has_plus = re.search(rb"(?m)^[ \t]*\+(?![\d.])", raw[begin : begin + BYTES_AT_ONCE])
+    return b"!+" if has_plus else b"!" if raw.find(b"!", begin) >= 0 else b""
 
 
 def _columns(

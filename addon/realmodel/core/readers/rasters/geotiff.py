@@ -28,9 +28,10 @@ _MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 _PIXEL_SCALE, _TIEPOINTS, _TRANSFORMATION, _GEO_KEYS = 33550, 33922, 34264, 34735
 _GDAL_METADATA, _GDAL_NODATA = 42112, 42113
 _MODEL_TYPE, _RASTER_TYPE, _PROJECTED, _PLAN_UNIT = 1024, 1025, 3072, 3076  # geokeys
+_HEIGHT_UNIT = 4099
 _OF_USER = 32767  # for a system without a code
 _GEOGRAPHIC, _PIXEL_IS_POINT = 2, 2
-_FEET = {9002: "ft", 9003: "us-ft"}
+_UNITS = {9001: "m", 9002: "ft", 9003: "us-ft", 9036: "km"}  # by EPSG's numbers
 _NONE, _LZW, _DEFLATE, _PACKBITS = 1, 5, (8, 32946), 32773
 _MOST_COMPRESSED = 3000  # bytes of one, of LZW; DEFLATE stays below
 _MOST_WITHOUT_BYTES = 1 << 24  # pixels of a strip or tile that is not stored
@@ -82,7 +83,8 @@ def read_geotiff(
         raise InputRefused(f"a damaged TIFF: {error}", file=file) from error
     keys = _geo_keys(tags.get(_GEO_KEYS, ()))
     origin, across, down = _place(file, tags, keys)
-    return Raster(z, origin, across, down, _warnings(keys))
+    units = (_unit(keys.get(_PLAN_UNIT)), _unit(keys.get(_HEIGHT_UNIT)))
+    return Raster(z, origin, across, down, _warnings(keys), units)
 
 
 def geotiff_system(file: str | Path) -> int | None:
@@ -303,5 +305,8 @@ def _warnings(keys: dict) -> list[str]:
             "its plan coordinates are degrees of longitude and latitude, its heights are not: "
             "project it (to UTM, say) in a GIS"
         ]
-    unit = _FEET.get(keys.get(_PLAN_UNIT, 0))
-    return [f"its plan coordinates are in {unit}, according to the file"] if unit else []
+    return []
+
+
+def _unit(number: int | None) -> str:
+    return "" if number in (None, 0, _OF_USER) else _UNITS.get(int(number or 0), f"EPSG:{number}")

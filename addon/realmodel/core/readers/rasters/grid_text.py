@@ -16,6 +16,8 @@ from ...base.work import native_module
 
 _LONGEST = 1 << 10  # bytes of a number, mostly
 _BLANK = re.compile(rb"\s")
+_OF_NUMBERS = b"0123456789+-.,eE\n"
+_LINE_END = re.compile(rb"\n")
 NO_HEIGHT_WORDS = ("nan", "-nan", "+nan", "null", "na", "1.#qnan", "-1.#ind")
 _NONE = -1.7976931348623157e308  # what such words are read as
 
@@ -30,6 +32,7 @@ class GridText:
     line: int
     decimal: str = "."
     none: str = ""  # a word that means no height, beside NO_HEIGHT_WORDS
+    comments: bytes = b""  # signs that begin a line that is none of heights
 
 
 def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterator[np.ndarray]:
@@ -40,10 +43,15 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
     words = "|".join(re.escape(word) for word in (*NO_HEIGHT_WORDS, text.none.lower()) if word)
     no_height = re.compile(rf"(?<!\S)(?:{words})(?!\S)".encode(), re.IGNORECASE)
     as_number = repr(_NONE).encode()
+    comment = re.compile(rb"(?m)^[ \t]*[%b][^\n]*" % text.comments) if text.comments else None
     count, at = 0, body
     while at < len(raw):
-        chunk = _to_blank(raw, at).translate(one_a_line)
-        piece = no_height.sub(as_number, chunk)
+        chunk = _to_blank(raw, at, _LINE_END if comment else _BLANK)
+        if comment is not None and any(sign in chunk for sign in text.comments):
+            chunk = comment.sub(lambda match: b" " * len(match[0]), chunk)
+        chunk = chunk.translate(one_a_line)
+        has_words = chunk.translate(None, _OF_NUMBERS)
+        piece = no_height.sub(as_number, chunk) if has_words else chunk
         try:
             numbers = native.read_numbers(piece, (" ", text.decimal), [0], [], ([], []))[0][:, 0]
         except native.InputError as error:
@@ -70,13 +78,13 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
         )
 
 
-def _to_blank(raw: Content, begin: int) -> bytes:
-    """The text from a byte on, to the end of a number."""
+def _to_blank(raw: Content, begin: int, end: re.Pattern[bytes]) -> bytes:
+    """The text from a byte on, to the end of a number, or of a line."""
     piece = raw[begin : begin + BYTES_AT_ONCE]
     at = begin + len(piece)
     while at < len(raw):
         more = raw[at : at + _LONGEST]
-        blank = _BLANK.search(more)
+        blank = end.search(more)
         piece += more if blank is None else more[: blank.end()]
         if blank is not None:
             break

@@ -20,7 +20,7 @@ class Raster:
     """Heights z (rows, columns) float64, NaN where there are none, the first row that of the file.
 
     z may be in a file. The height of row r and column c lies at origin + c * across + r * down in plan.
-    warnings: sentences.
+    warnings: sentences. units: of x and y, and of z, as the file names them; "" where it does not.
     """
 
     z: np.ndarray
@@ -28,6 +28,7 @@ class Raster:
     across: tuple[float, float]
     down: tuple[float, float]
     warnings: list[str] = field(default_factory=list)
+    units: tuple[str, str] = ("", "")
 
     def points(self, file: Path, gather: JoinPieces = in_memory) -> np.ndarray:
         """(P, 3) float64, row after row, those without a height left out.

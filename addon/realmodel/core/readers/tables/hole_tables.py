@@ -14,6 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from ...base.errors import InputRefused
+from ...base.no_value import NO_VALUE
 from ...base.text import Step
 from ...base.units import other_units, unit_text_of_column
 from .points import AXES, TextTable, open_table
@@ -176,8 +177,6 @@ OBSERVED = {
 }
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
-# What stands in a column where there is no value; in small letters.
-NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 # Numbers that programs write where there is no value.
 NULL_NUMBERS = frozenset(
     (
@@ -320,7 +319,7 @@ class Row:
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
-    table = _opened(given, file, known)
+    table = _opened(given, file, known, needed)
     layout = table.layout
     names, name_line = layout.names or (), layout.name_line or 1
     columns = _columns(given, file, layout, known)
@@ -377,11 +376,16 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(reading: Reading, file: Path, meanings: Columns) -> TextTable:
+def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = ()) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
     for aliases in meanings.values():
         names.update(*map(_spellings, aliases))
-    return open_table(file, Expected(reading.separator, (), names, 1, 2))
+
+    def is_header(cells: list[str]) -> bool:
+        columns = _columns(reading, file, TableLayout("\t", tuple(cells), 0, 0, None), meanings)
+        return set(needed) <= columns.keys() and len(columns) > 2
+
+    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header))
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:

@@ -5,12 +5,14 @@ of NumPy."""
 from __future__ import annotations
 
 import os
+import re
 import tokenize
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,55 +20,109 @@ import numpy as np
 
 from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import JoinPieces, in_memory, in_pieces
-from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
+from ...base.no_value import NO_VALUE
+from ...base.text import BOM, Content, FileBytes, Step, encoding_of, no_step, pieces_of, text_content
+from ...base.units import unit_text_of_column
 from ...base.work import NativeError, native_module, on_threads
 from ...settings.data_files import PointFile, list_of
+from .dialects import DIALECTS
 from .table_layout import (
     Expected,
     TableLayout,
     column_number,
     decimal_comma,
-    fields,
     is_number,
     names_shown,
     plain_name,
     table_layout,
 )
+from .workbook import begins_as_workbook, sheet_text
 
 _MOST_THREADS = 8
-AXES = {
+_GROUPED = r"[+-]?(\d{{1,3}}(?:{0}\d{{3}})+)({1}\d*)?"  # by a sign between thousands, and a decimal mark
+_NO_ROW = re.compile(rb"\s*(?:[#!%>]|//|$)")
+_SAY_COLUMNS = 'set columns = ["X", "Y", "Z"]'
+# Names of coordinates, and what may stand before or behind them.
+_WORDS = {
     "x": (
-        *("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm", "point_x"),
-        *("rechtswert", "este"),
+        *("x", "easting", "eastings", "east", "rechtswert", "ostwert", "este", "abscisse", "abscissa"),
+        *("xcoord", "x_wert", "oost", "ost", "est", "e"),
     ),
     "y": (
-        *("y", "northing", "north", "y_coord", "ycoord", "coord_y", "utm_y", "y_utm", "point_y"),
-        *("hochwert", "norte"),
+        *("y", "northing", "northings", "north", "hochwert", "nordwert", "norte", "ordonnée", "ordonnee"),
+        *("ordinate", "ycoord", "y_wert", "noord", "nord", "n"),
     ),
     "z": (
-        *("z", "elevation", "elev", "altitude", "height", "z_coord", "zcoord", "coord_z", "point_z"),
-        *("höhe", "hoehe", "cota", "rl"),
+        *("z", "elevation", "elev", "altitude", "height", "rl", "höhe", "hoehe", "hoogte", "cota", "kote"),
+        *("quota", "altura", "elevación", "elevacion", "élévation", "maaiveld", "zcoord", "z_wert", "alt"),
+        *("reduced_level", "groundlevel", "ground_level", "hauteur", "nivel"),
     ),
 }
-KNOWN = frozenset(name for names in AXES.values() for name in names)
+_BESIDE = (
+    *("utm", "coord", "coordinate", "coordinates", "coords", "point", "rd", "pos", "position", "map", "grid"),
+    *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat", "mga", "lv95", "gk"),
+    *(
+        "world",
+        "local",
+        "projected",
+        "nat_grid",
+        "value",
+        "utme",
+        "utmn",
+        "nap",
+        "nn",
+        "nhn",
+        "asl",
+        "amsl",
+        "msl",
+        "wert",
+        "l93",
+    ),
+)
+_DEPTHS = (
+    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
+    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
+)
+_SYSTEM = re.compile(
+    r"(?:utm|mga|lv|gda|epsg|zone|l|gk|cc|rt|osgb|ch|etrs|wgs|nad|nzgd|sweref|dhdn|ed|itrf)?\d+[a-z]{0,2}"
+    r"|lambert|dhdn|osgb|bng|nztm|amersfoort|stereo\d*|swissgrid|gauss|krueger|krüger|tm"
+)
+AXES = {
+    axis: (
+        *words,
+        *(f"{beside}_{word}" for word in words for beside in _BESIDE),
+        *(f"{word}_{beside}" for word in words for beside in (*_BESIDE, *(_DEPTHS if axis == "z" else ()))),
+        *(f"{beside}{word}" for word in words[:3] for beside in _BESIDE),
+        *(f"{word}{beside}" for word in words[:3] for beside in _BESIDE),
+    )
+    for axis, words in _WORDS.items()
+}
+# Taken where no column has one of those names, with a warning.
+_DEGREES = {
+    "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),
+    "y": ("lat", "latitude", "latitud", "breite"),
+}
+_NAMES = {axis: (*AXES[axis], *_DEGREES.get(axis, ()), *(_DEPTHS if axis == "z" else ())) for axis in AXES}
+KNOWN = frozenset(name for names in _NAMES.values() for name in names)
 
 
 @dataclass(frozen=True)
 class PointRows:
     """points (P, 3) float64 in the order of the file; how many rows had no value, and how many did not
-    hold what was asked for; the names of the columns that were taken for x, y and z although they say
-    nothing of the kind. columns: the names of x, y and z in the header, where there is one."""
+    hold what was asked for. table: that they are from. axes: the numbers from 0 of its columns of x, y and
+    z. columns: the names of these, where the header has them; units: the texts of the file that name their
+    units, "" for none. decimal: the mark of numbers. doubts: sentences about columns whose choice was a
+    guess."""
 
     points: np.ndarray
+    table: TextTable
+    axes: Sequence[int]
+    decimal: str = "."
     missing: int = 0
     filtered: int = 0
-    taken_for_xyz: tuple[str, ...] = ()
     columns: tuple[str, ...] = ()
-
-
-def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
-    """(P, 3) float64 points of a table of text: read_point_rows with default options."""
-    return read_point_rows(PointFile(file), step).points
+    units: tuple[str, ...] = ("", "", "")
+    doubts: tuple[str, ...] = ()
 
 
 def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces = in_memory) -> PointRows:
@@ -80,19 +136,36 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
 
     Raises InputRefused naming file and line.
     """
-    file = Path(given.file)
-    table = open_table(file, Expected(given.separator, (*(given.columns or ()), *given.where), KNOWN))
+    table = table_of(given, step=step)
     wanted = wanted_columns(table, given.columns)
     rows = _read_rows(table, given, wanted, step, gather)
     if len(rows.points):
-        guessed = () if given.columns is not None else _guessed_names(table)
+        doubts = () if given.columns is not None else _doubts(table, wanted, rows.points[:, 2], given.z_axis)
         names = table.layout.names or ()
         named = tuple(names[column] for column in wanted) if max(wanted) < len(names) else ()
-        return replace(rows, taken_for_xyz=guessed, columns=named)
+        of_names = [unit_text_of_column(name) for name in named] or [""] * 3
+        plan, height = table.layout.units
+        units = tuple(of_name or said for of_name, said in zip(of_names, (plan, plan, height), strict=True))
+        return replace(rows, columns=named, units=units, doubts=doubts)
     if rows.filtered:
         raise _nothing_matches(table, given.where)
     what = "none of its points has a value" if rows.missing else "there are no points in it"
-    raise InputRefused(what, file=file)
+    raise InputRefused(what, file=table.file)
+
+
+def table_of(given: PointFile, *wanted: str | int, step: Step = no_step) -> TextTable:
+    """The open table of a file of points. wanted: further columns. Raises InputRefused."""
+    columns = (*(given.columns or ()), *wanted, *given.where)
+    return open_table(Path(given.file), Expected(given.separator, columns, KNOWN), given.layer, step)
+
+
+def _has_columns(expected: Expected, cells: list[str]) -> bool:
+    """Whether the cells of a row are the names of the columns that are expected: those asked for, or else as
+    many as are needed."""
+    names = [name.lower() for name in expected.wanted if isinstance(name, str)]
+    if names:
+        return set(names) <= {cell.lower() for cell in cells}
+    return sum(_plain(cell) in expected.known for cell in cells) >= expected.columns
 
 
 @dataclass(frozen=True)
@@ -108,23 +181,44 @@ class TextTable:
         return column_number(self.file, self.layout, name)
 
 
-def open_table(file: Path, expected: Expected) -> TextTable:
-    """A table of text. Raises InputRefused where there are no rows."""
-    raw = text_content(file)
+def open_table(file: Path, expected: Expected, sheet: str | None = None, step: Step = no_step) -> TextTable:
+    """A table of text, or the sheet of a workbook: by its name, or else the only one with the columns that
+    are expected. Raises InputRefused where there are no rows."""
+    raw: Content
+    if begins_as_workbook(FileBytes(file)[:100]):
+        raw = sheet_text(file, sheet, expected.is_header or partial(_has_columns, expected), step)
+        expected = replace(expected, separator="\t")
+    else:
+        raw = text_content(file)
+    dialect = next((entry for entry in DIALECTS if entry.begins(raw[:4096], len(raw))), None)
+    if dialect is not None and dialect.not_rows is not None:
+        raw = dialect.not_rows.sub(b"#", raw[:])
     start = len(BOM) if raw[: len(BOM)] == BOM else 0
     encoding = encoding_of(raw)
-    return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected))
+    return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected, dialect))
+
+
+def _plain(name: str) -> str:
+    """The name of a column, for comparing, without those of coordinate systems."""
+    words = re.split(r"[\s_.-]+", plain_name(name))
+    return "_".join([word for word in words if not _SYSTEM.fullmatch(word)] or words)
+
+
+def _named(table: TextTable) -> list[str]:
+    """The names of the columns, for comparing."""
+    return [_plain(name) for name in table.layout.names or ()]
 
 
 def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> list[int]:
     """The numbers from 0 of the columns of x, y and z. Raises InputRefused."""
     if columns is not None:
         return [table.column(column) for column in columns]
-    names = [plain_name(name) for name in table.layout.names or ()]
+    names = _named(table)
     headings = {
-        axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in AXES.items()
+        axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in _NAMES.items()
     }
     if not any(headings.values()):
+        _require_xyz_first(table)
         return [0, 1, 2]
     for axis, alias in headings.items():
         count = names.count(alias) if alias else 0
@@ -134,19 +228,85 @@ def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> lis
             raise InputRefused(
                 f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
+    _require_names_of_entries(table)
     return [names.index(alias) for alias in headings.values() if alias]
 
 
-def _guessed_names(table: TextTable) -> tuple[str, ...]:
-    """The names of the first three columns where the header names the columns of the table, and none of them
-    as a coordinate."""
-    names = table.layout.names or ()
-    first_row = head_rows(table, 1)
-    if len(names) < 3 or not first_row or len(names) != len(first_row[0]):
-        return ()
-    if KNOWN.intersection(plain_name(name) for name in names) or any(is_number(name) for name in names):
-        return ()
-    return tuple(names[:3])
+def _require_names_of_entries(table: TextTable) -> None:
+    """Refuses a header whose names are plainly not those of the entries: more of them, some with blanks in
+    them, or one less where the first entries count the rows."""
+    names, rows = table.layout.names or (), head_rows(table, 1000)
+    width = max(map(len, rows), default=0)
+    counts = len(rows) > 1 and _count_rows([row[0] for row in rows])
+    if (table.layout.separator == " " and 0 < width < len(names)) or (width > len(names) and counts):
+        what = f"the header has {len(names)} names, and the rows have {width} entries"
+        advice = "say by numbers which columns are x, y and z: columns = [1, 2, 3]"
+        raise InputRefused(what, file=table.file, line=table.layout.name_line, advice=advice)
+
+
+def _count_rows(entries: list[str]) -> bool:
+    """Whether entries are 0, 1, 2, ... or 1, 2, 3, ..."""
+    return any(entries == [str(n) for n in range(first, first + len(entries))] for first in (0, 1))
+
+
+def _require_xyz_first(table: TextTable) -> None:
+    """Refuses a table whose header names no coordinates and whose first columns count rows, or are as likely
+    indices of a grid."""
+    rows = [row for row in head_rows(table, 1000) if all(map(is_number, row[:3]))]
+    if len(rows) < 2 or min(map(len, rows)) < 4:
+        return
+    whole = all(float(entry) % 1 == 0 for row in rows for entry in row[:2])
+    what = ""
+    if _count_rows([row[0] for row in rows]):
+        what = "its first column counts the rows"
+    elif {len(row) for row in rows} == {5} and whole:
+        what = "its first two columns are whole numbers, coordinates or the indices of a grid"
+    if what:
+        columns = [2, 3, 4] if "counts" in what else [3, 4, 5]
+        advice = f"say which columns are x, y and z: columns = {columns} or columns = [1, 2, 3]"
+        raise InputRefused(f"{what}, and no header names x, y and z", file=table.file, advice=advice)
+
+
+def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str) -> tuple[str, ...]:
+    """Sentences about columns that were guessed, or whose names say something else than they are read as."""
+    names, called = table.layout.names or (), _named(table)
+    doubts = []
+    row = next(iter(head_rows(table, 9)), [])
+    width = next((n for n, entry in enumerate(row) if entry.startswith("#")), len(row))
+    if not KNOWN.isdisjoint(called):
+        for axis, column in zip("xyz", wanted, strict=True):
+            likely = (n for n, name in enumerate(called) if name in AXES[axis] and len(name) > 1)
+            same = [names[n] for n in sorted({column, *likely})]
+            if len(same) > 1:
+                listed = number_list([f"'{name}'" for name in same])
+                doubts.append(f"{listed} may be {axis}, and '{names[column]}' is used: {_SAY_COLUMNS}")
+        if {called[wanted[0]], called[wanted[1]]} & {*_DEGREES["x"], *_DEGREES["y"]}:
+            doubts.append(
+                f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, "
+                "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
+            )
+        words = re.findall(r"[^\W\d_]+", names[wanted[2]].lower())
+        if z_axis == "up" and not set(words).isdisjoint(_DEPTHS) and (z > 0).sum() * 2 > len(z):
+            doubts.append(
+                f"'{names[wanted[2]]}' is read as elevations, upward: if it has depths, set z_axis = \"down\""
+            )
+        if width > len(names) and is_number(row[-1]):
+            doubts.append(
+                f"the header has {len(names)} names, the rows have {width} entries: the first are taken for "
+                "those; if that is wrong, set columns = [1, 2, 3] with their numbers"
+            )
+    elif len(names) == width > 2 and not any(map(is_number, names)):
+        listed = ", ".join(f"'{name}'" for name in names[:3])
+        doubts.append(
+            f"no column is named x, y or z: the first three, {listed}, are used; if that is wrong, "
+            f"{_SAY_COLUMNS}"
+        )
+    elif width > max(3, len(names)):
+        doubts.append(
+            f"no header names its {width} columns: the first three are used as x, y and z; if that is "
+            "wrong, set columns = [1, 2, 3] with their numbers"
+        )
+    return tuple(doubts)
 
 
 def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
@@ -155,18 +315,23 @@ def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
     return numbers, [value.strip().encode(encoding, "replace") for value in values if isinstance(value, str)]
 
 
+def _filters(table: TextTable, point_file: PointFile) -> tuple[list, tuple]:
+    """What native code keeps rows by, and which entries mean no value."""
+    filters = [
+        (table.column(name), _values(list_of(value), table.encoding))
+        for name, value in point_file.where.items()
+    ]
+    return filters, _values(point_file.nodata_values, table.encoding)
+
+
 def _read_rows(
     table: TextTable, point_file: PointFile, columns: Sequence[int], step: Step, gather: JoinPieces
 ) -> PointRows:
     """The points of a table. columns: of x, y and z."""
     native = native_module()
-    filters = [
-        (table.column(name), _values(list_of(value), table.encoding))
-        for name, value in point_file.where.items()
-    ]
-    missing = _values(point_file.nodata_values, table.encoding)
+    filters, missing = _filters(table, point_file)
     mark = point_file.decimal or "."
-    if point_file.decimal is None and table.layout.separator != ",":
+    if point_file.decimal is None:
         numeric = [column for column, (numbers, _) in filters if numbers]
         if decimal_comma(_head_entries(table, [*columns, *numeric])):
             mark = ","
@@ -174,8 +339,16 @@ def _read_rows(
         try:
             return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
-            undecided = point_file.decimal is None and mark == "." and table.layout.separator != ","
-            if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
+            plain = _without_thousands(table, columns, point_file.decimal)
+            if error.kind == "not_a_number" and plain is not None:
+                table, mark = plain
+                continue
+            if (
+                point_file.decimal is None
+                and mark == "."
+                and error.kind == "not_a_number"
+                and _has_decimal_commas(table, columns, error)
+            ):
                 mark = ","
                 continue
             raise _refused(table, columns, mark, error) from error
@@ -213,7 +386,52 @@ def _pieces(
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-    return PointRows(points, missing=int(counts[1]), filtered=int(counts[0]))
+    return PointRows(points, table, columns, mark, missing=int(counts[1]), filtered=int(counts[0]))
+
+
+def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
+    """(P,) the values of each further column, by its name, or by its number from 1 where it has none: numbers
+    (NaN where there is none), or texts if not all are numbers."""
+    table, mark = rows.table, rows.decimal
+    if max(map(len, head_rows(table, 2000)), default=0) <= 3 and len(table.layout.names or ()) <= 3:
+        return {}
+    filters, missing = _filters(table, given)
+    separator = table.layout.separator
+    lines = table.raw[table.layout.body :].split(b"\n")
+    # which rows are points: each gets its number before it, as one that is no value in any file
+    numbered = (
+        b"" if _NO_ROW.match(line) else b"%de200%b%b" % (n, separator.encode(), line)
+        for n, line in enumerate(lines, 1)
+    )
+    columns = [0, *(column + 1 for column in rows.axes)]
+    shifted = [(column + 1, values) for column, values in filters]
+    numbers = native_module().read_numbers(
+        b"\n".join(numbered), (separator, mark), columns, shifted, missing
+    )[0][:, 0]
+    texts = [lines[n - 1].decode(table.encoding) for n in np.rint(numbers / 1e200).astype(np.int64).tolist()]
+    entries = [table.layout.fields(text) for text in texts]
+    width = max(map(len, entries), default=0)
+    names = [*(table.layout.names or ()), *[""] * width]
+    by_name: dict[str, np.ndarray] = {}
+    for column in sorted(set(range(width)) - set(rows.axes)):
+        name = names[column] if names[column] not in ("", *by_name) else str(column + 1)
+        values = [row[column] if column < len(row) else "" for row in entries]
+        by_name[name] = _column_values(values, mark, table.layout.nodata)
+    return by_name
+
+
+def _column_values(entries: list[str], mark: str, nodata: float | None) -> np.ndarray:
+    """(N,) float64, or texts where an entry is neither a number nor a word for no value."""
+    has_value = [entry.lower() not in NO_VALUE for entry in entries]
+    if not all(is_number(entry, mark) for entry, known in zip(entries, has_value, strict=True) if known):
+        return np.array(entries, str)
+    numbers = [
+        float(entry.replace(",", ".")) if known else np.nan
+        for entry, known in zip(entries, has_value, strict=True)
+    ]
+    values = np.array(numbers, np.float64)
+    values[values == nodata] = np.nan
+    return values
 
 
 def _in_order(
@@ -238,13 +456,44 @@ def _head_entries(table: TextTable, columns: Sequence[int], most: int = 2000) ->
 def head_rows(table: TextTable, most: int) -> list[list[str]]:
     """The entries of the first rows of a table."""
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
-    return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
+    lines = (line for line in body.split("\n")[:most] if not _NO_ROW.match(line.encode()))
+    return [table.layout.fields(line) for line in lines]
 
 
 def body_rows(table: TextTable) -> Iterator[list[str]]:
     """The entries of each row of a table that is not blank."""
-    body = table.raw[table.layout.body :].decode(table.encoding, "replace")
-    return (table.layout.fields(line) for line in body.splitlines() if line.strip())
+    body = table.raw[table.layout.body :]
+    lines = (line for line in body.split(b"\n") if not _NO_ROW.match(line))
+    return (table.layout.fields(line.decode(table.encoding, "replace").strip("\r")) for line in lines)
+
+
+def _without_thousands(
+    table: TextTable, columns: Sequence[int], decimal: str | None
+) -> tuple[TextTable, str] | None:
+    """The table without separators of thousands, and its decimal mark, where its numbers can be read in
+    one way only: 451,234.5 or 5.932.425; else None."""
+    entries = [entry for entry in _head_entries(table, columns) if entry]
+    ways = []
+    for mark in ".,":
+        for sign in (",", ".", "'", "’", " ", "\xa0", "\u202f"):
+            grouped = re.compile(_GROUPED.format(re.escape(sign), re.escape(mark)))
+            in_groups = [match for match in map(grouped.fullmatch, entries) if match]
+            others = len(entries) - len(in_groups)
+            is_sure = sign not in ",." or any(match[1].count(sign) > 1 or match[2] for match in in_groups)
+            if sign == mark or not in_groups or not is_sure or decimal not in (None, mark):
+                continue
+            if others == sum(is_number(entry, mark) and not grouped.fullmatch(entry) for entry in entries):
+                ways.append((sign, mark))
+    if len(ways) != 1:
+        return None
+    (sign, mark), encoding = ways[0], table.encoding
+    between = re.compile(rb"(?<=\d)%b(?=\d{3}(?!\d))" % re.escape(sign.encode(encoding)))
+    body = table.raw[table.layout.body :]
+    if sign == table.layout.separator:  # within quotes alone
+        body = re.sub(rb'"[^"\n]*"', lambda match: between.sub(b"", match[0]), body)
+    else:
+        body = between.sub(b"", body)
+    return replace(table, raw=table.raw[: table.layout.body] + body), mark
 
 
 def _has_decimal_commas(table: TextTable, columns: Sequence[int], error: NativeError) -> bool:
@@ -290,7 +539,9 @@ def _refused(table: TextTable, columns: Sequence[int], decimal: str, error: Nati
         advice = "write decimals with a point"
     elif decimal == "," and "." in entry:
         advice = "this file has decimal commas: use them in all numbers"
-    elif not entry:
+    elif not table.layout.names and not entry[:1].isdigit():
+        advice = "say which columns are x, y and z: columns = [2, 3, 4]"
+    if not entry:
         advice = 'remove points without a value, or set nodata = ""'
     return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
 

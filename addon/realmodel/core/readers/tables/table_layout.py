@@ -5,18 +5,23 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
 from pathlib import Path
 
 from ...base.errors import InputRefused
 from ...base.text import NOT_FINITE, NUMBER, Content
+from ...base.units import unit_of, unit_text_of_column, unknown_unit
+from .dialects.dialect import Dialect, comment_units
 
 HEAD_BYTES = 1 << 18
 _SEPARATORS = (";", "\t", "|", ",", " ")  # in the order of preference: a comma may stand for a point
 _COMMENTS = ("#", "!", "%", ">", "//")
+_SIGNS = "#!%/"
 _COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
+_GROUPED = re.compile(r"[+-]?\d{1,3}(?:([,.'’\xa0\u202f ])\d{3})(?:\1\d{3})*(?:[.,]\d*)?")
 _COMMENT = re.compile(r"(^|(?<=[\s,;|]))#.*$")
 _TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
 _NAMES_SHOWN = 12
@@ -25,13 +30,17 @@ _NAMES_SHOWN = 12
 @dataclass(frozen=True)
 class TableLayout:
     """separator: one character, " " for blanks and tabs. names: of the columns, where there is a header.
-    body: the byte where the rows begin; body_line: its line from 1; name_line: that of the header."""
+    body: the byte where the rows begin; body_line: its line from 1; name_line: that of the header. units:
+    the texts that say the unit of x and y, and that of z, outside of the names of columns; "" where there
+    is none. nodata: the number of no value in this kind of table."""
 
     separator: str
     names: tuple[str, ...] | None
     body: int
     body_line: int
     name_line: int | None
+    units: tuple[str, str] = ("", "")
+    nodata: float | None = None
 
     def fields(self, line: str) -> list[str]:
         return fields(line, self.separator)
@@ -55,59 +64,92 @@ def is_number(entry: str, decimal: str = ".") -> bool:
     return bool(pattern.fullmatch(entry) or NOT_FINITE.fullmatch(entry))
 
 
-def is_any_number(entry: str, separator: str) -> bool:
-    """Whether a text is a number, with a decimal point, or with a decimal comma where commas do not
-    separate."""
-    return is_number(entry) or (separator != "," and is_number(entry, ","))
+def is_any_number(entry: str) -> bool:
+    """Whether an entry of a row is a number, with a decimal point or comma, or in groups of thousands. Where
+    commas separate, an entry that has one stands in quotes."""
+    return is_number(entry) or is_number(entry, ",") or bool(_GROUPED.fullmatch(entry))
 
 
 @dataclass(frozen=True)
 class Expected:
     """What is known of a table before it is read. separator: None where it is to be found. wanted: the
-    requested columns; texts are names that the header must have. known: names that make a line a header, in
-    small letters. numbers, columns: how many of them a row has at least."""
+    requested columns; texts are names that the header must have. known: names that make a line a header,
+    in small letters. numbers, columns: how many of them a row has at least. is_header: whether texts are
+    the names of the columns that are needed, by which a sheet of a workbook is chosen; None: by wanted and
+    known."""
 
     separator: str | None = None
     wanted: Sequence[str | int] = ()
-    known: Collection[str] = ()
+    known: Container[str] = ()
     numbers: int = 3
     columns: int = 3
+    is_header: Callable[[list[str]], bool] | None = None
 
 
-def table_layout(file: Path, raw: Content, start: int, encoding: str, expected: Expected) -> TableLayout:
-    """The layout of a table that begins at byte `start` of its file. Raises InputRefused where there are no
-    rows."""
+def table_layout(
+    file: Path, raw: Content, start: int, encoding: str, expected: Expected, dialect: Dialect | None = None
+) -> TableLayout:
+    """The layout of a table that begins at byte `start` of its file. dialect: what kind of table it is, if it
+    is one with a header of its own. Raises InputRefused where there are no rows."""
     separator, known_names = expected.separator, expected.known
     head = raw[start : start + HEAD_BYTES]
     if start + HEAD_BYTES < len(raw):
         head = head[: head.rfind(b"\n") + 1] or head
     lines = head.split(b"\n")
     texts = [line.decode(encoding, "replace").strip("\r") for line in lines]
+
+    def layout(
+        separator: str, names: tuple[str, ...] | None, first: int, name_line: int | None
+    ) -> TableLayout:
+        body = min(start + sum(len(line) + 1 for line in lines[:first]), len(raw))
+        return TableLayout(separator, names, body, first + 1, None if name_line is None else name_line + 1)
+
+    if dialect is not None:
+        header = dialect.header(file, texts)
+        found_layout = layout(separator or " ", header.names, header.rows, header.name_line)
+        return replace(found_layout, units=header.units, nodata=header.nodata)
     content = [n for n, text in enumerate(texts) if text.strip() and not _is_comment(text)]
     if not content:
         raise InputRefused("there are no rows in it", file=file)
     if separator is None:
         separator = _separator([texts[n] for n in content], expected.numbers, expected.columns)
-    first, headings = None, []
+    first, headings, count = len(lines), [], 0
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
-        count = sum(is_any_number(entry, separator) for entry in entries)
-        named = bool(known_names) and not {plain_name(entry) for entry in entries}.isdisjoint(known_names)
-        if count and not (named and count < expected.numbers):
-            first = n
+        numbers = sum(is_any_number(entry) for entry in entries)
+        if numbers and not (
+            numbers < expected.numbers and any(plain_name(entry) in known_names for entry in entries)
+        ):
+            first, count = n, len(entries)
             break
         headings.append((n, entries))
-    if first is None:
-        first = len(lines)
-    commented = [
-        (n, fields(texts[n].lstrip("#!%/ \t"), separator)) for n in range(first) if _is_comment(texts[n])
-    ]
+    commented = [(n, _commented(texts[n], separator, count)) for n in range(first) if _is_comment(texts[n])]
+    units = [text if _is_unit(text) else "" for text in comment_units(texts[n] for n, _ in commented)]
+    if len(headings) > 1 and all(entry in ("", "-") or _is_unit(entry) for entry in headings[-1][1]):
+        of_columns = headings.pop()[1]  # a row of units beneath the names
+        headings[-1] = (
+            headings[-1][0],
+            [_with_unit(*pair) for pair in zip_longest(headings[-1][1], of_columns, fillvalue="")],
+        )
     wanted = [name for name in expected.wanted if isinstance(name, str)]
     name_line, names = _header(headings, commented, wanted, known_names)
-    body = start + sum(len(line) + 1 for line in lines[:first])
-    return TableLayout(
-        separator, names, min(body, len(raw)), first + 1, None if name_line is None else name_line + 1
-    )
+    return replace(layout(separator, names, first, name_line), units=(units[0], units[1]))
+
+
+def _is_unit(text: str) -> bool:
+    return unit_of(text) is not None or unknown_unit(text)
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} ({unit})" if _is_unit(unit) and not unit_text_of_column(name) else name
+
+
+def _commented(text: str, separator: str, count: int) -> list[str]:
+    """The entries of a comment, as many as a row has where the sign that begins it is the name of the first:
+    not with blanks between them, where it rather is the sign of a comment."""
+    entries = fields(text.lstrip(_SIGNS + " "), separator)
+    whole = fields(text, separator)
+    return whole if separator != " " and len(whole) == count > len(entries) else entries
 
 
 def _is_comment(text: str) -> bool:
@@ -120,7 +162,7 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
     for text in texts:
         for separator in _SEPARATORS:
             entries = fields(_COMMENT.sub("", text), separator)
-            counted = sum(is_any_number(entry, separator) for entry in entries)
+            counted = sum(is_any_number(entry) for entry in entries)
             if len(entries) >= columns and counted >= numbers:
                 return separator
     for separator in _SEPARATORS:
@@ -133,7 +175,7 @@ def _header(
     headings: list[tuple[int, list[str]]],
     commented: list[tuple[int, list[str]]],
     wanted: Iterable[str],
-    known_names: Collection[str],
+    known_names: Container[str],
 ) -> tuple[int | None, tuple[str, ...] | None]:
     """The line with the names of the columns: the one that has the requested names, if any; a comment counts
     only if it has all of them."""
@@ -141,9 +183,10 @@ def _header(
     for n, entries in [*headings, *commented]:
         if asked and set(asked) <= {entry.lower() for entry in entries}:
             return n, tuple(entries)
-    for n, entries in headings:
-        if {plain_name(entry) for entry in entries}.intersection(known_names):
-            return n, tuple(entries)
+    known = [sum(plain_name(entry) in known_names for entry in entries) for _, entries in headings]
+    if any(known):
+        n, entries = headings[known.index(max(known))]
+        return n, tuple(entries)
     for n, entries in commented:
         if {"x", "y", "z"} <= {plain_name(entry) for entry in entries}:
             return n, tuple(entries)
@@ -151,8 +194,10 @@ def _header(
 
 
 def plain_name(name: str) -> str:
-    """A column's name in small letters, without the unit that stands behind it in brackets."""
-    return re.sub(r"\s*[\[(].*$", "", name).strip("\"' ").lower()
+    """A column's name in small letters, without the unit that stands behind it."""
+    plain = re.sub(r"\s*[\[({].*$", "", name).strip("\"' ")
+    unit = unit_text_of_column(plain)
+    return (plain[: -len(unit)].rstrip(" _.,:/-") if unit else plain).lower()
 
 
 def column_number(file: Path, layout: TableLayout, column: str | int) -> int:

@@ -64,7 +64,7 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
         if column in used or names.count(names[column]) > 1:
             continue
         values = list(dict.fromkeys(row[column] for row in rows if column < len(row) and row[column]))
-        is_text = not all(is_any_number(value, table.layout.separator) for value in values)
+        is_text = not all(is_any_number(value) for value in values)
         named = plain_name(names[column]) in _NAMING
         if _LEAST <= len(values) <= _MOST and (is_text or named or len(values) * 10 <= len(rows)):
             splits.append((not named, not is_text, column, names[column], values))

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""CPS-3 lines and points (Schlumberger), as Petrel writes polygons and faults: lines of keys that begin
+with FF (or FC), a line "->name" before each polyline, then rows of x, y and z.
+
+The layout is that of Petrel's "CPS-3 lines (ASCII)" in its manual of formats, and of OpendTect's readers.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from ....base.errors import InputRefused
+from .dialect import Header, comment_units
+
+_BEGINNING = re.compile(rb"(?:\s*[!#].*\n)*\s*F[A-RT-Z](?:ASCI|ATTR|LIMI|NROW|XINC)\b")
+NOT_ROWS = re.compile(rb"(?m)^[ \t]*(?=->|[A-Z]{6}\b)")
+
+
+def begins_as_cps3_lines(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is one."""
+    return bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
+
+
+def cps3_lines_header(file: Path, lines: list[str]) -> Header:
+    """The header of its first lines. Raises InputRefused where rows have no z."""
+    keys = [n for n, line in enumerate(lines) if not line.strip() or line.lstrip()[0] in "#!"]
+    rows = next((n for n in range(len(lines)) if n not in keys), len(lines))
+    if rows < len(lines) and len(lines[rows].split()) < 3:
+        what = "its rows have no z"
+        raise InputRefused(what, file=file, line=rows + 1, advice="export the lines with their depths")
+    return Header(rows, ("X", "Y", "Z"), None, comment_units(lines[:rows]))
