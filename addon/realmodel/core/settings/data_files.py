@@ -148,7 +148,7 @@ _Z_AXIS = Setting(
 _LAYER = Setting(
     kind="layer",
     label="Layer",
-    tip="Layer of a GeoPackage, or object of an OMF or geoh5 file; needed where there are several",
+    tip="Layer of a GeoPackage, or object of a file of objects; needed where there are several",
     check=checked_name,
 )
 
@@ -156,7 +156,7 @@ _LAYER = Setting(
 @dataclass(frozen=True)
 class PointFile:
     """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, a file of shapes (GeoJSON, well-known text, a
-    shapefile or a layer of a GeoPackage), or an object of an OMF or geoh5 file.
+    shapefile or a layer of a GeoPackage), or an object of a file of objects.
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
@@ -166,7 +166,7 @@ class PointFile:
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
     z_axis: "up", or "down" where z is a depth.
     height: the attribute of features or points that holds their height; None: the z of their positions.
-    layer: of a GeoPackage, or the object of an OMF or geoh5 file; needed where there are several.
+    layer: of a GeoPackage, or the object of a file of objects; needed where there are several.
     columns, separator and decimal are for tables only, height and layer for shapes and objects.
     """
 
@@ -259,7 +259,7 @@ class PointFile:
 @dataclass(frozen=True)
 class MeshFile:
     """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the model.
-    layer: the name of the surface in a file of several objects (OMF, geoh5)."""
+    layer: the name of the surface in a file of several objects, in upper or lower case."""
 
     file: str | Path = described(FILE, is_needed=True)
     units: str | Mapping | None = described(_FILE_UNITS)
