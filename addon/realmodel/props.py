@@ -19,7 +19,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import preferences, props_planned, props_rock, props_view
+from . import preferences, props_import, props_planned, props_rock, props_view
 from .bl import changes, display
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import library_rows, results, units
@@ -343,6 +343,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
 
 
 _MODULES = (
+    props_import,
     *(props_rock, props_rock, props_rock, props_rock, props_view, props_view, props_planned),
     props_planned,
     sys.modules[__name__],

@@ -327,6 +327,33 @@ _SETTINGS = properties_of(
 )
 
 
+class RealModelCode(bpy.types.PropertyGroup):
+    """A code of units in the field data of a rock mass, and what it means: a unit; "" for nothing."""
+
+    name: StringProperty(name="Code")
+    unit: StringProperty(
+        name="Unit", description="The surface over the block that the code means, or a body; empty: nothing"
+    )
+    holes: IntProperty(name="Holes", description="Boreholes in which the code is")
+    rows: IntProperty(name="Rows", description="Rows of tables, and polygons of maps, with the code")
+    length: FloatProperty(name="Length", description="Length of its intervals in all boreholes")
+    chosen: BoolProperty(
+        name="Choose", description="Choose the code for the buttons below the list", options=set()
+    )
+
+
+class RealModelHoleProblem(bpy.types.PropertyGroup):
+    """Something wrong with a row of a table of boreholes, and what was done about it."""
+
+    kind: StringProperty(name="Kind")
+    file: StringProperty(name="File")
+    line: IntProperty(name="Line")
+    hole: StringProperty(name="Hole")
+    depth: StringProperty(name="Depth", description="Along the hole, as in the table")
+    text: StringProperty(name="Problem")
+    action: StringProperty(name="Action", description="Used as it is, repaired, or left out")
+
+
 class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     """A rock mass: a region in plan and its surfaces, oldest first."""
 
@@ -350,6 +377,13 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     hole_picks = ArraysProperty()
     hole_ends = ArraysProperty()
     interval_values = ArraysProperty()  # the columns of tables of intervals
+    codes: CollectionProperty(type=RealModelCode)
+    active_code: IntProperty(name="Active Code", description="The code that is shown in full", options=set())
+    hole_problems: CollectionProperty(type=RealModelHoleProblem)
+    active_hole_problem: IntProperty(
+        name="Active Problem", description="The problem that is shown in full", options=set()
+    )
+    imports: StringProperty(options={"HIDDEN"})  # JSON: see bl.project.imported
     ground: StringProperty(
         name="Ground",
         description="File with the heights of the ground: a raster, points or a mesh. The youngest surface, "

@@ -31,7 +31,7 @@ def test_semicolons_and_decimal_commas(table):
     path = table(SEMICOLONS)
     found = preview_table(path)
     assert found.names == ["Horizon", "Easting [m]", "Northing [m]", "Elevation [m]"]
-    assert found.xyz == ("Easting [m]", "Northing [m]", "Elevation [m]")
+    assert tuple(found.axes.values()) == ("Easting [m]", "Northing [m]", "Elevation [m]")
     assert found.rows[0] == ["top clay", "3430000,5", "5390000,25", "201,5"]
     assert found.splits == {"Horizon": ["top clay", "base gravel"]}
     assert found.is_plain
@@ -51,7 +51,8 @@ def test_a_number_that_names_surfaces(table, separator):
 
 def test_without_a_header(table):
     found = preview_table(table("1 2 3\n4 5 6\n7 8 9\n", "t.xyz"))
-    assert (found.names, found.xyz, found.splits) == (["1", "2", "3"], ("1", "2", "3"), {})
+    assert (found.names, list(found.axes.values()), found.splits) == (["1", "2", "3"], ["1", "2", "3"], {})
+    assert not found.has_header
 
 
 def test_too_many_values_name_no_surfaces(table):
@@ -63,8 +64,8 @@ def test_a_missing_column_is_said_and_can_be_chosen(table):
     path = table("x,thickness,north\n1,2,3\n4,5,6\n")
     found = preview_table(path)
     assert found.problem == "the header has no column z"
-    assert found.xyz == ()
-    assert preview_table(path, ["x", "north", "thickness"]).xyz == ("x", "north", "thickness")
+    assert found.axes == {"x": "x", "y": "north"}
+    assert list(preview_table(path, ["x", "north", "thickness"]).axes.values()) == ["x", "north", "thickness"]
 
 
 def test_what_is_no_table(table):

@@ -37,6 +37,7 @@ from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
 from .readers.borehole_tables import BoreholeTables, read_boreholes
+from .readers.mesh_data import MeshData, read_mesh
 from .readers.point_input import PointData, read_points
 from .readers.tables.hole_problems import HoleProblem
 from .readers.tables.observations import Bounds, LeftOut, Observations
@@ -90,6 +91,7 @@ __all__ = [
     "MapArea",
     "MapFile",
     "MapLayer",
+    "MeshData",
     "MeshEstimate",
     "MeshFile",
     "Misfit",
@@ -142,6 +144,7 @@ __all__ = [
     "open_tiles",
     "propose_project",
     "read_boreholes",
+    "read_mesh",
     "read_points",
     "save_mesh",
     "triangulate_polygon",

@@ -2,16 +2,19 @@
 """Import of boreholes, observed blocks and dips: what a rock mass is made from, in several tables at once."""
 
 import os
+from collections import Counter
 
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
 
 from ..bl.field import field_tables, interval_values, map_settings
-from ..bl.host import caches
+from ..bl.host import caches, notices
 from ..bl.objects import stored_arrays
 from ..bl.project import (
     borehole_picks,
+    imported,
     method_settings,
     observed_blocks,
     plan_mesh,
@@ -29,22 +32,27 @@ from ..core.readers import (
     table_contents,
     table_kind,
 )
-from ..core.readers.formats import OBJECTS, RASTER, SHAPES, TABLE, endings
+from ..core.readers.borehole_input import read_repaired
+from ..core.readers.code_counts import count_codes
+from ..core.readers.formats import HOLES, OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.object_input import is_object_file
 from ..core.settings.data_files import READING
 from ..core.settings.series_kinds import FIELD
 from ..core.surfaces.field_data import left_out_texts
+from ..props_import import OF_HOLES
 from ..props_schema import items
-from ..ui.panel import wrapped
-from .imports import FilesImportHelper, arrived, chosen_files
+from ..ui.panel import message
+from .import_dialog import LETTERS, SHOWN, WIDTH, TableDialog
+from .imports import FilesImportHelper, arrived, chosen_files, previews
 from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, require_file
 from .rocks import add_rock
+from .start import invoke
 
 _SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "layer", "add_surfaces")
 _OF_MAPS = ("map_layer", "map_block", "map_ground", "map_accuracy")
 _MOST_DETAILED = 8  # chosen files of which columns and codes are shown
 _MOST_CODES = 20
-_ICON = 5  # letters that are as wide as an icon
+_LARGEST = 1 << 24  # bytes of tables that are read for what the dialog says of them
 _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
 
 
@@ -78,7 +86,7 @@ def _rasters(properties):
     return [file.name for file in beside if file.suffix.lower() in endings(RASTER)]
 
 
-class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
+class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, FilesImportHelper):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
     the surfaces), of logged intervals and of assays, or the drillholes of an OMF or geoh5 file; tables of
     places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
@@ -91,7 +99,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     filepath: StringProperty(
         name="File", description="One of the tables", subtype="FILE_PATH", options={"SKIP_SAVE"}
     )
-    filter_glob: file_filter(*endings(TABLE, OBJECTS, SHAPES))
+    filter_glob: file_filter(*endings(TABLE, OBJECTS, SHAPES, HOLES))
     map_layer: StringProperty(
         name="Map Layer",
         description="Layer of a GeoPackage that has the polygons; empty: its only one",
@@ -157,6 +165,17 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         description="Unit of all the tables",
         items=items(READING["units"].parts["z"].words),
     )
+    unrepaired: StringProperty(
+        name="Unrepaired",
+        description="Rows of tables of boreholes that are used as they are written, such as collars.csv:17; "
+        "survey.csv:3",
+        options={"SKIP_SAVE"},
+    )
+    left_out: StringProperty(
+        name="Left Out",
+        description="Rows of tables of boreholes that are not used, such as collars.csv:17; survey.csv:3",
+        options={"SKIP_SAVE"},
+    )
     series: StringProperty(
         name="Dips Of Series",
         description="Series that the dips are of, of a field at any angle and with polarity, whatever their "
@@ -171,7 +190,24 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         default=True,
     )
 
+    of = OF_HOLES
+    _browses = False
+
+    def invoke(self, context, event):
+        if not self.paths():
+            self._browses = True
+            return ImportHelper.invoke(self, context, event)
+        reading = self.begin_tables(list(previews(self)))
+        self.units = reading.get("units", self.units)
+        return context.window_manager.invoke_props_dialog(self, width=WIDTH)
+
+    def understood(self, preview):
+        return field_tables.columns_of(preview)
+
     def act(self, context):
+        if self._browses:
+            invoke(bpy.ops.realmodel.boreholes_read, self, **self._properties())
+            return
         scene = context.scene
         tables = self._tables(context)
         series = _series_for_dips(scene, self.series)
@@ -182,6 +218,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         rock = settings.active_rock(scene)
         data = field_tables.read(scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces)
         rock = rock or add_rock(scene)
+        field_tables.forget(rock, data)
         warnings = [*data.picks.warnings, *data.warnings, *left_out_texts(data.left_out).values()]
         if data.picks.points or data.picks.switched_off or data.new:
             warnings += borehole_points.give(scene, rock, data.picks, self.add_surfaces, data.new)
@@ -217,7 +254,11 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             view.show_boreholes = view.show_boreholes or bool(data.picks.holes)
             view.show_dips = view.show_dips or bool(tables.dips or tables.rock_dips or tables.series_dips)
             view.show_map = view.show_map or bool(data.maps)
+        counts = count_codes(*tables.coded, units=scene.realmodel.units)
+        known = observed_blocks.units_of(scene, rock, reading_text.named_texts(self.names))
+        imported.record(rock, self._properties(), counts, data.picks.problems, known)
         arrived(context, rock, places)
+        self.remember({} if self.units == "NONE" else {"units": self.units})
         for text in warnings:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, _summary(data, surface or (series.name if series is not None else "")))
@@ -234,13 +275,39 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             require_file(file)
         return field_tables.sorted_out(
             paths,
-            reading_text.named_columns(self.columns),
+            self._named_columns(),
             None if self.units == "NONE" else self.units,
             of_maps=self._of_maps(context, paths),
             downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
             layer=self.layer.strip() or None,
+            unrepaired=imported.rows_of(self.unrepaired),
+            left_out=imported.rows_of(self.left_out),
             **named,
         )
+
+    def _properties(self):
+        """How the operator is called for the same files, but for what codes mean."""
+        ignored = ("filter_glob", "check_existing", "headings", "names", "files")
+        properties = self.as_keywords(ignore=ignored)
+        paths = [str(path) for path in self.paths()]
+        if paths:
+            properties |= {"filepath": paths[0], "directory": os.path.dirname(paths[0])}
+        properties["files"] = [{"name": file.name} for file in self.files]
+        return properties | {"columns": reading_text.of_named(self._named_columns())}
+
+    def _named_columns(self):
+        """{meaning: column} of those that are called otherwise than usually, as they were typed or chosen in
+        the menus. Raises InputRefused where tables contradict one another."""
+        columns = reading_text.named_columns(self.columns)
+        chosen = [(self.columns_of(p.file), self.understood(p)) for p in self._previews]
+        for of_table, usual in chosen:
+            columns |= {m: name for m, name in of_table.items() if usual.get(m) != name}
+        for of_table, _ in chosen:
+            for meaning, column in of_table.items():
+                if columns.get(meaning, column) != column and "azimuth" not in of_table:
+                    what = f"'{meaning}' is column {column} in one table and {columns[meaning]} in another"
+                    raise InputRefused(what, advice="give the column the same name in all tables")
+        return columns
 
     def _of_maps(self, context, paths):
         """The keys of MapFile. Raises InputRefused where the column of blocks is not said."""
@@ -264,25 +331,69 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
 
     def draw(self, context):
         layout = self.layout
-        box = layout.box().column(align=True)
         shown = [path for path in self.paths() if os.path.isfile(path)]
-        for path in shown:
-            text, icon, contained = shown_kind(path, self.columns, self.map_layer, self.map_block)
-            box.label(text=f"{path.name}: {text}", icon=icon)
-            for part in contained if len(shown) <= _MOST_DETAILED else ():
-                for line in wrapped(part, taken=_ICON):
-                    row = box.row()
-                    row.active = False
-                    row.label(text=line, icon="BLANK1")
-        if not shown:
-            box.label(text="Choose all tables at once", icon="INFO")
+        if context.space_data is not None and context.space_data.type == "FILE_BROWSER":
+            box = layout.box().column(align=True)
+            self._draw_kinds(box, shown, most=None)
+            if not shown:
+                box.label(text="Choose all tables at once", icon="INFO")
+            return
+        try:
+            columns, problem = reading_text.of_named(self._named_columns()), ""
+        except InputRefused as error:
+            columns, problem = self.columns, str(error)
+        self.draw_tables(layout, lambda path: self._said(path, columns))
+        drawn = [preview.file for preview in self._previews[:SHOWN]]
+        self._draw_kinds(layout.column(align=True), [path for path in shown if path not in drawn], LETTERS)
+        for text, icon in [(problem, "ERROR")] if problem else self._said_of_all(context):
+            message(layout.column(align=True), text, icon=icon, most=LETTERS)
+        self._draw_options(context, layout.column(align=True), shown)
+
+    def _draw_kinds(self, box, paths, most):
+        """What files are taken for. most: letters in a line."""
+        for path in paths:
+            said = self._said(path, self.columns)
+            message(box, f"{path.name}: {said[0][0]}", icon=said[0][1], most=most)
+            for text, icon in said[1:] if len(paths) <= _MOST_DETAILED else ():
+                lines = box.column(align=True)
+                lines.active = False
+                message(lines, text, icon=icon, most=most)
+
+    def _said(self, path, columns):
+        """(text, icon) of what a file is taken for, and of what is read of it."""
+        text, icon, contained = shown_kind(path, columns, self.map_layer, self.map_block)
+        return [(text, icon), *((part, "BLANK1") for part in contained)]
+
+    def _said_of_all(self, context):
+        """(text, icon) of what reading the boreholes says: warnings, and how many problems are repaired; or
+        why they are refused."""
+        try:
+            boreholes = self._tables(context).boreholes
+            if boreholes is None or any(is_object_file(file) for file in boreholes.files):
+                return []
+            stamps = [stored_arrays.file_stamp(file) for file in boreholes.files]
+            key = repr((stamps, boreholes, context.scene.realmodel.units))
+            if key not in _kinds:
+                if sum(os.path.getsize(file) for file in boreholes.files) > _LARGEST:
+                    return []
+                tables = read_repaired(boreholes, context.scene.realmodel.units)
+                kinds = Counter(problem.kind for problem in tables.problems)
+                said = [f"{count} x {kind}" for kind, count in kinds.items()]
+                _kinds[key] = [(text, "INFO") for text in (*tables.warnings, *said)]
+            return _kinds[key]
+        except RealModelError as error:
+            return [(notices.in_panel_words(str(error)), "ERROR")]
+
+    def _draw_options(self, context, layout, shown):
         layout.use_property_split = True
         has_maps = any(field_tables.is_map(path) for path in shown)
         of_series = ("series",) if _series(context) else ()
         for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
-            layout.prop(self, name)
+            if name != "columns" or not self._previews:  # else the menus say it
+                layout.prop(self, name)
 
     def check(self, _context):
+        self.settle_columns()
         return True  # a file of any ending; what the chosen tables are is drawn anew
 
 
@@ -298,7 +409,8 @@ def shown_kind(path, columns, map_layer="", map_block=""):
     if key not in _kinds:
         try:
             named = reading_text.named_columns(columns)
-            kind = "boreholes" if is_object_file(path) else "map" if field_tables.is_map(path) else None
+            kind = "boreholes" if field_tables.has_holes(path) else None
+            kind = "map" if field_tables.is_map(path) else kind
             if kind == "map":
                 contained = _map_contents(path, map_layer.strip() or None, map_block.strip())
             else:

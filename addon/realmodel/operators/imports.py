@@ -3,7 +3,7 @@
 
 import contextlib
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import bpy
@@ -12,10 +12,20 @@ from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl.display import bodies
+from ..bl.host import caches, notices
 from ..bl.objects import shapes, viewports
-from ..bl.project import library_rows, method_settings, plan_mesh, project_settings, reading_text, settings
+from ..bl.objects.stored_arrays import file_stamp
+from ..bl.project import (
+    library_rows,
+    method_settings,
+    observed_blocks,
+    plan_mesh,
+    project_settings,
+    reading_text,
+    settings,
+)
 from ..bl.scene import data_objects, live
-from ..core import InputRefused, MeshFile, PointFile
+from ..core import InputRefused, MeshFile, PointFile, RealModelError
 from ..core.base.errors import HeightsMissing, counted
 from ..core.base.triangles import open_edges
 from ..core.readers import (
@@ -25,24 +35,33 @@ from ..core.readers import (
     read_mesh,
     read_point_file,
 )
-from ..core.readers.contents import column_values
+from ..core.readers.contents import column_values, layer_names
 from ..core.readers.formats import ARRAY, MESH, OBJECTS, RASTER, SHAPES, TABLE, endings
+from ..core.readers.object_input import read_objects
 from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
+from ..core.readers.tables.hole_tables import normalized_name
+from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
+from ..props_import import AXES, OF_POINTS, UNITS
+from ..props_schema import properties_of
 from ..registration import drop_handler
+from ..ui import panel
+from .import_dialog import WIDTH, ObjectDialog, TableDialog
 from .reporting import Reporting, file_filter, require_file
 from .rocks import add_rock
 from .start import invoke
 
-_SHOWN = 8  # columns of a preview
-_PREVIEWED = 3  # files
+_OTHERS = {key: READING[key] for key in ("units", "z_axis", "decimal", "nodata")}  # in the dialog
+_LARGEST = 1 << 26  # bytes of a file that is read for what the dialog says of it
 _ENDINGS = endings(MESH, TABLE, RASTER, ARRAY, SHAPES, OBJECTS)
+_said = caches.new(most=32)  # by file and import options: what the dialog says of them
 
 
 @dataclass
-class _Given:
-    """A surface to add. places: its points or vertices (N, 3), or None where they are not known yet."""
+class _NewSurface:
+    """A surface to add. places: its points or vertices (N, 3), or None where they are not known yet.
+    is_named: by something in its file, so that a surface of this name takes it."""
 
     name: str
     source: str = ""
@@ -50,6 +69,7 @@ class _Given:
     item: object = None
     reading: dict = field(default_factory=dict)
     places: np.ndarray | None = None
+    is_named: bool = False
 
 
 def chosen_files(properties):
@@ -72,16 +92,23 @@ class FilesImportHelper(ImportHelper):
     paths = chosen_files
 
 
-def _looked_at(properties):
+def previews(properties):
     """Previews of the tables among the chosen files."""
     for path in chosen_files(properties):
         if os.path.isfile(path) and path.suffix.lower() in endings(TABLE):
             with contextlib.suppress(InputRefused):  # files that are no tables are refused when they are read
-                if not is_mesh_file(path):
+                if not (is_mesh_file(path) or objects_in(path)):
                     yield preview_table(path)
 
 
-class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper):
+class REALMODEL_OT_surface_add(
+    Reporting,
+    TableDialog,
+    ObjectDialog,
+    properties_of(_OTHERS, None),
+    bpy.types.Operator,
+    FilesImportHelper,
+):
     """Add surfaces above the youngest one: from one or more files of points or meshes, or a mesh object"""
 
     bl_label = "Import Surfaces"
@@ -120,14 +147,14 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
         name="Column",
         description="The column whose values name the surfaces; empty: the first one that may",
         search=lambda properties, _context, _text: [
-            name for preview in _looked_at(properties) for name in preview.splits
+            name for preview in previews(properties) for name in preview.splits
         ],
         options={"SKIP_SAVE"},
     )
     filter_glob: file_filter(*_ENDINGS)
+    of = OF_POINTS
     _browses = False
     _folder = ""  # of the last files that were chosen
-    _previews = ()
 
     def act(self, context):
         if self._browses:
@@ -137,14 +164,13 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             invoke(bpy.ops.realmodel.surface_add, self, **chosen)
             return
         scene = context.scene
-        surfaces, warnings = self._given(context)
+        surfaces, warnings = self._new_surfaces(context)
         rock = settings.active_rock(scene) or add_rock(scene)
+        units = observed_blocks.units_of(scene, rock)
         read = {}
         with settings.filling():
             for surface in surfaces:
-                row = rock.surfaces.add()
-                row.name = settings.free_name(rock.surfaces, surface.name, own=row)
-                row.property_id = library_rows.for_surface(scene, row.name)
+                row = _row_of(scene, rock, surface, units, warnings)
                 if surface.item is not None:
                     row.source, row.object = "MESH_OBJECT", surface.item
                 elif surface.path is not None:
@@ -155,6 +181,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
                         read[data_objects.file_key(row)] = surface.places
             rock.active_surface = len(rock.surfaces) - 1
         arrived(context, rock, [s.places for s in surfaces if s.item is None and s.places is not None], read)
+        self.remember(self._other_reading())
         for text in warnings:
             self.report({"WARNING"}, text)
 
@@ -166,47 +193,65 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             folder = self._folder or os.path.dirname(bpy.data.filepath) or os.path.expanduser("~")
             self.filepath = os.path.join(folder, "")  # no name of a .blend as a proposal
             return ImportHelper.invoke(self, context, event)
-        self._previews = list(_looked_at(self))
-        if not self._previews:
+        try:
+            self.begin_objects(_objects_of(self.paths()))
+        except (RealModelError, OSError):  # it is reported where the file is read
             return self.execute(context)
-        self.split = self._previews[0].is_plain
-        self.split_column = next(iter(self._previews[0].splits), "")
-        return context.window_manager.invoke_props_dialog(self, width=560)
+        reading = self.begin_tables(list(previews(self)))
+        for key in _OTHERS:
+            method_settings.set_value(self.properties, key, _OTHERS, reading.get(key, _OTHERS[key].default))
+        if not self.headings and len(self.objects) < 2:
+            return self.execute(context)
+        return context.window_manager.invoke_props_dialog(self, width=WIDTH)
 
     def check(self, _context):
-        return True  # a file of any ending; the dialog is drawn anew
+        self.settle_columns()
+        self.settle_objects()
+        return True  # the dialog is drawn anew
+
+    def understood(self, preview):
+        columns = dict(preview.axes)
+        named = next(iter(preview.splits), "") if preview.is_plain else ""
+        columns |= {UNITS: named} if named else {}
+        return {meaning: reading_text.column(name) for meaning, name in columns.items()}
 
     def draw(self, context):
         layout = self.layout
         if context.space_data is not None and context.space_data.type == "FILE_BROWSER":
             layout.label(text="One file, or several")
             return
-        for preview in self._previews[:_PREVIEWED]:
-            _draw_preview(layout.box(), preview)
-        if len(self._previews) > _PREVIEWED:
-            layout.label(text=f"and {len(self._previews) - _PREVIEWED} more tables")
-        layout.prop(self, "columns")
-        values = next(
-            (p.splits[self.split_column] for p in self._previews if self.split_column in p.splits), []
-        )
-        if any(p.splits for p in self._previews):
-            layout.prop(self, "split", text=f"One Surface for Each Value of {self.split_column or '...'}")
-            column = layout.column()
-            column.enabled = self.split
-            column.prop(self, "split_column")
-            column.label(text=f"{counted(len(values), 'value')}: {', '.join(values)}"[:90])
+        if len(self.objects) > 1:
+            self.draw_objects(layout)
+        self.draw_tables(layout, lambda path: self._said(context, path))
+        layout.use_property_split = True
+        for key in _OTHERS:
+            if self._previews or key != "decimal":
+                panel.draw(layout, self, key, _OTHERS)
 
-    def _given(self, context):
+    def _said(self, context, path):
+        """What is to be said of a table as it would be read: its extent and warnings, or why it is
+        refused."""
+        surfaces = [replace(surface, places=None) for surface in self._of_table(path)]
+        key = file_stamp(path), context.scene.realmodel.units, repr([s.reading for s in surfaces])
+        if key not in _said:
+            names = ", ".join(surface.name for surface in surfaces)
+            _said[key] = [(f"{counted(len(surfaces), 'surface')}: {names}", "BLANK1")]
+            whole = {name: option for name, option in surfaces[0].reading.items() if name != "where"}
+            if os.path.getsize(path) <= _LARGEST:
+                _said[key] += _reading_says(replace(surfaces[0], reading=whole), key[1])
+        return _said[key]
+
+    def _new_surfaces(self, context):
         """The surfaces to add, the oldest first, and warnings about them. Raises InputRefused."""
         if self.use_object:
             obj = context.active_object
             if obj is None or obj.type != "MESH":
                 raise InputRefused("the active object is no mesh", advice="make a mesh object active")
             shapes.require_open(obj)
-            return [_Given(self.name.strip() or obj.name, item=obj)], []
+            return [_NewSurface(self.name.strip() or obj.name, item=obj)], []
         paths = [] if self.empty else self.paths()
         if not paths:
-            return [_Given(self.name.strip() or "surface")], []
+            return [_NewSurface(self.name.strip() or "surface")], []
         surfaces, warnings = [], []
         for path in paths:
             for surface in self._of_file(path):
@@ -222,49 +267,131 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
         return [surfaces[number] for number in order.order], warnings
 
     def _of_file(self, path):
-        """The surfaces of a file: one, or one for each value of a column."""
+        """The surfaces of a file: one, or one for each of its objects, or for each value of a column."""
         require_file(path)
-        if objects := objects_in(path):
+        objects = [obj for obj in objects_in(path) if not obj.is_part]
+        if len(objects) > 1:
             return self._of_objects(path, objects)
+        if not objects and (layers := [row.name for row in self.objects if row.file == str(path)]):
+            return self._of_layers(path, layers)
         if is_mesh_file(path):
-            return [_Given(path.stem, "MESH_FILE", path)]
-        reading = {}
-        if self.columns.strip() and path.suffix.lower() in endings(TABLE):
+            return [_NewSurface(path.stem, "MESH_FILE", path, reading=self._other_reading(*MESH_READING))]
+        if path.suffix.lower() in endings(TABLE):
+            return self._of_table(path)
+        reading = self._other_reading("units", "z_axis", "nodata")
+        return [_NewSurface(path.stem, "POINTS_FILE", path, reading=reading)]
+
+    def _of_layers(self, path, layers):
+        """The chosen layers of a GeoPackage, or sheets of a workbook."""
+        reading = self._other_reading("units", "z_axis", "nodata")
+        return [
+            _NewSurface(name, "POINTS_FILE", path, reading={**reading, "layer": name}, is_named=True)
+            for name in layers
+            if self.wants(path, name)
+        ]
+
+    def _of_table(self, path):
+        """The surfaces of a table: one, or one for each value of a column."""
+        columns, reading = self.columns_of(path), self._other_reading()
+        if columns:
+            axes = [columns.get(axis) for axis in AXES]
+            if axes != [self._understood(path).get(axis) for axis in AXES]:
+                reading["columns"] = [axis for axis in axes if axis is not None]
+        elif self.columns.strip():
             reading["columns"] = [reading_text.column(name) for name in self.columns.split(",")]
-        whole = _Given(path.stem, "POINTS_FILE", path, reading=reading)
-        if not (self.split or self.split_column) or path.suffix.lower() not in endings(TABLE):
-            return [whole]
-        if not self.split and self.options.is_invoke:  # unticked in the dialog
-            return [whole]
-        column = self.split_column or next(iter(preview_table(path).splits), "")
-        if not column or (len(self.files) > 1 and column not in preview_table(path).names):
+        whole = _NewSurface(path.stem, "POINTS_FILE", path, reading=reading)
+        column = str(columns.get(UNITS, "")) if columns else self._split_column(path)
+        if not column:
             return [whole]
         values = dict.fromkeys(reading_text.value(text) for text in column_values(path, column))
         return [
-            _Given(
-                value if isinstance(value, str) else f"{path.stem} {value}",
-                "POINTS_FILE",
-                path,
+            replace(
+                whole,
+                name=value if isinstance(value, str) else f"{path.stem} {value}",
                 reading={**reading, "where": {column: value}},
+                is_named=True,
             )
             for value in values
         ]
 
+    def _understood(self, path):
+        return next((self.understood(p) for p in self._previews if p.file == path), {})
+
+    def _split_column(self, path):
+        """The column of a table whose values name surfaces, as a script gives it; "" for none."""
+        if not (self.split or self.split_column):
+            return ""
+        column = self.split_column or next(iter(preview_table(path).splits), "")
+        return "" if len(self.files) > 1 and column not in preview_table(path).names else column
+
+    def _other_reading(self, *keys):
+        """The import options of the dialog beside columns, or some of them, that are not at their default."""
+        keys = [key for key in keys or _OTHERS if key in _OTHERS]
+        chosen = {key: method_settings.value(self, key, _OTHERS) for key in keys}
+        return {key: option for key, option in chosen.items() if option not in (None, _OTHERS[key].default)}
+
     def _of_objects(self, path, objects):
-        """The surfaces of a file of objects, each by its name: its open surfaces, and sets of points and
-        lines. Closed ones are blocks of another model."""
+        """The chosen surfaces of a file of objects, each by its name: its open surfaces, and sets of points
+        and lines. Closed ones are blocks of another model."""
         surfaces = []
         for obj in objects:
-            layer = {"layer": obj.name}
+            if not self.wants(path, obj.name):
+                continue
             if obj.kind in (POINTS, LINES):
-                surfaces.append(_Given(obj.name, "POINTS_FILE", path, reading=layer))
-            elif obj.kind == SURFACE:
-                mesh = read_mesh(MeshFile(path, **layer))
-                if len(open_edges(mesh.vertices, mesh.triangles)):
-                    surfaces.append(_Given(obj.name, "MESH_FILE", path, reading=layer))
+                source, reading = "POINTS_FILE", self._other_reading("units", "z_axis", "nodata")
+            elif obj.kind == SURFACE and _is_open(read_mesh(MeshFile(path, layer=obj.name))):
+                source, reading = "MESH_FILE", self._other_reading(*MESH_READING)
+            else:
+                continue
+            reading["layer"] = obj.name
+            surfaces.append(_NewSurface(obj.name, source, path, reading=reading, is_named=True))
         if not surfaces:
-            raise InputRefused("it has neither open surfaces nor points", file=path)
+            what = "no object of it is chosen" if self.objects else "it has neither open surfaces nor points"
+            raise InputRefused(what, file=path)
         return surfaces
+
+
+def _is_open(mesh):
+    return len(open_edges(mesh.vertices, mesh.triangles)) > 0
+
+
+def _objects_of(paths):
+    """(path, name, kind, size) of the objects, layers and sheets of files that can be surfaces; the size of
+    the latter is not known, 0. Raises InputRefused."""
+    kinds = (SURFACE, POINTS, LINES)
+    for path in paths:
+        if not objects_in(path) and len(layers := layer_names(path)) > 1:
+            yield from ((path, name, POINTS, 0) for name in layers)
+        whole = [obj.name for obj in objects_in(path) if obj.kind in kinds and not obj.is_part]
+        for obj in read_objects(path, None, kinds) if whole else ():
+            if obj.name not in whole:
+                continue
+            if obj.triangles is None:
+                yield path, obj.name, obj.kind, len(obj.vertices)
+            elif _is_open(obj):
+                yield path, obj.name, obj.kind, len(obj.triangles)
+
+
+def _row_of(scene, rock, surface, units, warnings):
+    """The row that takes a new surface: that of its name, where it has no data yet, or is named in a file;
+    else another one."""
+    alike = [row for row in rock.surfaces if _letters(row.name) == _letters(surface.name)]
+    row = rock.surfaces.get(units.surface(surface.name)) or (alike[0] if len(alike) == 1 else None)
+    has_data = row is not None and (row.object or row.filepath or row.stored or row.stored_mesh)
+    if row is not None and (surface.is_named or not has_data) and surface.path is not None:
+        if has_data:
+            warnings.append(f"surface '{row.name}' is made from {surface.path.name} now")
+        project_settings.forget_shape(row)
+        row.stored_mesh, row.object = {}, None
+        return row
+    row = rock.surfaces.add()
+    row.name = settings.free_name(rock.surfaces, surface.name, own=row)
+    row.property_id = library_rows.for_surface(scene, row.name)
+    return row
+
+
+def _letters(name):
+    return normalized_name(name).replace("_", "")
 
 
 def _read(surface, unit):
@@ -286,21 +413,17 @@ def _read(surface, unit):
     return []
 
 
-def _draw_preview(box, preview):
-    """The first rows of a table, a box for each column, with what is taken for x, y and z."""
-    box.label(text=preview.file.name, icon="FILE")
-    row = box.row(align=True)
-    for number, name in enumerate(preview.names[:_SHOWN]):
-        column = row.column(align=True)
-        axis = "xyz"[preview.xyz.index(name)] if name in preview.xyz else ""
-        text = name if not axis or name.casefold() == axis else f"{axis}: {name}"
-        column.label(text=text, icon="CHECKMARK" if axis else "BLANK1")
-        cells = column.box().column(align=True)
-        cells.active = bool(axis)
-        for entries in preview.rows:
-            cells.label(text=entries[number] if number < len(entries) else "")
-    if preview.problem:
-        box.label(text=preview.problem[:100], icon="ERROR")
+def _reading_says(surface, unit):
+    """(text, icon) of what reading a surface says: where its points are, and warnings; or why it is
+    refused."""
+    try:
+        warnings = _read(surface, unit)
+    except RealModelError as error:
+        return [(notices.in_panel_words(str(error)), "ERROR")]
+    low, high = surface.places.min(axis=0), surface.places.max(axis=0)
+    ranges = ", ".join(f"{axis} {a:,.1f} to {b:,.1f}" for axis, a, b in zip(AXES, low, high, strict=True))
+    said = f"{counted(len(surface.places), 'point')}, in {unit}: {ranges}"
+    return [(said, "CHECKMARK"), *((notices.in_panel_words(text), "INFO") for text in warnings)]
 
 
 def arrived(context, rock, places, read=None):

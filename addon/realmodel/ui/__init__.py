@@ -5,6 +5,7 @@ from ..registration import register_modules, unregister_modules
 from . import (
     booleans,
     build,
+    codes,
     ensemble,
     field_data,
     hole_validation,
@@ -29,6 +30,7 @@ _MODULES = (
     surfaces,
     series,
     field_data,
+    codes,
     structures,
     judge,
     build,

@@ -7,10 +7,9 @@ from ..bl.host import notices
 from ..bl.jobs import estimate_job
 from ..bl.project import method_settings, settings
 from ..bl.scene import live, problems
-from .panel import FoldedPanel, OfAModel, TabPanel, hint, letters, right_label, wrapped
+from .panel import ICON, FoldedPanel, OfAModel, TabPanel, hint, message, right_label
 
-_FOLDED = 3  # lines of warnings that are shown until they are unfolded
-_ICON = 5  # letters that are as wide as an icon and the border of a box
+_FOLDED = 3  # warnings that are shown until they are unfolded
 
 
 class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
@@ -82,36 +81,26 @@ def _draw_missing(layout, group):
 def _draw_problem(box, activity):
     box.alert = True
     row = box.row()
-    lines = wrapped(activity.problem, taken=_ICON)
-    column = row.column(align=True)
-    for line in lines:
-        column.label(text=line)
+    message(row.column(align=True), activity.problem, taken=ICON)
     row.operator("realmodel.dismiss", text="", icon="X", emboss=False)
     if problems.has_place(bpy.context):
         box.operator("realmodel.show_problem", icon="VIEWZOOM")
 
 
 def _draw_warnings(box, group, activity):
-    """Draws warnings: folded, a line for each of the first ones; unfolded, all of them in full."""
+    """Draws warnings in full: folded the first ones, unfolded all."""
     messages = notices.read(group.warnings)
     row = box.row(align=True)
     count = "1 Message" if len(messages) == 1 else f"{len(messages)} Messages"
     icon = "DISCLOSURE_TRI_DOWN" if activity.unfolded else "DISCLOSURE_TRI_RIGHT"
     row.use_property_split = False
     row.alignment = "LEFT"
-    row.prop(activity, "unfolded", text=count, icon=icon, emboss=False)
+    if len(messages) > _FOLDED:
+        row.prop(activity, "unfolded", text=count, icon=icon, emboss=False)
+    else:
+        row.label(text=count)
     cross = row.row()
     cross.alignment = "RIGHT"
     cross.operator("realmodel.dismiss", text="", icon="X", emboss=False)
-    if not activity.unfolded:
-        for text in messages[:_FOLDED]:
-            box.label(text=_cut(text, letters() - _ICON), icon="INFO")
-        return
-    for text in messages:
-        column = box.column(align=True)
-        for number, line in enumerate(wrapped(text, taken=_ICON)):
-            column.label(text=line, icon="INFO" if number == 0 else "BLANK1")
-
-
-def _cut(text, most):
-    return text if len(text) <= most else f"{text[: most - 3].rstrip()}..."
+    for text in messages if activity.unfolded else messages[:_FOLDED]:
+        message(box.column(align=True), text, icon="INFO")

@@ -6,7 +6,7 @@ import bpy
 from ..bl.field import boreholes, data, handle
 from ..core import RealModelError
 from .lists import OfRows
-from .panel import FoldedPanel, OfAModel, hint, right_label, wrapped
+from .panel import FoldedPanel, OfAModel, hint, message, right_label
 
 
 class REALMODEL_UL_misfits(OfRows, bpy.types.UIList):
@@ -56,8 +56,7 @@ def _draw_datum(layout, context):
             text = handle.text_of(context.scene, datum)
         except RealModelError as error:
             text = str(error)
-        for line in wrapped(text):
-            box.label(text=line)
+        message(box, text)
         icon = "HIDE_OFF" if datum.used else "HIDE_ON"
         box.operator("realmodel.datum_switch", text="Switch Off" if datum.used else "Switch On", icon=icon)
         obj = handle.item_of(context.scene)
@@ -104,6 +103,5 @@ def _draw_misfit(layout, row):
     column = layout.box().column(align=True)
     depth = f" at {row.depth}" if row.depth else ""
     for text in (f"{row.source}{depth}: {row.name}", f"Says: {row.says}", f"Model: {row.has}"):
-        for line in wrapped(text):
-            column.label(text=line)
+        message(column, text)
     column.operator("realmodel.misfit_show", text="Show", icon="ZOOM_SELECTED")

@@ -6,7 +6,7 @@ import bpy
 from ..bl.field import hole_validation
 from ..bl.project import units
 from .lists import OfRows
-from .panel import FoldedPanel, OfABuiltModel, hint, right_label, wrapped
+from .panel import FoldedPanel, OfABuiltModel, hint, message, right_label
 
 
 def _columns(layout):
@@ -41,8 +41,7 @@ class REALMODEL_PT_hole_validation(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             return
         row = layout.row()
         column = row.column(align=True)
-        for line in wrapped(hole_validation.summary(group), 4):
-            column.label(text=line)
+        message(column, hole_validation.summary(group), taken=4)
         row.operator("realmodel.left_out_holes_clear", text="", icon="X", emboss=False)
         if hole_validation.is_outdated(group):
             hint(layout, "The model was built again since: leave the holes out again.")
@@ -56,6 +55,5 @@ class REALMODEL_PT_hole_validation(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         if 0 <= group.active_left_out_hole < len(group.left_out_holes):
             box = layout.box().column(align=True)
             for text in hole_validation.lines(group.left_out_holes[group.active_left_out_hole]):
-                for line in wrapped(text):
-                    box.label(text=line)
+                message(box, text)
             box.operator("realmodel.left_out_hole_show", text="Show", icon="ZOOM_SELECTED")

@@ -5,7 +5,7 @@ import bpy
 
 from ..bl.project import settings, units
 from ..bl.scene import quality
-from .panel import FoldedPanel, hint, wrapped
+from .panel import FoldedPanel, hint, message
 
 _WORST = 5  # points in the table
 
@@ -45,8 +45,7 @@ class REALMODEL_PT_quality(FoldedPanel, bpy.types.Panel):
             lines.append(f"Standard deviation of the heights: {mean} on average, at most {most}")
         column = layout.column(align=True)
         for line in lines:
-            for part in wrapped(line):
-                column.label(text=part)
+            message(column, line)
         if chart == "CROSS_VALIDATION" and surface_quality.cross_validation is not None:
             _draw_worst(layout, surface_quality.cross_validation)
         row = layout.row(align=True)

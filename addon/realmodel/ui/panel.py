@@ -74,8 +74,17 @@ def hint(layout, text):
     """An empty state: what to do first, in as many lines as the sidebar's width asks for."""
     column = layout.column(align=True)
     column.active = False
-    for line in wrapped(text):
-        column.label(text=line)
+    message(column, text)
+
+
+ICON = 5  # letters that are as wide as an icon and the border of a box
+
+
+def message(layout, text, icon="NONE", taken=0, most=None):
+    """A text, whole, in as many lines as it asks for, as `wrapped` parts it. icon: before the first line."""
+    has_icon = icon != "NONE"
+    for number, line in enumerate(wrapped(text, taken + ICON * has_icon, most)):
+        layout.label(text=line, icon="BLANK1" if has_icon and number else icon)
 
 
 def letters():
@@ -89,17 +98,19 @@ def letters():
 _UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # between a number and its unit
 
 
-def wrapped(text, taken=0):
-    """The lines of a text, none longer than about the width of the sidebar, of which something else has
-    `taken` so many letters; a number stays with its unit."""
-    width = max(letters() - taken, 12)
+def wrapped(text, taken=0, most=None):
+    """The lines of a text, none longer than about the width of the sidebar, or than `most` letters, of which
+    something else has `taken` so many; a number stays with its unit."""
+    width = max((most or letters()) - taken, 12)
     lines, line = [], ""
     for word in _UNIT.sub("\u00a0", text).split(" "):
         if line and len(line) + 1 + len(word) > width:
             lines.append(line)
-            line = word
-        else:
-            line = f"{line} {word}".strip()
+            line = ""
+        for _ in range((len(word) - 1) // width):  # a path, say
+            lines.append(word[:width])
+            word = word[width:]
+        line = f"{line} {word}".strip()
     return [*lines, line] if line else lines
 
 

@@ -6,7 +6,7 @@ import bpy
 from ..bl.project import compartments, results, units
 from ..bl.scene import quality
 from .lists import result_columns
-from .panel import FoldedPanel, OfABuiltModel, TabPanel, right_label, wrapped
+from .panel import FoldedPanel, OfABuiltModel, TabPanel, message, right_label
 
 
 class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
@@ -71,8 +71,7 @@ class REALMODEL_PT_results_compartments(FoldedPanel, bpy.types.Panel):
             column = layout.column(align=True)
             _row(column, chosen.name, "All")
             for number, name in enumerate(table["names"]):
-                for line in wrapped(name):
-                    column.label(text=line)
+                message(column, name)
                 _row(column, *(units.volume_amount_text(scene, row[number]) for row in (chosen_row, total)))
         unit, factor = units.shown_unit(scene, 1)
         for fault in dict.fromkeys(entry[0] for entry in table["faults"]):

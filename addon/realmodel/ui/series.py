@@ -13,7 +13,7 @@ from ..core.project.series import SERIES
 from ..core.settings.series_kinds import FIELD, KINDS
 from . import panel
 from .lists import OfRows
-from .panel import FoldedPanel, hint, right_label, wrapped
+from .panel import FoldedPanel, hint, message, right_label
 
 
 class REALMODEL_UL_series(OfRows, bpy.types.UIList):
@@ -103,5 +103,4 @@ def _draw_refusal(layout, rock, row):
         return
     column = layout.box().column(align=True)
     column.alert = True
-    for line in wrapped(text, 2):
-        column.label(text=line)
+    message(column, text, taken=2)

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl.host import native
-from .panel import FoldedPanel, OfAModel, TabPanel, hint, wrapped
+from .panel import FoldedPanel, OfAModel, TabPanel, hint, message
 
 
 class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
@@ -20,8 +20,7 @@ class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
             box = layout.box()
             box.alert = True
             box.label(text="RealModel cannot build here", icon="ERROR")
-            for line in wrapped(missing):
-                box.label(text=line)
+            message(box, missing)
         if group.exists:
             row = layout.row(align=True)
             row.prop(group, "name", text="")

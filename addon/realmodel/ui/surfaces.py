@@ -18,7 +18,7 @@ from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.settings.variogram import VARIOGRAMS
 from . import panel
-from .panel import FoldedPanel, OfAModel, TabPanel, file_field, hint, right_label, wrapped
+from .panel import FoldedPanel, OfAModel, TabPanel, file_field, hint, message, right_label
 
 
 class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
@@ -122,8 +122,7 @@ def _draw_dips_unused(layout, surface):
     column = layout.column(align=True)
     column.alert = bool(surface.dips)
     for text in method_settings.dips_unused(surface):
-        for number, line in enumerate(wrapped(text, 0 if column.alert else 2)):
-            column.label(text=line, icon="NONE" if number else "ERROR")
+        message(column, text, icon="ERROR")
 
 
 def draw_drawing(layout, context, operator):
@@ -154,8 +153,7 @@ def draw_figures(layout, context, surface):
         return
     scene, column = context.scene, layout.box().column(align=True)
     for sentence in _figures(scene, figures):
-        for line in wrapped(sentence):
-            column.label(text=line)
+        message(column, sentence)
 
 
 def _figures(scene, figures):

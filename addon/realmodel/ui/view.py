@@ -8,7 +8,7 @@ from ..bl.display import coordinates, cuts, fields, modes, preparing, residuals,
 from ..bl.project import compartments, library_rows, project_settings, settings, units
 from ..core.base.errors import counted
 from .lists import draw_swatch
-from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
+from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, message
 
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
@@ -63,8 +63,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         if group.view.message:
             box = layout.box()
             box.alert = True
-            for line in wrapped(group.view.message):
-                box.label(text=line)
+            message(box, group.view.message)
 
 
 def _stage(layout, scene):

@@ -2,6 +2,7 @@
 """Reads tables of boreholes, of observed blocks and of dips for a rock mass, each told by its columns."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
 from ...core.readers import (
@@ -13,22 +14,24 @@ from ...core.readers import (
     read_dips_of_rock,
     read_observed_places,
     read_space_dips,
+    table_contents,
     table_kind,
 )
-from ...core.readers.formats import SHAPES, endings
+from ...core.readers.formats import HOLES, SHAPES, endings, format_of
 from ...core.readers.object_input import is_object_file
-from ...core.readers.tables.hole_tables import OBSERVED, normalized_name
+from ...core.readers.tables.hole_tables import COLLARS, OBSERVED, columns_in, normalized_name
 from ...core.readers.tables.intervals import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
 from ...core.settings.data_files import HOLE_COLUMNS as OF_HOLES
 from ...core.settings.data_files import OBSERVATION_COLUMNS as OF_PLACES
 from ...core.settings.data_files import Boreholes, MapFile, check_column_names
 from ...core.settings.dips import COLUMNS as OF_DIPS
-from ..project import observed_blocks
+from ..project import observed_blocks, surface_dips
+from ..scene import borehole_points
 from . import map_settings
 
 ALL_COLUMNS = tuple(dict.fromkeys((*OF_HOLES, *OF_PLACES, *OF_DIPS)))
-_ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
+_ONE_OF_EACH = ("collars", "survey", "picks", "intervals", "file")
 
 
 @dataclass
@@ -45,6 +48,12 @@ class FieldTables:
     dips: list = field(default_factory=list)
     rock_dips: list = field(default_factory=list)
     series_dips: list = field(default_factory=list)
+
+    @property
+    def coded(self):
+        """All that name surfaces or blocks."""
+        holes = [] if self.boreholes is None else [self.boreholes]
+        return [*holes, *self.observations, *self.rock_dips, *self.maps]
 
     def give_dips_to_series(self, every):
         """Dips are those of a field: all of them, or those that name neither surfaces nor blocks."""
@@ -92,7 +101,7 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
         if is_map(path):
             sorted_tables.maps.append(_map_file(path, of_maps or {}, units))
             continue
-        kind = "picks" if is_object_file(path) else table_kind(path, columns)
+        kind = "picks" if is_object_file(path) else "file" if has_holes(path) else table_kind(path, columns)
         if kind == "observations":
             sorted_tables.observations.append(ObservationFile(path, _of(columns, OF_PLACES), units=units))
         elif kind == "dips":
@@ -107,17 +116,45 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
             tables[kind] = path
     of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
     if tables and not (assays and tables.keys() <= {"collars", "survey"}):
-        sorted_tables.boreholes = Boreholes(**tables, **of_holes)
-        sorted_tables.boreholes.check()
+        sorted_tables.boreholes = _boreholes(tables, of_holes)
     for path in assays:
-        sorted_tables.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
-        sorted_tables.assays[-1].check()
+        sorted_tables.assays.append(_boreholes(tables | {"picks": None, "intervals": path}, of_holes))
     return sorted_tables
+
+
+def _boreholes(tables, of_holes):
+    """Boreholes, with those of the rows that are named which their tables have. Raises OptionRefused."""
+    names = {Path(file).name for file in tables.values() if file is not None}
+    rows = {
+        key: [row for row in of_holes.get(key, ()) if row.rpartition(":")[0].strip() in names]
+        for key in ("unrepaired", "left_out")
+    }
+    boreholes = Boreholes(**tables, **of_holes | rows)
+    boreholes.check()
+    return boreholes
 
 
 def is_map(path):
     """Whether a file has shapes in plan."""
     return path.suffix.lower() in endings(SHAPES)
+
+
+def has_holes(path):
+    """Whether a file has boreholes by its format, with all of their tables at once."""
+    return is_object_file(path) or format_of(path, HOLES) is not None
+
+
+def columns_of(preview):
+    """{meaning: column} of a TablePreview, by name, or by number from 1, as the table is understood without a
+    word."""
+    try:
+        known, _ = table_contents(preview.file)
+    except InputRefused:
+        known = columns_in(Boreholes(), preview.file, {key: COLLARS[key] for key in ("hole", "x", "y", "z")})
+    plain = [plain_name(name) for name in preview.names]
+    numbered = {meaning: plain.index(name) for meaning, name in known.items() if name in plain}
+    is_known = preview.has_header
+    return {m: preview.names[at] for m, at in numbered.items() if is_known and m in ALL_COLUMNS}
 
 
 def block_attribute(names):
@@ -155,6 +192,15 @@ def read(scene, rock, tables, names, add_surfaces):
         result = _read(scene, rock, tables, units)
         result.new = new
     return result
+
+
+def forget(rock, found):
+    """Removes what a rock mass has of the holes and of the places of dips that are imported again."""
+    holes = found.picks.holes.keys()
+    borehole_points.forget(rock, holes)
+    observed_blocks.forget(rock, holes)
+    if found.rock_dips is not None:
+        surface_dips.forget(rock, found.rock_dips)
 
 
 def _read(scene, rock, tables, units):

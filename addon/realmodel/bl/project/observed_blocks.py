@@ -41,6 +41,13 @@ def add(row, observations):
     keep(row, Observations.joined([earlier.some(~again), observations]))
 
 
+def forget(row, holes):
+    """Removes the observations of some holes."""
+    earlier = of_rock(row)
+    if earlier is not None and len(holes):
+        keep(row, earlier.some(~np.isin(earlier.holes, list(holes))))
+
+
 def of_rock(row):
     """The stored Observations; None where there are none. Raises InputRefused for damaged arrays."""
     return Observations(**row.observations) if row.observations else None

@@ -7,6 +7,7 @@ from ...core import InputRefused
 from ...core.settings.data_files import list_of
 
 _SEPARATORS = {"tab": "\t", "blank": " "}
+_PAIR = re.compile(r'\s*("[^"]*"|[^=;]*?)\s*(?:=\s*("[^"]*"|[^;]*?)\s*)?(?:;|$)')  # of name = text; ...
 _ENTRY = re.compile(r'\s*("[^"]*"|[^,"]+?)\s*(?:,|$)')  # of a list with commas
 
 
@@ -111,13 +112,30 @@ def _fill_names(row, key, names):
 
 def named_columns(given):
     """{name: column} of "hole = BHID; depth = 3"."""
-    return {name: column(text) for name, text in named_texts(given).items()}
+    return {name: column(text) for name, text in _pairs(given)}
 
 
 def named_texts(given):
-    """{name: text} of "SST = Sandstone; LC ="."""
-    parts = (part.partition("=") for part in given.split(";") if part.strip())
-    return {name.strip(): text.strip() for name, _, text in parts}
+    """{name: text} of "SST = Sandstone; LC ="; either may stand in quotes."""
+    return {_unquoted(name): _unquoted(text) for name, text in _pairs(given)}
+
+
+def _pairs(given):
+    return [(name.strip(), text.strip()) for name, text in _PAIR.findall(given) if name.strip()]
+
+
+def _unquoted(text):
+    return text[1:-1] if len(text) > 1 and text[0] == text[-1] == '"' else text
+
+
+def of_named(texts):
+    """The text that `named_texts` reads, and `named_columns` of columns."""
+    return "; ".join(f"{_quoted(name)} = {_quoted(text)}" for name, text in texts.items())
+
+
+def _quoted(text):
+    text = column_text(text)
+    return f'"{text}"' if set(text) & set(";=") and text[0] != '"' else text
 
 
 # By the kinds of settings that are texts or rows in the panel.

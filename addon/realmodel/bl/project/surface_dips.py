@@ -25,6 +25,14 @@ def add(row, dips):
         keep(row, SpaceDips.joined(parts))
 
 
+def forget(row, again):
+    """Removes the Dips at the places of others."""
+    earlier = of_row(row)
+    if isinstance(earlier, Dips):
+        places = {tuple(place) for place in again.positions.tolist()}
+        keep(row, earlier.some(np.array([tuple(p) not in places for p in earlier.positions.tolist()], bool)))
+
+
 def of_row(row):
     """The stored Dips, or SpaceDips; None where there are none. Raises InputRefused for damaged arrays."""
     return _class(row)(**row.dips) if row.dips else None

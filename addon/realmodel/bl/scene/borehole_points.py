@@ -5,7 +5,7 @@
 import numpy as np
 
 from ...core.surfaces.age_order import age_order
-from ..project import library_rows, method_settings, settings
+from ..project import borehole_picks, library_rows, method_settings, settings
 from . import data_objects
 
 
@@ -47,6 +47,20 @@ def give(scene, rock, picks, add_surfaces=False, units=()):
         ]
         rock.active_surface = len(rock.surfaces) - 1
     return warnings
+
+
+def forget(rock, holes):
+    """Takes the picks of some holes away from the surfaces of a rock mass that have them."""
+    earlier = borehole_picks.of_rock(rock)
+    places = {tuple(place) for hole in holes if hole in earlier for _, place in earlier[hole][1]}
+    for row in rock.surfaces if places else ():
+        if row.source != "POINTS_FILE" or row.filepath or not row.stored:
+            continue
+        points = row.stored["points"]
+        others = np.array([tuple(point) not in places for point in points.tolist()], bool)
+        if not others.all():
+            keep_points(row, points[others])
+            row.source = "POINTS_FILE" if others.any() else "NONE"
 
 
 def _tops(picks, name):

@@ -19,6 +19,8 @@ from .maps.geojson import begins_as_geojson, read_geojson
 from .maps.geopackage import is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
 from .maps.wkt import begins_as_wkt_file, read_wkt
+from .meshes.datamine import begins_as_datamine, read_datamine
+from .meshes.gltf_mesh import begins_as_gltf, read_gltf
 from .meshes.gmsh_mesh import begins_as_msh, read_msh
 from .meshes.landxml import begins_as_landxml, read_landxml
 from .meshes.leapfrog import begins_as_leapfrog, read_leapfrog
@@ -26,6 +28,8 @@ from .meshes.obj_mesh import begins_as_obj, read_obj
 from .meshes.off import begins_as_off, read_off
 from .meshes.ply_mesh import begins_as_ply, begins_as_ply_points, read_ply, read_ply_points
 from .meshes.stl_mesh import begins_as_stl, read_stl
+from .meshes.surpac import begins_as_dtm, begins_as_str, read_dtm, read_str
+from .meshes.vtk_legacy import begins_as_vtk, begins_as_vtm, read_vtk, read_vtm
 from .meshes.vtk_mesh import begins_as_vtk_xml, read_vtk_xml
 from .objects.dxf import begins_as_dxf, read_dxf
 from .objects.geo_object import as_a_whole
@@ -53,9 +57,9 @@ class FileFormat:
 
     holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
-    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer` names
-    one of several layers of shapes, or sheets, in a file. downward_dip: of boreholes, which dips go down where
-    the format says it.
+    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. has_layers: `layer`
+    names one of several layers of shapes, or sheets, in a file. downward_dip: of boreholes, which dips go
+    down where the format says it.
     """
 
     label: str
@@ -103,6 +107,12 @@ FORMATS = (
     FileFormat(
         "VTK XML", (".vtp", ".vtu"), OBJECTS, begins_as_vtk_xml, as_a_whole(read_vtk_xml), by_ending=True
     ),
+    FileFormat("VTK", (".vtk",), OBJECTS, begins_as_vtk, as_a_whole(read_vtk), by_ending=True),
+    FileFormat("VTK multiblock", (".vtm",), OBJECTS, begins_as_vtm, as_a_whole(read_vtm)),
+    FileFormat("glTF", (".glb", ".gltf"), OBJECTS, begins_as_gltf, as_a_whole(read_gltf), by_ending=True),
+    FileFormat("Surpac DTM", (".dtm",), OBJECTS, begins_as_dtm, as_a_whole(read_dtm), by_ending=True),
+    FileFormat("Surpac strings", (".str",), OBJECTS, begins_as_str, as_a_whole(read_str), by_ending=True),
+    FileFormat("Datamine", (".dm",), OBJECTS, begins_as_datamine, as_a_whole(read_datamine), by_ending=True),
     FileFormat("Gmsh", (".msh",), OBJECTS, begins_as_msh, as_a_whole(read_msh), by_ending=True),
     FileFormat("Leapfrog", (".msh",), OBJECTS, begins_as_leapfrog, as_a_whole(read_leapfrog)),
     FileFormat(

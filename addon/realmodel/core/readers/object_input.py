@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.errors import InputRefused, RealModelError, counted
+from ..base.errors import InputRefused, RealModelError, counted, number_list
 from ..base.text import Step, no_step
 from ..settings.data_files import Boreholes
 from .formats import HOLES, OBJECTS, FileFormat, format_of
@@ -23,6 +23,7 @@ from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
 from .tables.unit_names import UnitNames
 
+_NAMES_LISTED = 60
 _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE: "boreholes"}
 
 
@@ -62,10 +63,10 @@ def read_objects(
 def _chosen(
     file: Path, objects: list[ObjectName], layer: str | None, kinds: Collection[str], several: bool
 ) -> list[ObjectName]:
-    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name has
-    several kinds the first of `kinds` counts."""
+    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name
+    has several kinds the first of `kinds` counts."""
     said = " or ".join(_PLURALS[kind] for kind in kinds)
-    listed = f"it has {names_shown([obj.name for obj in objects])}" if objects else None
+    listed = f"it has {_listed(objects)}" if objects else None
     if layer is None:
         fitting = [obj for obj in objects if obj.kind in kinds and not obj.is_part]
     else:
@@ -90,9 +91,14 @@ def _chosen(
     if layer is not None:
         what, advice = f"it has {len(fitting)} objects '{layer}'", "give each object another name"
         raise InputRefused(what, file=file, advice=advice)
-    names = [obj.name for obj in objects if obj.kind in kinds]
-    advice = f'say which: layer = "..."; it has {names_shown(list(dict.fromkeys(names)))}'
+    advice = f'say which: layer = "..."; it has {_listed([obj for obj in objects if obj.kind in kinds])}'
     raise InputRefused(f"it has {len(fitting)} {said}", file=file, advice=advice)
+
+
+def _listed(objects: list[ObjectName]) -> str:
+    """The names of objects, for messages."""
+    names = [f"{name:.60}" for name in dict.fromkeys(obj.name for obj in objects)]
+    return number_list(names, _NAMES_LISTED) if len(names) > _NAMES_LISTED else ", ".join(names)
 
 
 @contextmanager
@@ -265,6 +271,21 @@ def _read_log(
         if not units.says_nothing(code):
             interval = known_interval((low, high, code), hole, where, units, picks.left_out)
             log.intervals += [] if interval is None else [interval]
+
+
+def interval_codes(given: Boreholes) -> Iterator[tuple[str, str, float]]:
+    """(code, hole, length in the file's unit) of the intervals, or of the picks, of the boreholes of a file,
+    as read_hole_objects reads them. Raises as that does."""
+    for file in dict.fromkeys(given.files):
+        for obj in read_objects(Path(file), given.layer, (HOLE,) if given.layer is None else _KINDS):
+            if given.intervals is None:
+                yield from ((code, hole, 0.0) for code, hole, _ in _picks_of(obj, given))
+                continue
+            tables = [values for values in obj.values if values.ends is not None]
+            values, column = _table(obj, tables, given, "block", INTERVALS["block"])
+            assert values.ends is not None
+            lengths = norm(values.ends - values.places).tolist()
+            yield from zip(_texts(values.columns[column]), _holes(obj, values, given), lengths, strict=True)
 
 
 def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarray:

@@ -19,8 +19,8 @@ from ..heights.interpolate import interpolate
 from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
 from ..readers import UnitNames, is_mesh_file
-from ..readers.point_input import read_raster_heights
 from ..readers.fault_input import read_fault_trace
+from ..readers.point_input import read_raster_heights
 from ..readers.tables.observations import LeftOut, Observations
 from ..readers.unit_polygons import UnitPolygon, read_unit_polygons
 from ..settings.data_files import MapFile, MapLayer, MeshFile, PointFile

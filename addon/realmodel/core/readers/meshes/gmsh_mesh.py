@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangulated surfaces in Gmsh's MSH 2 and 4.1, text or binary (Gmsh Reference Manual, "MSH file format"):
-the triangles and quadrangles, whatever their groups."""
+"""Triangulated surfaces in Gmsh's MSH 2, 4.0 and 4.1, text or binary (Gmsh Reference Manual, "MSH file
+format"): the triangles and quadrangles of each physical surface that has a name, or all."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from .triangle_mesh import surface_object
 # Nodes of each type of element; of those with more nodes than corners the corners come first.
 _NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 15: 1, 16: 8}
 _MOST_IN_A_ROW = 1000
+_PHYSICAL = re.compile(rb'^\s*2\s+(\d+)\s+"([^"\n]*)"', re.MULTILINE)
 _CORNERS = {2: 3, 9: 3, 3: 4, 10: 4, 16: 4}
 
 
@@ -27,64 +30,120 @@ def begins_as_msh(head: bytes, _size: int = 0) -> bool:
 
 
 def read_msh(file: str | Path, step: Step = no_step) -> list[ObjectName]:
-    """Reads the faces of a mesh. Raises InputRefused naming the file."""
+    """Reads the faces by the names of their physical groups; those of none have none. Without names it is
+    called as its file. Raises InputRefused naming the file."""
     file = Path(file)
     raw = read_bytes(file)
-    sections = {}
-    for name in (b"MeshFormat", b"Nodes", b"Elements"):
-        begin, end = raw.find(b"$" + name), raw.rfind(b"$End" + name)
-        if begin < 0 or end < begin:
-            what = f"it has no whole section {name.decode()}"
-            raise InputRefused(f"{what} (byte {len(raw)})", file=file, advice="the file is cut off")
-        sections[name] = raw.find(b"\n", begin) + 1, end
+    sections = {name: _section(file, raw, name) for name in (b"MeshFormat", b"Nodes", b"Elements")}
     head = raw[slice(*sections[b"MeshFormat"])]
     words = head.split(None, 3)
     version = words[0].decode("ascii", "replace") if words else ""
-    if len(words) < 3 or not re.fullmatch(r"2(\.\d+)?|4\.1", version):
+    if len(words) < 3 or not re.fullmatch(r"2(\.\d+)?|4(\.[01])?", version):
         raise InputRefused(
             f"MSH {version:.10} is not read", file=file, advice="save it as version 4.1 or 2.2"
         )
     is_binary = words[1] == b"1"
     order = ">" if is_binary and head.split(b"\n", 1)[1][:4] == b"\0\0\0\1" else "<"
-    read: list[_Numbers] = []
-    section = b"Nodes"
+    layout = _Layout(version, is_binary, order)
+    at = b"Nodes"
+    read: dict[bytes, _Numbers] = {}
     try:
-        both = [raw[slice(*sections[name])] for name in (b"Nodes", b"Elements")]
-        read = [_Bytes(content, order) if is_binary else _Words(content) for content in both]
-        old = version.startswith("2")
-        tags, places = (_nodes_2 if old else _nodes_4)(read[0])
+        for name in (b"Nodes", b"Elements"):
+            read[name] = layout.numbers(raw[slice(*sections[name])])
+        tags, places = layout.nodes(read[at])
         step(0.5)
-        section = b"Elements"
-        faces = (_elements_2 if old else _elements_4)(read[1])
+        at = b"Elements"
+        faces = layout.elements(read[at], _groups_of_entities(raw, layout))
     except InputRefused:
         raise
     except (ValueError, IndexError, OverflowError, MemoryError, KeyError) as error:
         what, line = f"not a Gmsh file that can be read: {error}", None
-        if read:
-            at = read[section == b"Elements"].at
+        if len(read) == 2:
+            place = read[at].at
             if is_binary:
-                what += f" (byte {sections[section][0] + at})"
+                what += f" (byte {sections[at][0] + place})"
             else:
-                line = line_of_word(raw, at, *sections[section])
+                line = line_of_word(raw, place, *sections[at])
         raise InputRefused(what, file=file, line=line) from error
-    if not any(map(len, faces)):
+    if not faces:
         raise InputRefused(
             "it has no triangles or quadrangles", file=file, advice="mesh the surfaces, and save all"
         )
     if not len(tags):
         raise InputRefused("it has no nodes", file=file)
-    numbers = [_numbers(file, tags, corners) for corners in faces if len(corners)]
-    listed = numbers[0] if len(numbers) == 1 else [row for some in numbers for row in some.tolist()]
-    return [surface_object(file, file.stem, places, listed)]
+    return _objects(file, places, _Tags(file, tags), faces, _physical_names(raw))
 
 
-def _numbers(file: Path, tags: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """The numbers from 0 of nodes by their tags. tags: of all nodes. Raises InputRefused."""
-    order = np.argsort(tags, kind="stable")
-    at = order[np.minimum(np.searchsorted(tags[order], corners), len(tags) - 1)]
-    if (tags[at] != corners).any():
-        raise InputRefused("an element has a node that is not there", file=file)
-    return at
+def _objects(
+    file: Path, places: np.ndarray, tags: _Tags, faces: _Faces, names: dict[int, str]
+) -> list[ObjectName]:
+    """The objects by the names of physical groups, in the order of these."""
+    if not names:
+        return [surface_object(file, file.stem, places, _joined(tags, faces.of_all()))]
+    by_name: dict[str, list[np.ndarray]] = {name: [] for name in names.values()}
+    for group, corners in faces.of_groups():
+        by_name.setdefault(names.get(group, ""), []).append(corners)
+    return [surface_object(file, name, places, _joined(tags, some)) for name, some in by_name.items() if some]
+
+
+def _joined(tags: _Tags, faces: list[np.ndarray]) -> list | np.ndarray:
+    """The corners of faces by the numbers of their nodes. Triangles come before quadrangles."""
+    sizes = [np.concatenate(some) for k in (3, 4) if (some := [face for face in faces if face.shape[1] == k])]
+    numbers = [tags.numbers(some) for some in sizes]
+    return numbers[0] if len(numbers) == 1 else [row for some in numbers for row in some.tolist()]
+
+
+def _section(file: Path, raw: bytes, name: bytes) -> tuple[int, int]:
+    """Where a section begins and ends. Raises InputRefused where it is not whole."""
+    begin, end = raw.find(b"$" + name), raw.rfind(b"$End" + name)
+    if begin < 0 or end < begin:
+        what = f"it has no whole section {name.decode()}"
+        raise InputRefused(f"{what} (byte {len(raw)})", file=file, advice="the file is cut off")
+    return raw.find(b"\n", begin) + 1, end
+
+
+def _physical_names(raw: bytes) -> dict[int, str]:
+    """The names of physical surfaces by their numbers."""
+    section = raw[max(raw.find(b"$PhysicalNames"), 0) : max(raw.find(b"$EndPhysicalNames"), 0)]
+    return {int(tag): name.decode("utf-8", "replace") for tag, name in _PHYSICAL.findall(section)}
+
+
+def _groups_of_entities(raw: bytes, layout: _Layout) -> dict[int, list[int]]:
+    """The physical groups of each surface of MSH 4. Raises ValueError."""
+    begin, end = raw.find(b"$Entities"), raw.find(b"$EndEntities")
+    if layout.is_old or not 0 <= begin < end:
+        return {}
+    read = layout.numbers(raw[raw.find(b"\n", begin) + 1 : end])
+    groups: dict[int, list[int]] = {}
+    points, curves, surfaces, _ = (_whole(value) for value in read.take("ssss")[0])
+    for dimension, count in enumerate((points, curves, surfaces)):
+        for _ in range(count):
+            # a point has its place, from 4.1 on; others have a box
+            row = read.take("iddd" if dimension == 0 and layout.version == "4.1" else "idddddd")[0]
+            (tagged,) = read.take("s")[0]
+            some = read.take("i" * _few(tagged))[0] if tagged else []
+            if dimension == 2:
+                groups[int(row[0])] = [abs(int(value)) for value in some]
+            if dimension:
+                (bounds,) = read.take("s")[0]
+                read.take("i", _whole(bounds))
+    return groups
+
+
+class _Tags:
+    """The nodes of a file by their tags (N,)."""
+
+    def __init__(self, file: Path, tags: np.ndarray):
+        self._file = file
+        self._order = np.argsort(tags, kind="stable")
+        self._tags = tags[self._order]
+
+    def numbers(self, corners: np.ndarray) -> np.ndarray:
+        """The numbers from 0 of nodes by their tags. Raises InputRefused."""
+        at = np.minimum(np.searchsorted(self._tags, corners), len(self._tags) - 1)
+        if (self._tags[at] != corners).any():
+            raise InputRefused("an element has a node that is not there", file=self._file)
+        return self._order[at]
 
 
 class _Words:
@@ -155,39 +214,86 @@ def _few(value: float) -> int:
     return int(value)
 
 
-def _nodes_2(read: _Numbers) -> tuple[np.ndarray, np.ndarray]:
-    rows = read.take("iddd", _count(read))
-    return rows[:, 0], rows[:, 1:]
-
-
-def _nodes_4(read: _Numbers) -> tuple[np.ndarray, np.ndarray]:
-    tags, places = [np.empty(0)], [np.empty((0, 3))]
-    blocks, *_ = read.take("ssss")[0]
-    for _ in range(_whole(blocks)):
-        dimension, _, parametric, count = read.take("iiis")[0]
-        more = _few(dimension) if parametric else 0
-        tags.append(read.take("s", _whole(count))[:, 0])
-        places.append(read.take("ddd" + "d" * more, _whole(count))[:, :3])
-    return np.concatenate(tags), np.concatenate(places)
-
-
 class _Faces:
-    """The tags of the corners of triangles and of quadrangles."""
+    """Faces in pieces: the tags of their corners, and their physical groups (0: none)."""
 
     def __init__(self) -> None:
-        self._of_size = {size: [np.empty((0, size))] for size in (3, 4)}
+        self._pieces: list[tuple[np.ndarray, np.ndarray]] = []
 
-    def add(self, kind: int, nodes: np.ndarray) -> None:
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    def add(self, kind: int, nodes: np.ndarray, groups: np.ndarray) -> None:
         """Adds elements of a type by their nodes; of others than faces, does nothing."""
-        if kind in _CORNERS:
-            self._of_size[_CORNERS[kind]].append(nodes[:, : _CORNERS[kind]])
+        if kind in _CORNERS and len(nodes):
+            self._pieces.append((nodes[:, : _CORNERS[kind]], groups))
 
-    def arrays(self) -> list[np.ndarray]:
-        return [np.concatenate(some) for some in self._of_size.values()]
+    def of_all(self) -> list[np.ndarray]:
+        """All faces, each once."""
+        return [faces for faces, _ in self._pieces]
+
+    def of_groups(self) -> Iterator[tuple[int, np.ndarray]]:
+        """Each group that a piece has, and its faces there."""
+        for faces, groups in self._pieces:
+            for group in dict.fromkeys(groups.ravel().tolist()):
+                yield int(group), faces[(groups == group).reshape(len(faces), -1).any(axis=1)]
 
 
-def _elements_2(read: _Numbers) -> list[np.ndarray]:
+@dataclass(frozen=True)
+class _Layout:
+    """How a file is written."""
+
+    version: str
+    is_binary: bool
+    order: str
+
+    @property
+    def is_old(self) -> bool:
+        """Whether it is MSH 2."""
+        return self.version.startswith("2")
+
+    def numbers(self, section: bytes) -> _Numbers:
+        """The numbers of a section."""
+        return _Bytes(section, self.order) if self.is_binary else _Words(section)
+
+    def nodes(self, read: _Numbers) -> tuple[np.ndarray, np.ndarray]:
+        """The tags (N,) and the places (N, 3) of the nodes. Raises ValueError."""
+        if self.is_old:
+            rows = read.take("iddd", _count(read))
+            return rows[:, 0], rows[:, 1:]
+        tags, places = [np.empty(0)], [np.empty((0, 3))]
+        blocks, *_ = read.take("ssss" if self.version == "4.1" else "ss")[0]
+        for _ in range(_whole(blocks)):
+            one, other, parametric, count = read.take("iiis")[0]
+            dimension = one if self.version == "4.1" else other
+            more = "d" * (_few(dimension) if parametric else 0)
+            if self.version == "4.1":
+                tags.append(read.take("s", _whole(count))[:, 0])
+                places.append(read.take("ddd" + more, _whole(count))[:, :3])
+            else:
+                rows = read.take("iddd" + more, _whole(count))
+                tags.append(rows[:, 0])
+                places.append(rows[:, 1:4])
+        return np.concatenate(tags), np.concatenate(places)
+
+    def elements(self, read: _Numbers, groups: dict[int, list[int]]) -> _Faces:
+        """The faces. groups: the physical ones of each surface. Raises ValueError, KeyError."""
+        if self.is_old:
+            return _elements_2(read)
+        faces = _Faces()
+        is_last = self.version == "4.1"
+        blocks, *_ = read.take("ssss" if is_last else "ss")[0]
+        for _ in range(_whole(blocks)):
+            one, other, kind, count = read.take("iiis")[0]
+            rows = read.take(("s" if is_last else "i") * (1 + _NODES[int(kind)]), _whole(count))
+            some = groups.get(int(other if is_last else one), []) or [0]
+            faces.add(int(kind), rows[:, 1:], np.tile(some, (len(rows), 1)))
+        return faces
+
+
+def _elements_2(read: _Numbers) -> _Faces:
     faces, count, done = _Faces(), _count(read), 0
+    of_kind: dict[int, list[np.ndarray]] = {}
     while done < count:
         if isinstance(read, _Bytes):
             kind, rows, tags = (int(v) for v in read.take("iii")[0])
@@ -197,15 +303,11 @@ def _elements_2(read: _Numbers) -> list[np.ndarray]:
         else:
             _, kind, tags = (int(v) for v in read.take("iii")[0])
             rows, first = 1, _few(tags)
-        faces.add(kind, read.take("i" * (first + _NODES[kind]), rows)[:, first:])
+        numbers = read.take("i" * (first + _NODES[kind]), rows)
+        group = numbers[:, first - tags : first - tags + 1] if tags else np.zeros((rows, 1))
+        of_kind.setdefault(kind, []).append(np.column_stack([group, numbers[:, first:]]))
         done += rows
-    return faces.arrays()
-
-
-def _elements_4(read: _Numbers) -> list[np.ndarray]:
-    faces = _Faces()
-    blocks, *_ = read.take("ssss")[0]
-    for _ in range(_whole(blocks)):
-        _, _, kind, count = read.take("iiis")[0]
-        faces.add(int(kind), read.take("s" * (1 + _NODES[int(kind)]), _whole(count))[:, 1:])
-    return faces.arrays()
+    for kind, pieces in of_kind.items():
+        numbers = np.concatenate(pieces)
+        faces.add(kind, numbers[:, 1:], numbers[:, :1].astype(np.int64))
+    return faces

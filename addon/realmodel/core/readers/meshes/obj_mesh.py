@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wavefront OBJ ("Object Files", the appendix B1 of the manual of Advanced Visualizer): the faces of each object
-(`o`), and of each group (`g`). Coordinates are read as they stand: z is up. Normals, colors and materials are
-left out."""
+"""Wavefront OBJ ("Object Files", the appendix B1 of the manual of Advanced Visualizer): the faces of each
+object (`o`), and of each group (`g`). Coordinates are read as they stand: z is up. Normals, colors and
+materials are left out."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step, text_lines
 from ..objects.geo_object import ObjectName, point_object
-from .triangle_mesh import UNREADABLE, mesh_of_faces, surface_object
+from .triangle_mesh import UNREADABLE, surface_object
 
 _COMMENT = re.compile(r"(?:^|\s)#.*")
 
@@ -28,14 +28,13 @@ def begins_as_obj(head: bytes, _size: int = 0) -> bool:
 
 
 def read_obj(file: str | Path, step: Step = no_step) -> list[ObjectName]:
-    """The objects of a file; where it has none, its groups. A group within an object is a part of it. A group is
-    called by its line, and by each word of that: `g a b` belongs to "a b", to "a" and to "b". Points where there
-    are no faces. Raises InputRefused naming file and line."""
+    """The objects of a file; where it has none, its groups. A group within an object is a part of it. A group
+    is called by its line, and by each word of that: `g a b` belongs to "a b", to "a" and to "b". Points where
+    there are no faces. Raises InputRefused naming file and line."""
     file = Path(file)
     vertices: list[tuple[float, ...]] = []
     blocks: dict[tuple[str, str], list[tuple[tuple[int, ...], int]]] = {}  # by object and group: faces, lines
     label, group = "", ""
-    block = blocks.setdefault(("", ""), [])
     for number, line in _lines(file, step):
         key, *words = line.split()
         try:
@@ -46,17 +45,16 @@ def read_obj(file: str | Path, step: Step = no_step) -> list[ObjectName]:
                 corners = [int(word.partition("/")[0]) for word in words]
                 # from 1; below zero from the last vertex so far
                 face = tuple([c - 1 if c > 0 else len(vertices) + c if c else -1 for c in corners])
-                block.append((face, number))
+                blocks.setdefault((label, group), []).append((face, number))
             elif key in ("o", "g"):
                 name = " ".join(words)
                 label, group = (name, "") if key == "o" else (label, name)
-                block = blocks.setdefault((label, group), [])
         except UNREADABLE as error:
             raise InputRefused(f"'{line:.40}' cannot be read", file=file, line=number) from error
-    blocks = {names: faces for names, faces in blocks.items() if faces}
     if not blocks:
-        mesh_of_faces(file, vertices, []) if not vertices else None
-        return [point_object("", vertices)]
+        if not vertices:
+            raise InputRefused("the mesh has no faces", file=file)
+        return [point_object(file.stem, vertices)]
     return [
         surface_object(
             file,
@@ -80,7 +78,7 @@ def _named(blocks: dict[tuple[str, str], list]) -> dict[str, tuple[list, bool]]:
         some = [
             faces
             for (label, group), faces in blocks.items()
-            if name == (label if has_objects else group) or name and name in (group, *group.split())
+            if name == (label if has_objects else group) or (name and name in (group, *group.split()))
         ]
         named[name] = some, name not in whole
     return named

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step, parse_xml, read_bytes
-from ..objects.geo_object import ObjectName
+from ..objects.geo_object import ObjectName, point_object
 from .triangle_mesh import surface_object
 
 _TYPES = {
@@ -33,6 +33,7 @@ _BEGINNING = re.compile(
     rb'\s*(?:<\?xml[^>]*>\s*)?(?:<!--.*?-->\s*)*<VTKFile\s[^>]*type="(PolyData|UnstructuredGrid)"', re.DOTALL
 )
 _TRIANGLE, _STRIP, _POLYGON, _PIXEL, _QUAD = 5, 6, 7, 8, 9
+_QUADRATIC = {22: 3, 23: 4, 28: 4, 34: 3}  # by their corners, which come first
 _APPENDED = re.compile(rb'<AppendedData\s+encoding="(raw|base64)"\s*>\s*_')
 _MOST_COMPRESSED = 1100  # the largest compression ratio of zlib
 
@@ -80,6 +81,8 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     ) as error:
         raise InputRefused(f"not a VTK file that can be read: {error}", file=file) from error
     if not sum(map(len, faces)):
+        if root.get("type") == "PolyData" and first:
+            return [point_object(file.stem, np.concatenate(vertices))]
         advice = "save the surface, not the solid (Extract Surface)"
         raise InputRefused("it has no triangles or polygons", file=file, advice=advice)
     listed = faces[0] if len(faces) == 1 else [face for some in faces for face in some]
@@ -93,8 +96,14 @@ def _faces(arrays: _Arrays, piece: ElementTree.Element) -> _Faces:
     """The corners of the faces of a piece."""
     if (cells := piece.find("Cells")) is None:
         polygons, strips = _cells(arrays, piece.find("Polys")), _cells(arrays, piece.find("Strips"))
-        return [*polygons, *(face for row in strips for face in _strip(row))] if len(strips) else polygons
-    kinds, rows = arrays.named(cells, "types"), _cells(arrays, cells)
+        return (
+            [*polygons, *(face for row in strips for face in strip_faces(row))] if len(strips) else polygons
+        )
+    return faces_of_cells(arrays.named(cells, "types"), _cells(arrays, cells))
+
+
+def faces_of_cells(kinds: np.ndarray, rows: _Faces) -> _Faces:
+    """The corners of the faces among cells of these types. Raises ValueError."""
     if len(rows) != len(kinds):
         raise ValueError("there are not as many types as cells")
     if np.isin(kinds, (_TRIANGLE, _POLYGON, _QUAD)).all():
@@ -103,14 +112,17 @@ def _faces(arrays: _Arrays, piece: ElementTree.Element) -> _Faces:
     for kind, row in zip(kinds.tolist(), rows, strict=True):
         if kind in (_TRIANGLE, _POLYGON, _QUAD):
             faces.append(row)
+        elif kind in _QUADRATIC:
+            faces.append(row[: _QUADRATIC[kind]])
         elif kind == _PIXEL:
             faces.append([row[0], row[1], row[3], row[2]])
         elif kind == _STRIP:
-            faces += _strip(row)
+            faces += strip_faces(row)
     return faces
 
 
-def _strip(row: Sequence) -> list:
+def strip_faces(row: Sequence) -> list:
+    """The triangles of a strip, each second one turned."""
     return [row[k : k + 3] if k % 2 == 0 else [row[k + 1], row[k], row[k + 2]] for k in range(len(row) - 2)]
 
 

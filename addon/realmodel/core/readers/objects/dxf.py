@@ -3,8 +3,8 @@
 each layer, and of each block that is inserted.
 
 Faces: 3DFACE, polyface and polygon meshes (POLYLINE), and MESH, of which the coarsest level counts. Lines and
-points: POLYLINE, LWPOLYLINE, LINE and POINT, by their vertices. What stands in a block is where it is inserted,
-and on the layer of the insert if it is on layer 0.
+points: POLYLINE, LWPOLYLINE, LINE and POINT, by their vertices. What stands in a block is where it is
+inserted, and on the layer of the insert if it is on layer 0.
 """
 
 from __future__ import annotations
@@ -23,15 +23,13 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ..meshes.triangle_mesh import mesh_of_corners, object_of_mesh
 from .dxf_tags import BINARY, Entity, read_entities
-from .geo_object import LINES, POINTS, SURFACE, GeoObject, ObjectName, point_object
+from .geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
 
-_BEGINNING = re.compile(
-    rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE
-)
+_BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
 _CLOSED_M, _IS_3D, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 8, 16, 32, 64
 _NOT_READ = ("3DSOLID", "ARC", "BODY", "CIRCLE", "ELLIPSE", "REGION", "SOLID", "SPLINE", "SURFACE", "TRACE")
-_MOST_INSERTS, _DEEPEST = 1_000_000, 32
+_MOST_INSERTS, _DEEPEST = 100_000, 32
 _Place = tuple[float, float, float]
 
 
@@ -58,6 +56,7 @@ class _Layer:
     corners: list[_Place] = field(default_factory=list)
     sizes: list[int] = field(default_factory=list)
     places: list[_Place] = field(default_factory=list)
+    sticks: list[int] = field(default_factory=list)  # of places: the number of their line
     kind: str = POINTS
     not_read: Counter = field(default_factory=Counter)
 
@@ -67,6 +66,7 @@ class _Layer:
                 self.corners += face
                 self.sizes.append(len(face))
         self.places += shape.places
+        self.sticks += [self.sticks[-1] + 1 if self.sticks else 1] * len(shape.places)
         if shape.is_line:
             self.kind = LINES
 
@@ -94,14 +94,21 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     parts = [layer for name, layer in inserted.items() if name not in layers]
     objects += [obj for layer in parts for obj in _objects(file, layer, said_unit, True)]
     if not objects:
+        what = "it has no 3D faces, lines or points"
+        not_read = _kinds(sum((layer.not_read for layer in layers.values()), Counter()))
+        what += f", but {not_read}, which are not read" if not_read else ""
         advice = "export the surface as 3D faces (3DFACE), as a polyface mesh or as contour lines"
-        raise InputRefused("it has no 3D faces, lines or points", file=file, advice=advice)
+        raise InputRefused(what, file=file, advice=advice)
     return objects
 
 
+def _kinds(entities: Counter) -> str:
+    return number_list(f"{count} {name}" for name, count in sorted(entities.items()))
+
+
 def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) -> Iterator[ObjectName]:
-    kinds = [f"{count} {name}" for name, count in sorted(layer.not_read.items())]
-    warnings = (f"'{layer.name}' has {number_list(kinds)}, which are not read",) if kinds else ()
+    kinds = _kinds(layer.not_read)
+    warnings = (f"'{layer.name}' has {kinds}, which are not read",) if kinds else ()
 
     def surface() -> GeoObject:
         mesh = mesh_of_corners(file, layer.corners, layer.sizes)
@@ -110,7 +117,10 @@ def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) ->
     if layer.sizes:
         yield ObjectName(layer.name, SURFACE, surface, is_part=is_part)
     if layer.places:
-        points = point_object(layer.name, layer.places, layer.kind, said_unit=said_unit, warnings=warnings)
+        columns = {STICK: np.array(layer.sticks)} if layer.kind == LINES else {}
+        points = point_object(
+            layer.name, layer.places, layer.kind, columns, said_unit=said_unit, warnings=warnings
+        )
         yield ObjectName(points.name, points.kind, points.key, is_part=is_part)
 
 
@@ -141,6 +151,8 @@ class _Drawing:
                     yield entity, None, layer, within
                 elif (shape := _shape(entity)) is not None:
                     yield entity, shape if change is None else _moved(shape, change), layer, within
+            except InputRefused:
+                raise
             except (ValueError, KeyError, IndexError, OverflowError) as error:
                 what = f"a {entity.name} that cannot be read"
                 raise InputRefused(what, file=self._file, line=entity.line) from error
@@ -186,11 +198,11 @@ def _insert_changes(insert: Entity, block: Entity) -> Iterator[np.ndarray]:
 
 
 def _axes(entity: Entity) -> np.ndarray:
-    """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded: the
-    "arbitrary axis algorithm" of the reference. Raises ValueError."""
+    """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded:
+    the "arbitrary axis algorithm" of the reference. Raises ValueError."""
     normal = np.array([entity.number(code, default) for code, default in ((210, 0), (220, 0), (230, 1))])
     length = math.sqrt(float(normal @ normal))
-    if not length > 0.0 or (normal[:2] == 0).all() and normal[2] > 0:
+    if not length > 0.0 or ((normal[:2] == 0).all() and normal[2] > 0):
         return np.eye(3)
     normal /= length
     beside = [0.0, 1.0, 0.0] if (np.abs(normal[:2]) < 1 / 64).all() else [0.0, 0.0, 1.0]
@@ -268,11 +280,12 @@ def _polyline(entity: Entity) -> _Shape:
 
 
 def _mesh_faces(entity: Entity) -> list[list[_Place]]:
-    """The faces of a MESH on its coarsest level: behind code 93 stand the size and the corners of each face."""
+    """The faces of a MESH on its coarsest level: behind code 93 stand the size and the corners of each
+    face."""
     places = list(zip(entity.all_of(10), entity.all_of(20), entity.all_of(30), strict=True))
     numbers, is_list = [], False
     for code, value in entity.pairs:
-        is_list = code == 93 or is_list and code != 94
+        is_list = code == 93 or (is_list and code != 94)
         if is_list and code == 90:
             numbers.append(int(value))
     faces, at = [], 0

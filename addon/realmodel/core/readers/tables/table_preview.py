@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from .points import KNOWN, TextTable, head_rows, open_table, wanted_columns
+from .points import AXES, KNOWN, TextTable, head_rows, open_table, wanted_columns
 from .table_layout import Expected, is_any_number, plain_name
 
 _ROWS = 3
@@ -23,15 +23,17 @@ _NAMING = frozenset(
 
 @dataclass
 class TablePreview:
-    """names: of the columns, or their numbers from 1. rows: the first of them, as they are written. xyz: the
-    names of the columns that are taken for x, y and z. splits: {column: its values in the order of the file},
-    of columns that may name surfaces; those that plainly do come first. is_plain: whether the first does.
+    """names: of the columns; where there is no header, which has_header says, their numbers from 1. rows: the
+    first of them, as they are written. axes: the columns that are taken for x, y and z; only those that are
+    known where the header does not name all. splits: {column: its values in the order of the file}, of
+    columns that may name surfaces; those that plainly do come first. is_plain: whether the first does.
     problem: why the table cannot be read as it is."""
 
     file: Path
     names: list[str]
     rows: list[list[str]]
-    xyz: tuple[str, ...] = ()
+    has_header: bool = False
+    axes: dict[str, str] = field(default_factory=dict)
     splits: dict[str, list[str]] = field(default_factory=dict)
     is_plain: bool = False
     problem: str = ""
@@ -45,13 +47,18 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
     count = max((len(row) for row in rows[:100]), default=0)
     names = list(table.layout.names or ())
     names = [name or str(n + 1) for n, name in enumerate(names)] if len(names) == count else []
+    has_header = bool(names)
     names = names or [str(n + 1) for n in range(count)]
-    preview = TablePreview(file, names, head_rows(table, _ROWS))
+    preview = TablePreview(file, names, head_rows(table, _ROWS), has_header)
     try:
         used = wanted_columns(table, columns)
-        preview.xyz = tuple(names[n] for n in used if n < count)
+        preview.axes = {axis: names[n] for axis, n in zip(AXES, used, strict=True) if n < count}
     except InputRefused as error:
-        preview.problem, used = error.what, []
+        preview.problem = error.what
+        plain = [plain_name(name) for name in names]
+        usual = {axis: [name for name in aliases if plain.count(name) == 1] for axis, aliases in AXES.items()}
+        preview.axes = {axis: names[plain.index(known[0])] for axis, known in usual.items() if known}
+        used = [names.index(name) for name in preview.axes.values()]
     splits = []
     for column in range(count):
         if column in used or names.count(names[column]) > 1:
