@@ -140,11 +140,11 @@ def read_hole_objects(
     return picks
 
 
-def hole_sheets(given: Boreholes, file: Path) -> dict[str, Sheet]:
-    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks, those
-    that it has. Raises as read_object."""
+def hole_sheets(boreholes: Boreholes, file: Path) -> dict[str, Sheet]:
+    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
+    those that it has. Raises as read_object."""
     rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
-    for obj in read_objects(file, given.layer, (HOLE,) if given.layer is None else _KINDS):
+    for obj in read_objects(file, boreholes.layer, (HOLE,) if boreholes.layer is None else _KINDS):
         collar = np.full(3, np.nan) if obj.collar is None else obj.collar
         if np.isfinite(collar).all():
             rows["collars"].append((0, [obj.name, *map(repr, collar.tolist())]))
@@ -152,10 +152,10 @@ def hole_sheets(given: Boreholes, file: Path) -> dict[str, Sheet]:
             meaning, aliases = ("surface", (*PICKS["surface"], *INTERVALS["block"]))
             if values.ends is not None:
                 meaning, aliases = ("block", INTERVALS["block"])
-            column = _column(values, given.columns.get(meaning), aliases)
+            column = _column(values, boreholes.columns.get(meaning), aliases)
             if column is None:
                 continue
-            names, holes = _texts(values.columns[column]), _holes(obj, values, given)
+            names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
             numbers = values.places
             if values.ends is not None:
                 along = values.depths
@@ -170,7 +170,7 @@ def hole_sheets(given: Boreholes, file: Path) -> dict[str, Sheet]:
         "intervals": ("hole", "from", "to", "block"),
         "picks": ("hole", "x", "y", "z", "surface"),
     }
-    return {kind: Sheet(columns[kind], found) for kind, found in rows.items() if found}
+    return {kind: Sheet(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
 
 
 def _add_picks(
