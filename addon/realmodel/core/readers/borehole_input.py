@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from ..base.errors import InputRefused
 from ..base.text import Step, no_step
-from ..base.units import MODEL_UNIT, factors
+from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from .object_input import hole_sheets, is_object_file, read_hole_objects
 from .point_input import refuse_keys
@@ -33,8 +32,9 @@ def read_boreholes(
     units = units or UnitNames()
     if given.file is not None and is_object_file(Path(given.file)):
         file = Path(given.file)
-        sheets = hole_sheets(given, file)
-        given = replace(given, file=None, **{kind: file for kind in ("picks", "intervals") if kind in sheets})
+        sheets = hole_sheets(given, file, model_unit)
+        named: dict[str, Any] = {kind: file for kind in ("picks", "intervals") if kind in sheets}
+        given = replace(given, file=None, **named)
     of_objects = [file for file in given.files if is_object_file(file)]
     if not of_objects and given.layer is not None:
         what = f"it is a table, so it has no object '{given.layer}'"
@@ -50,8 +50,7 @@ def read_boreholes(
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    plan, height = factors(given.units, model_unit)
-    picks = read_hole_objects(given, np.array([plan, plan, height]), units, plan_step)
+    picks = read_hole_objects(given, model_unit, units, plan_step)
     step(1.0)
     return picks
 
@@ -64,8 +63,8 @@ def read_repaired(
     sheets = None
     if of_objects := [file for file in given.files if is_object_file(file)]:
         refuse_keys(of_objects[0], "has objects", given.only_for_tables)
-        sheets = hole_sheets(given, of_objects[0])
-        tables_of = dict.fromkeys(MEANINGS) | dict.fromkeys(sheets, of_objects[0])
+        sheets = hole_sheets(given, of_objects[0], model_unit)
+        tables_of: dict[str, Any] = dict.fromkeys(MEANINGS) | dict.fromkeys(sheets, of_objects[0])
         given = replace(given, file=None, layer=None, columns={}, **tables_of)
     tables = read_hole_rows(given, model_unit, step, sheets=sheets)
     repair(tables, units)
