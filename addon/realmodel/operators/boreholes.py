@@ -389,7 +389,8 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
         has_maps = any(field_tables.is_map(path) for path in shown)
         of_series = ("series",) if _series(context) else ()
         for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
-            layout.prop(self, name)
+            if name != "columns" or not self._previews:  # else the menus say it
+                layout.prop(self, name)
 
     def check(self, _context):
         self.settle_columns()

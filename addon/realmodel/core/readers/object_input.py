@@ -15,7 +15,7 @@ from ..base.errors import InputRefused, RealModelError, counted, number_list
 from ..base.text import Step, no_step
 from ..base.units import factor
 from ..settings.data_files import Boreholes, MeshFile
-from .formats import OBJECTS, FileFormat, format_of
+from .formats import HOLES, OBJECTS, FileFormat, format_of
 from .objects.geo_object import (
     HOLE,
     LINES,
@@ -28,7 +28,7 @@ from .objects.geo_object import (
     object_units,
 )
 from .tables.boreholes import Pick, Picks
-from .tables.hole_tables import INTERVALS, PICKS
+from .tables.hole_tables import INTERVALS, PICKS, Sheet
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
 from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
@@ -40,7 +40,8 @@ _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE:
 
 def is_object_file(file: Path) -> bool:
     """Whether a file is one of objects. Raises InputRefused where it cannot be read."""
-    return format_of(file, OBJECTS) is not None
+    file_format = format_of(file, HOLES, OBJECTS)
+    return file_format is not None and file_format.holds == OBJECTS
 
 
 def objects_in(file: Path) -> list[ObjectName]:
@@ -127,6 +128,20 @@ def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterat
 _KINDS = (HOLE, LINES, POINTS)
 
 
+def _read_holes(
+    boreholes: Boreholes, file: Path, model_unit: str
+) -> tuple[list[GeoObject], list[str]]:
+    """The boreholes of a file, or its object `layer`, in the model's unit, and warnings, sentences. Raises
+    InputRefused for a unit that is not known."""
+    objects, warnings = [], []
+    for obj in read_objects(file, boreholes.layer, (HOLE,) if boreholes.layer is None else _KINDS):
+        of_axes, said = object_units(MeshFile(file, boreholes.units), obj, model_unit)
+        plan, height = (factor(unit, model_unit) for unit in of_axes)
+        objects.append(obj.scaled(np.array([plan, plan, height])))
+        warnings += [text for text in said if text not in warnings]
+    return objects, warnings
+
+
 def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_step: float | None) -> Picks:
     """What the boreholes of a file say, or the object `layer`, in the model's unit. units: what the names in
     it mean. plan_step: as of read_intervals.
@@ -137,13 +152,8 @@ def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_
     """
     picks = Picks()
     for file in dict.fromkeys(given.files):
-        kinds = (HOLE,) if given.layer is None else _KINDS
-        objects = []
-        for obj in read_objects(file, given.layer, kinds):
-            of_axes, warnings = object_units(MeshFile(file, given.units), obj, model_unit)
-            plan, height = (factor(unit, model_unit) for unit in of_axes)
-            objects.append(obj.scaled(np.array([plan, plan, height])))
-            picks.warnings += [text for text in warnings if text not in picks.warnings]
+        objects, warnings = _read_holes(given, file, model_unit)
+        picks.warnings += warnings
         if given.picks is not None and Path(given.picks) == file:
             _add_picks(picks, objects, given, units)
         if given.intervals is not None and Path(given.intervals) == file:
@@ -151,6 +161,43 @@ def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_
     for _, places in picks.holes.values():
         places.sort(key=lambda pick: -pick[1][2])
     return picks
+
+
+def hole_sheets(
+    boreholes: Boreholes, file: Path, model_unit: str
+) -> tuple[dict[str, Sheet], list[str]]:
+    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
+    those that it has, in the model's unit; and warnings, sentences. Raises as read_object."""
+    rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
+    objects, warnings = _read_holes(boreholes, file, model_unit)
+    for obj in objects:
+        collar = np.full(3, np.nan) if obj.collar is None else obj.collar
+        if np.isfinite(collar).all():
+            rows["collars"].append((0, [obj.name, *map(repr, collar.tolist())]))
+        for values in obj.values:
+            meaning, aliases = ("surface", (*PICKS["surface"], *INTERVALS["block"]))
+            if values.ends is not None:
+                meaning, aliases = ("block", INTERVALS["block"])
+            column = _column(values, boreholes.columns.get(meaning), aliases)
+            if column is None:
+                continue
+            names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
+            numbers = values.places
+            if values.ends is not None:
+                along = values.depths
+                numbers = _depths(values.places, values.ends, holes) if along is None else along
+            kind = "picks" if values.ends is None else "intervals"
+            rows[kind] += [
+                (0, [hole, *map(repr, row), name])
+                for hole, row, name in zip(holes, numbers.tolist(), names, strict=True)
+            ]
+    columns = {
+        "collars": ("hole", "x", "y", "z"),
+        "intervals": ("hole", "from", "to", "block"),
+        "picks": ("hole", "x", "y", "z", "surface"),
+    }
+    sheets = {kind: Sheet(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
+    return sheets, warnings
 
 
 def _add_picks(picks: Picks, objects: list[GeoObject], boreholes: Boreholes, units: UnitNames) -> None:
