@@ -23,48 +23,28 @@ from ..readers.point_input import read_point_file, read_raster_heights
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, dip_file_of
 from ..settings.method_options import OptionRefused
+from .choices import Proposal
 from .colors import library_of
 from .extent import base_below, edge_length, region_around
-from .lenses import Conflict, Lens, Repeat, Sorted, lens_mesh, sort_out, spacing
+from .folder import save_folder
+from .lenses import Sorted, lens_mesh, sort_out, spacing
 from .logs import HoleLogs, Log, read_logs
 from .maps import MapUnits, map_file_of, read_map_units, unconformities
 from .methods import with_methods
-from .order import Alternative, UnitOrder, evidence_of, find_order
+from .order import UnitOrder, evidence_of, find_order
 from .rules import CUTS, RuleChoice, choose_rules
-
-
-@dataclass
-class Proposal:
-    """Why a project is as it is.
-
-    order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
-    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became bodies.
-    repeats: where several units come again in a hole. rules: of the surface over each unit, with reasons.
-    reasons: of the other choices, by the key of the project file. warnings: sentences.
-    """
-
-    order: list[str]
-    alternatives: list[Alternative] = field(default_factory=list)
-    conflicts: list[Conflict] = field(default_factory=list)
-    lenses: list[Lens] = field(default_factory=list)
-    repeats: list[Repeat] = field(default_factory=list)
-    rules: list[RuleChoice] = field(default_factory=list)
-    reasons: dict[str, str] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
 
 
 @dataclass(eq=False)
 class ProposedProject(Project):
-    """A project with the reasons of its choices."""
+    """A project with the reasons of its choices, `proposal`."""
 
     proposal: Proposal = field(default_factory=lambda: Proposal([]), compare=False)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Writes project.toml, whose comments say why each choice was made, the tables, the library and
         proposal.json to a new folder, whole or not at all. Returns the files. Raises OutputFailed."""
-        from .folder import save_folder
-
-        return save_folder(self, folder)
+        return save_folder(self, self.proposal, folder)
 
 
 @dataclass
