@@ -127,8 +127,6 @@ def _project_lines(project: Project, proposal: Proposal, files: _Files) -> list[
 
 def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:
     lines = [*_comment(f"The region is {why['region']}"), f"region = {_region_text(rock.region, files)}"]
-    if len(rock.holes):
-        lines.append(f"holes = {region_text(rock.holes)}")
     lines += [
         *_comment(f"Interpolation: {why['method']}"),
         *_comment(f"The edge length of the triangles: {why['edge_length']}"),
