@@ -40,6 +40,7 @@ def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, l
     """What the intervals of holes say of a body; and warnings, sentences. Of several intervals in one hole the
     longest counts."""
     ends: dict[str, list[np.ndarray]] = {}
+    open_ended: list[str] = []
     without: list[np.ndarray] = []
     for seen in observations:
         in_hole = in_one_interval(seen, seen.in_use) & (seen.holes != "")
@@ -52,12 +53,17 @@ def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, l
             if intervals and (intervals[-1][1] == way[0]).all():
                 way = np.array([intervals.pop()[0], way[1]])
             intervals.append(way)
+            if row + 1 == len(seen) or seen.holes[row + 1] != seen.holes[row]:
+                open_ended.append(f"'{seen.holes[row]}'")
     longest = [max(intervals, key=lambda way: norm(way[1] - way[0])) for intervals in ends.values()]
     several = [f"'{hole}'" for hole, intervals in ends.items() if len(intervals) > 1]
     warnings = []
-    if several:
-        holes = f"{'hole' if len(several) == 1 else 'holes'} {number_list(several)}"
-        warnings.append(f"{holes} met it several times: the longest interval counts; name the others differently")
+    for holes, said in (
+        (several, "met it several times: the longest interval counts; name the others differently"),
+        (open_ended, "ended in it: it is taken to end there, and may be thicker"),
+    ):
+        if holes:
+            warnings.append(f"{'hole' if len(holes) == 1 else 'holes'} {number_list(holes)} {said}")
     return Pierced(_ways(longest), _ways(without), list(ends)), warnings
 
 
@@ -114,10 +120,8 @@ def _plane(ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
         normal = across - dot(across, along) * along
         if norm(normal) < _LEVEL:  # holes above one another
             normal = hole - dot(hole, along) * along
-        warnings = [
-            f"{counted(len(ends), 'interval')} in a line show no dip across it: it is as level there as they "
-            "allow; give a mesh, or intervals of more holes"
-        ]
+        those = "one interval shows no dip" if len(ends) == 1 else "intervals in a line show no dip across it"
+        warnings = [f"{those}: it is as level as they allow; give a mesh, or intervals of more holes"]
     normal = normal / norm(normal)
     along, down, normal = plane_axes(-normal if dot(normal, level) < 0 else normal)
     return np.array([along, down, normal] if normal[2] >= 0 else [along, -down, -normal]), warnings
