@@ -58,7 +58,9 @@ class Terrain(PanelCase):
         rock.active_surface = 2
         ops.surface_remove()
         volumes = self.built()
-        self.assertAlmostEqual(volumes["later block"], 2.0 * volumes["base block"], delta=1e-3 * volumes["base block"])
+        self.assertAlmostEqual(
+            volumes["later block"], 2.0 * volumes["base block"], delta=1e-3 * volumes["base block"]
+        )
         self.assertEqual(self.composed().rocks[0].terrain, "terrain")
 
     def test_another_one_takes_its_place_and_it_can_be_removed(self):

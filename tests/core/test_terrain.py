@@ -126,7 +126,7 @@ def test_what_is_no_terrain_is_refused_with_its_line(tmp_path, written, said):
     raster(tmp_path / "dem.asc", [[6] * 4] * 4)
     (tmp_path / "project.toml").write_text(
         'format = 1\nname = "p"\n[[rock]]\nname = "r"\nregion = [[0, 0], [40, 0], [40, 40], [0, 40]]\n'
-        f'edge_length = 5\nbase_elevation = 0\nterrain = {written}\n'
+        f"edge_length = 5\nbase_elevation = 0\nterrain = {written}\n"
         '[[rock.surface]]\nname = "A"\nmethod = "constant"\nvalue = 2\n'
     )
     with pytest.raises(InputRefused, match=said):

@@ -260,6 +260,5 @@ class Body(Shaped):
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
 
-
 FAULT = settings_of(Fault)
 BODY = settings_of(Body)

@@ -20,20 +20,20 @@ from ...surfaces.planar_mesh import MeshOptions, mesh_rings
 from .fitted import convex_hull, plane_axes
 
 _IN_LINE = 0.1  # of the extent of contacts along a line: so near to it, they show no dip across it
-_LEVEL = 0.1  # of a hole's direction: so little of it goes down in a hole that is level
+_ALONG = 0.1  # of a direction: with so little of it across a plane it runs along that
 _ROUND = 16  # places around a contact where the body has ended
-_EDGES = 4  # from a contact to where the body ends, at least
-_MOST_EDGES = 100  # across the body
-_OFF = 1e-3  # of an edge: contacts so near one another are one place; of a share: no nearer to the end
+_EDGES = 5  # from a contact to where the body ends, at least
+_MOST_EDGES = 50  # across the body
+_NEAR = 0.05  # of an edge: contacts so near one another, seen along the plane, are one place
+_OFF = 1e-3  # of a share of the thickness: no vertex is nearer to where the body ends
 
 
 class Pierced(NamedTuple):
     """What holes say of a body. ends: (K, 2, 3) where each hole enters and leaves it. without: (S, 2, 3) ways
-    along holes that are not in it. holes: of the ends, by name."""
+    along holes that are not in it."""
 
     ends: np.ndarray
     without: np.ndarray
-    holes: Sequence[str]
 
 
 def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, list[str]]:
@@ -64,7 +64,7 @@ def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, l
     ):
         if holes:
             warnings.append(f"{'hole' if len(holes) == 1 else 'holes'} {number_list(holes)} {said}")
-    return Pierced(_ways(longest), _ways(without), list(ends)), warnings
+    return Pierced(_ways(longest), _ways(without)), warnings
 
 
 def _ways(ways: list[np.ndarray]) -> np.ndarray:
@@ -83,7 +83,9 @@ def body_between_walls(work: Work, met: Pierced, reach: float | None = None) -> 
     ends, without = met.ends[order], met.without
     ends = ends[norm(ends[:, 1] - ends[:, 0]) > 0]
     if not len(ends):
-        raise InputRefused("no interval of a borehole is in it", advice="give its name to intervals, or a mesh")
+        raise InputRefused(
+            "no interval of a borehole is in it", advice="give its name to intervals, or a mesh"
+        )
     axes, warnings = _plane(ends)
     center = ends.mean(axis=(0, 1))
     walls, passing = (_local(ways - center, axes) for ways in (ends, without))
@@ -106,20 +108,19 @@ def body_between_walls(work: Work, met: Pierced, reach: float | None = None) -> 
 
 def _plane(ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """The axes, in rows, of the plane of a body by its intervals (K, 2, 3), the last one upward; and warnings.
-    Where they lie in a line, it is as level as that allows."""
+    Where they lie in a line, or holes run along the plane, it is as level as they allow."""
     middles = ends.mean(axis=1)
     ways = ends[:, 0] - ends[:, 1]
     hole = ways.sum(axis=0) / norm(ways).sum()
     level = np.array([0.0, 0.0, 1.0])
     spread, directions = principal_axes(middles)
-    if len(ends) > 2 and spread[1] > _IN_LINE * spread[0]:
-        normal, warnings = directions[2], []
-    else:
-        across = hole if abs(hole[2]) < _LEVEL else level
+    normal, warnings = directions[2], list[str]()
+    if len(ends) < 3 or spread[1] <= _IN_LINE * spread[0] or abs(dot(hole, normal)) < _ALONG:
+        across = hole if abs(hole[2]) < _ALONG else level
         along = directions[0] if len(ends) > 1 else np.zeros(3)
         normal = across - dot(across, along) * along
-        if norm(normal) < _LEVEL:  # holes above one another
-            normal = hole - dot(hole, along) * along
+        if abs(dot(hole, normal)) < _ALONG * norm(normal) or norm(normal) < _ALONG:
+            normal = hole  # in holes above one another
         those = "one interval shows no dip" if len(ends) == 1 else "intervals in a line show no dip across it"
         warnings = [f"{those}: it is as level as they allow; give a mesh, or intervals of more holes"]
     normal = normal / norm(normal)
@@ -181,7 +182,7 @@ def _extent(
     absent = absent[(away < 2 * reach) & (away > _OFF * reach)]
     nearest = min(reach, away[away > _OFF * reach].min(initial=np.inf) / 2)
     edge = min(max(nearest / _EDGES, size / _MOST_EDGES), reach / 2)
-    nodes = _apart(places, _OFF * edge)
+    nodes = _apart(places, _NEAR * edge)
     options = MeshOptions(edge, constraint_points=nodes)
     plan, triangles = mesh_rings(work, [outline], options)
     known = np.vstack([places, absent, ring])
@@ -241,6 +242,7 @@ def _closed(
 ) -> Sheet:
     """The closed surface over the part of triangles where a share of nodes is above 0, between a top and a
     bottom, which meet where it is 0."""
+    middle = (top + bottom) / 2
     vertices: list[tuple[float, float, float]] = []
     numbers: dict[tuple, int] = {}
 
@@ -254,7 +256,6 @@ def _closed(
         a, b = min(a, b), max(a, b)
         part = share[a] / (share[a] - share[b])
         x, y = plan[a] + part * (plan[b] - plan[a])
-        middle = (top + bottom) / 2
         return vertex((a, b, 0), x, y, middle[a] + part * (middle[b] - middle[a]))
 
     faces: list[tuple[int, int, int]] = []
