@@ -108,7 +108,7 @@ def test_any_logs_make_a_closed_body_or_none(seed, count):
 
 
 def vein_tables(folder, dip=60.0, thickness=4.0):
-    """25 vertical holes through a vein that dips east and ends in the north, in a host; (collars, intervals)."""
+    """25 vertical holes through a vein in a host, which dips east and ends in the north."""
     lean = np.radians(dip)
     collars, intervals = [], []
     for number, (x, y) in enumerate((x, y) for x in range(10, 100, 20) for y in range(10, 100, 20)):

@@ -37,8 +37,8 @@ class Pierced(NamedTuple):
 
 
 def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, list[str]]:
-    """What the intervals of holes say of a body; and warnings, sentences. Of several intervals in one hole the
-    longest counts."""
+    """What the intervals of holes say of a body; and warnings, sentences. Of several intervals in one hole
+    the longest counts."""
     ends: dict[str, list[np.ndarray]] = {}
     open_ended: list[str] = []
     without: list[np.ndarray] = []
@@ -107,7 +107,7 @@ def body_between_walls(work: Work, met: Pierced, reach: float | None = None) -> 
 
 
 def _plane(ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """The axes, in rows, of the plane of a body by its intervals (K, 2, 3), the last one upward; and warnings.
+    """The axes, in rows, of the plane of a body by its intervals (K, 2, 3), the last one upward; warnings.
     Where they lie in a line, or holes run along the plane, it is as level as they allow."""
     middles = ends.mean(axis=1)
     ways = ends[:, 0] - ends[:, 1]
