@@ -113,7 +113,8 @@ class Vein(PanelCase):
         (self.folder / "collars.csv").write_text(collars)
         (self.folder / "intervals.csv").write_text(rows)
         (self.folder / "project.toml").write_text(
-            'format = 1\nname = "p"\n[[rock]]\nname = "r"\nregion = [[0, 0], [100, 0], [100, 100], [0, 100]]\n'
+            'format = 1\nname = "p"\n[[rock]]\nname = "r"\n'
+            "region = [[0, 0], [100, 0], [100, 100], [0, 100]]\n"
             "edge_length = 10\nbase_elevation = -50\n"
             'boreholes = { collars = "collars.csv", intervals = "intervals.csv" }\n'
             '[[rock.surface]]\nname = "top"\nblock = "Host"\nmethod = "constant"\nvalue = 0\n'

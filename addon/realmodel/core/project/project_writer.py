@@ -156,7 +156,7 @@ def _require_read(entry: Any) -> None:
     files = [getattr(entry, name, None) for name in ("input_file", "dip_file")]
     if any(files) or isinstance(getattr(entry, "trace", None), str):
         raise UsageError(f"{entry.item}: its file has not been read; build the model first")
-    if isinstance(entry, (Fault, Body)) and entry.vertices is None and getattr(entry, "trace", None) is None:
+    if isinstance(entry, Fault) and entry.vertices is None and entry.trace is None:
         what = "no surface is fitted to its points yet; build the model first"
         raise UsageError(f"{entry.item}: {what}")
 
@@ -165,9 +165,9 @@ def _as_written(entry: Any) -> Any:
     """An entry with the arrays that it is made from: those of its mesh, if no others."""
     if isinstance(entry, Rock):
         return replace(entry, names={})  # what they mean is in the observations
-    if (isinstance(entry, Surface) and entry.has_points) or (
-        isinstance(entry, Fault) and entry.trace is not None
-    ):
+    is_traced = isinstance(entry, Fault) and entry.trace is not None
+    is_of_intervals = isinstance(entry, Body) and not entry.has_shape  # which are in the observations
+    if (isinstance(entry, Surface) and entry.has_points) or is_traced or is_of_intervals:
         return entry
     if isinstance(entry, Fault):
         entry = replace(entry, points=None, stick=None, extend=0.0)

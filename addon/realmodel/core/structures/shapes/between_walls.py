@@ -99,9 +99,11 @@ def body_between_walls(work: Work, met: Pierced, reach: float | None = None) -> 
     reach = _reach(middles[:, :2], absent, reach)
     plan, triangles, share = _extent(work, places, absent, reach)
     middle = _kriged(work, middles, plan)
-    upper = _beside(work, plan, middle, hanging, 1.0, warnings)
-    lower = _beside(work, plan, middle, footwall, -1.0, warnings)
-    local = _closed(plan, triangles, share, middle + upper * share, middle - lower * share)
+    top, bottom = (
+        _wall(work, plan, middle, share, contacts, sign, warnings)
+        for contacts, sign in ((hanging, 1.0), (footwall, -1.0))
+    )
+    local = _closed(triangles, share, top, bottom)
     vertices = center + dot(local.vertices[:, None], axes.T[None])
     return Sheet(vertices, local.triangles), warnings
 
@@ -212,16 +214,17 @@ def _apart(places: np.ndarray, least: float) -> np.ndarray:
     return np.array(chosen)
 
 
-def _beside(
+def _wall(
     work: Work,
     plan: np.ndarray,
     middle: np.ndarray,
+    share: np.ndarray,
     contacts: np.ndarray,
     sign: float,
     warnings: list[str],
 ) -> np.ndarray:
-    """(N,) how far a wall is from the middle at nodes (N, 2), never less than 0: through contacts (K, 3) of
-    it. sign: 1 above, -1 below."""
+    """(N, 3) a wall at nodes (N, 2), on its side of the middle: through contacts (K, 3) of it. sign: 1 above,
+    -1 below."""
     at = norm(plan[:, None] - contacts[None, :, :2]).argmin(axis=0)  # nodes: _extent sees to it
     thick = sign * (contacts[:, 2] - middle[at])
     if (thick < 0).any():
@@ -234,19 +237,19 @@ def _beside(
     half = _kriged(work, np.column_stack([plan[at], thick]), plan)
     half = np.clip(half, thick.min(), thick.max())
     half[at] = thick
-    return half
+    wall_places = np.column_stack([plan, middle + sign * half * share])
+    wall_places[at, :2] = contacts[:, :2]  # which may share a node with one of the other wall
+    return wall_places
 
 
-def _closed(
-    plan: np.ndarray, triangles: np.ndarray, share: np.ndarray, top: np.ndarray, bottom: np.ndarray
-) -> Sheet:
+def _closed(triangles: np.ndarray, share: np.ndarray, top: np.ndarray, bottom: np.ndarray) -> Sheet:
     """The closed surface over the part of triangles where a share of nodes is above 0, between a top and a
-    bottom, which meet where it is 0."""
+    bottom (N, 3), which meet where it is 0."""
     middle = (top + bottom) / 2
-    vertices: list[tuple[float, float, float]] = []
+    vertices: list[np.ndarray] = []
     numbers: dict[tuple, int] = {}
 
-    def vertex(key: tuple, *place: float) -> int:
+    def vertex(key: tuple, place: np.ndarray) -> int:
         if key not in numbers:
             numbers[key] = len(vertices)
             vertices.append(place)
@@ -255,8 +258,7 @@ def _closed(
     def end(a: int, b: int) -> int:
         a, b = min(a, b), max(a, b)
         part = share[a] / (share[a] - share[b])
-        x, y = plan[a] + part * (plan[b] - plan[a])
-        return vertex((a, b, 0), x, y, middle[a] + part * (middle[b] - middle[a]))
+        return vertex((a, b, 0), middle[a] + part * (middle[b] - middle[a]))
 
     faces: list[tuple[int, int, int]] = []
     is_in = share > 0
@@ -265,7 +267,7 @@ def _closed(
             ring = []
             for a, b in zip(triangle, [*triangle[1:], triangle[0]], strict=True):
                 if is_in[a]:
-                    ring.append(vertex((a, a, side), *plan[a], wall[a]))
+                    ring.append(vertex((a, a, side), wall[a]))
                 if is_in[a] != is_in[b]:
                     ring.append(end(a, b))
             ring = ring[::side]
