@@ -216,6 +216,11 @@ property = 4
 rock = "first"
 
 [[body]]
+name = "lens"
+reach = 3.75
+rock = "first"
+
+[[body]]
 name = "tunnel"
 mesh = "salt.off"
 void = true
@@ -267,7 +272,7 @@ def write_files(folder: Path):
     (folder / "mesh.off").write_text("OFF\n4 2 0\n118 -2 1\n156 -2 1\n156 28 2\n118 28 2\n3 0 1 2\n3 0 2 3\n")
 
 
-LOG = ((0, 8, "in holes only"), (9, 30, "smooth"), (30, 34, "D"), (35, 36, "B"))
+LOG = ((0, 8, "in holes only"), (9, 30, "smooth"), (30, 34, "D"), (34, 34.5, "lens"), (35, 36, "B"))
 
 
 def write_contours(path):
