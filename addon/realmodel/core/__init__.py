@@ -37,6 +37,7 @@ from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
 from .readers.borehole_tables import BoreholeTables, read_boreholes
+from .readers.code_counts import CodeCount, count_codes
 from .readers.mesh_data import MeshData, read_mesh
 from .readers.point_input import PointData, read_points
 from .readers.tables.hole_problems import HoleProblem
@@ -64,6 +65,7 @@ __all__ = [
     "BuildWarning",
     "Cancelled",
     "CleanedCells",
+    "CodeCount",
     "Contour",
     "CrossValidation",
     "Cut",
@@ -132,6 +134,7 @@ __all__ = [
     "ViolatedBound",
     "build",
     "build_surfaces",
+    "count_codes",
     "cross_validate",
     "estimate",
     "estimate_mesh",
