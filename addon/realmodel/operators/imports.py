@@ -55,6 +55,7 @@ from .rocks import add_rock
 from .start import invoke
 
 _OTHERS = {key: READING[key] for key in ("units", "z_axis", "decimal", "nodata")}  # in the dialog
+_Options = properties_of(_OTHERS, None)
 _LARGEST = 1 << 26  # bytes of a file that is read for what the dialog says of it
 _ENDINGS = endings(MESH, TABLE, RASTER, ARRAY, SHAPES, OBJECTS)
 _said = caches.new(most=32)  # by file and import options: what the dialog says of them
@@ -107,7 +108,7 @@ class REALMODEL_OT_surface_add(
     Reporting,
     TableDialog,
     ObjectDialog,
-    properties_of(_OTHERS, None),
+    _Options,
     bpy.types.Operator,
     FilesImportHelper,
 ):
