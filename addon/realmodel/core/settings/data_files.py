@@ -310,6 +310,13 @@ def _checked_tolerance(key: str, length: Any) -> Any:
     return length
 
 
+def _checked_files(key: str, files: Any) -> Any:
+    if not all(isinstance(file, Path) or (isinstance(file, str) and file.strip()) for file in list_of(files)):
+        advice = f'write {key} = ["h1.las", "h2.las"]'
+        raise OptionRefused(f"'{key}' must be a file or a list of files, not {files!r}", key, advice)
+    return files
+
+
 def _checked_sense(key: str, sense: Any) -> Any:
     if sense is not None and sense not in DOWNWARD_DIPS:
         raise OptionRefused(f'\'{key}\' must be "negative" or "positive", not {sense!r}', key)
@@ -339,7 +346,9 @@ class Boreholes:
     tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops, GOCAD wells and LAS;
     those given beside it count in their place. tolerance: up to which gaps and overlaps of intervals are
     closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a tenth
-    of the thinner interval; 0: none are.
+    of the thinner interval; 0: none are. logs: LAS files of logs along the holes, a file or a list of them, each
+    of the hole that is called as its well; their curves are shown, and their depths are in the unit that the
+    file states. With collars and without picks and intervals they are shown alone.
     """
 
     picks: str | Path | None = described(FILE)
@@ -361,22 +370,29 @@ class Boreholes:
         unset="a thousandth of the depth of the hole, at most a tenth of the thinner interval",
         check=_checked_tolerance,
     )
+    logs: Sequence[str | Path] | str | Path = declared((), kind="files", check=_checked_files)
 
     @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
-        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance")
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance", "logs")
         return [key for key in keys if getattr(self, key)]
+
+    @property
+    def log_files(self) -> list[Path]:
+        """The files of logs."""
+        return [Path(file) for file in list_of(self.logs)]
 
     @property
     def files(self) -> list[Path]:
         """The files that there are."""
-        tables = (self.collars, self.survey, self.picks, self.intervals, self.file)
+        tables = (*self.log_files, self.collars, self.survey, self.picks, self.intervals, self.file)
         return [Path(file) for file in tables if file is not None]
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if self.picks is None and self.intervals is None and self.file is None:
+        has_logs = bool(self.collars and self.logs)
+        if self.picks is None and self.intervals is None and self.file is None and not has_logs:
             what = "there are neither picks nor intervals"
             raise OptionRefused(what, "picks", "give the table of picks = ... or intervals = ...")
         check_column_names(self.columns, HOLE_COLUMNS)

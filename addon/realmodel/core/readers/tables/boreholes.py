@@ -12,6 +12,7 @@ from ...base.errors import InputRefused
 from .hole_data import HoleTables
 from .hole_tables import Row
 from .holes import Holes
+from .interval_values import IntervalValues
 from .intervals import read_intervals
 from .observations import LeftOut, Observations, Origin, left_out_of
 from .unit_names import UnitNames
@@ -25,7 +26,7 @@ class Picks:
     (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
     highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
     of the blocks of intervals; left_out: intervals that are not used. switched_off: as points, those of rows
-    that are."""
+    that are. logs: the curves of LAS files, where there are any."""
 
     of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -34,6 +35,7 @@ class Picks:
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
     switched_off: dict[str, np.ndarray] = field(default_factory=dict)
+    logs: IntervalValues | None = None
 
     @property
     def points(self) -> dict[str, np.ndarray]:

@@ -76,7 +76,7 @@ def _whole_files(given: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
     """The same with the tables of files that hold all of them in the places of those that are not given, and
     these tables by their kind."""
     sheets: dict[str, Sheet] = {}
-    for file in dict.fromkeys(given.files):
+    for file in dict.fromkeys(given.files[len(given.log_files) :]):
         file_format = format_of(file, HOLES)
         if file_format is None:
             if file == given.file:
