@@ -14,7 +14,7 @@ from .options import parse
 from .terminal import terminate
 
 # By their first argument: the modules with `parse` and `run`; without one of these a project is built.
-COMMANDS = {"new": ".new"}
+COMMANDS = {"new": ".new", "check-data": ".check_data"}
 
 
 def command() -> NoReturn:
@@ -51,7 +51,7 @@ def main(arguments: list[str]) -> int:
     except ImportError as error:
         return say(_not_importable(error), REFUSED)
     try:
-        (build if named is None else named.run)(options)
+        return (build if named is None else named.run)(options) or DONE
     except UsageError as error:
         return say(str(error), USAGE)
     except RealModelError as error:
@@ -61,7 +61,6 @@ def main(arguments: list[str]) -> int:
         return say("standard output was closed; no file was written; use --quiet", REFUSED)
     except MemoryError:
         return say("not enough memory for this model; use fewer triangles or a longer edge length", REFUSED)
-    return DONE
 
 
 def _not_importable(error: ImportError) -> str:

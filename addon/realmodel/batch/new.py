@@ -33,7 +33,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--map-block", metavar="NAME", help="the attribute that names units (default: found by its name)"
     )
-    parser.add_argument("--ground", type=Path, metavar="F", help="heights of the ground: raster, points or mesh")
+    parser.add_argument(
+        "--ground", type=Path, metavar="F", help="heights of the ground: raster, points or mesh"
+    )
     parser.add_argument("--dips", type=Path, metavar="F", help="the table of dips")
     parser.add_argument("--region", type=Path, metavar="F", help="the outline (default: around the data)")
     parser.add_argument("--units", metavar="UNIT", default="m", help="of lengths in the model (default: m)")

@@ -93,7 +93,11 @@ def _collars(tables: HoleTables, scale: np.ndarray) -> Table:
         for row in (*(tables.intervals or ()), *(tables.picks or ())):
             by_hole.setdefault(row.text("hole"), row)
         rows = list(by_hole.values())
-    places = {axis: _numbers(rows, axis, scale[n]) for n, axis in enumerate("xyz")}
+    # without a depth z is where a pick is
+    known = [
+        row if is_table or row.has("depth") or row.has("from") else row.with_values({"z": ""}) for row in rows
+    ]
+    places = {axis: _numbers(known, axis, scale[n]) for n, axis in enumerate("xyz")}
     ends = np.array([end_of(row) if is_table else np.nan for row in rows]) * scale[2]
     return Table({"hole": _texts(rows, "hole"), **places, "end": ends})
 
@@ -120,4 +124,7 @@ def _intervals(tables: HoleTables, height: float) -> Table:
 def _picks(tables: HoleTables, height: float) -> Table:
     rows = [row for row in tables.picks or () if row.is_used]
     names = {name: _texts(rows, name) for name in ("hole", "surface")}
-    return Table(names | {name: _numbers(rows, name, height) for name in ("depth", "elevation")})
+    columns = rows[0].columns if rows else {}
+    elevation = "elevation" if "elevation" in columns or "depth" in columns else "z"
+    heights = {"depth": _numbers(rows, "depth", height), "elevation": _numbers(rows, elevation, height)}
+    return Table(names | heights)

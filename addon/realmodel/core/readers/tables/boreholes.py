@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from .hole_data import HoleTables
+from .hole_problems import HoleProblem
 from .hole_tables import Row
 from .holes import Holes
 from .interval_values import IntervalValues
@@ -25,8 +26,9 @@ class Picks:
     """of_surfaces: where holes met surfaces, by the names of these; holes: of each hole by name its collar
     (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
     highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
-    of the blocks of intervals; left_out: intervals that are not used. switched_off: as points, those of rows
-    that are. logs: the curves of LAS files, where there are any."""
+    of the blocks of intervals; left_out: intervals and picks that are not used. switched_off: as points,
+    those of rows that are. problems: what was wrong with rows of tables. logs: the curves of LAS files, where
+    there are any."""
 
     of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -36,6 +38,7 @@ class Picks:
     left_out: list[LeftOut] = field(default_factory=list)
     switched_off: dict[str, np.ndarray] = field(default_factory=dict)
     logs: IntervalValues | None = None
+    problems: list[HoleProblem] = field(default_factory=list)
 
     @property
     def points(self) -> dict[str, np.ndarray]:
@@ -83,6 +86,7 @@ def picks_of_tables(
     picks.of_surfaces = dict(sorted(picks.of_surfaces.items()))
     picks.ends = dict(sorted(picks.ends.items()))
     picks.holes = dict(sorted(picks.holes.items()))
+    picks.problems = tables.problems
     picks.left_out = [*left_out_of(tables.problems), *picks.left_out]
     picks.warnings += [*tables.warnings, *holes.warnings()]
     return picks

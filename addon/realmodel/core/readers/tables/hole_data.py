@@ -15,7 +15,19 @@ from ...base.units import factor, factors, other_units, unit_of, unit_of_column,
 from ...settings.data_files import Boreholes
 from ..formats import HOLES, format_of
 from .hole_problems import HoleProblem
-from .hole_tables import COLLARS, INTERVALS, LENGTHS, SURVEY, Columns, Header, Row, Sheet, rows, sheet_rows
+from .hole_tables import (
+    COLLARS,
+    INTERVALS,
+    LENGTHS,
+    SURVEY,
+    Columns,
+    Header,
+    Row,
+    Sheet,
+    column_key,
+    rows,
+    sheet_rows,
+)
 
 MEANINGS: dict[str, Columns] = {
     "collars": COLLARS,
@@ -34,13 +46,15 @@ _NEEDED = {
 @dataclass
 class HoleTables:
     """given: what they were read from. collars, survey, picks, intervals: their rows, None where there is no
-    such table. problems: what was wrong with rows, as far as they are repaired. warnings: sentences."""
+    such table. factors: to the units in which they are read, by kind of table and column, for those that say
+    others. problems: what was wrong with rows, as far as they are repaired. warnings: sentences."""
 
     given: Boreholes
     collars: list[Row] | None = None
     survey: list[Row] | None = None
     picks: list[Row] | None = None
     intervals: list[Row] | None = None
+    factors: dict[str, dict[str, float]] = field(default_factory=dict)
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
@@ -53,9 +67,8 @@ class HoleTables:
 def read_hole_rows(
     given: Boreholes, model_unit: str, step: Step = no_step, needed: tuple[str, ...] | None = None
 ) -> HoleTables:
-    """The rows of the tables of some boreholes as they are, lengths in the units of `given`, or else of the
-    model. needed: the columns of intervals that there must be; None: with the block. Raises InputRefused
-    naming file and line."""
+    """The rows of the tables of some boreholes as they are. needed: the columns of intervals that there must
+    be; None: with the block. Raises InputRefused naming file and line."""
     required = _NEEDED | ({} if needed is None else {"intervals": needed})
     given, sheets = _whole_files(given)
     tables = HoleTables(given)
@@ -63,13 +76,25 @@ def read_hole_rows(
         file = getattr(given, kind)
         if file is None:
             continue
+        if kind in sheets and "block" in required[kind] and not _has_blocks(given, sheets[kind]):
+            continue  # curves of a log
         slow = step if kind in ("picks", "intervals") else no_step
         if kind in sheets:
             found = sheet_rows(given, Path(file), sheets[kind], known, required[kind])
         else:
             found = list(rows(given, Path(file), known, required[kind], slow))
-        setattr(tables, kind, _in_one_unit(tables, found, model_unit))
+        setattr(tables, kind, found)
+        tables.factors[kind] = _to_one_unit(tables, found, model_unit)
+    if sheets and tables.picks is None and tables.intervals is None:
+        advice = "give a table of them: picks = ... or intervals = ..."
+        raise InputRefused("it has neither picks nor intervals of blocks", file=given.files[0], advice=advice)
     return tables
+
+
+def _has_blocks(given: Boreholes, sheet: Sheet) -> bool:
+    """Whether a table has a column that names blocks."""
+    keys = set(map(column_key, sheet.names))
+    return "block" in given.columns or not keys.isdisjoint(map(column_key, INTERVALS["block"]))
 
 
 def _whole_files(given: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
@@ -96,11 +121,11 @@ def _whole_files(given: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
     return given, sheets
 
 
-def _in_one_unit(tables: HoleTables, found: list[Row], model_unit: str) -> list[Row]:
-    """Rows with lengths in the units in which they are read: where the user does not say it, in that of the
-    model. Raises InputRefused for a unit that is not known."""
+def _to_one_unit(tables: HoleTables, found: list[Row], model_unit: str) -> dict[str, float]:
+    """The factors of columns to the unit in which they are read: that of the model where the user does not
+    say it. Raises InputRefused for a unit that is not known."""
     if not found:
-        return found
+        return {}
     header, units = found[0].header, tables.given.units
     units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     factors_of: dict[str, float] = {}
@@ -123,7 +148,7 @@ def _in_one_unit(tables: HoleTables, found: list[Row], model_unit: str) -> list[
         for unit, names in said.items()
     ]
     tables.warnings += _contradicted(header, units, model_unit)
-    return [row.scaled(factors_of) for row in found] if factors_of else found
+    return factors_of
 
 
 def _contradicted(header: Header, units: Mapping, model_unit: str) -> list[str]:

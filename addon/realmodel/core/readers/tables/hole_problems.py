@@ -13,6 +13,7 @@ from ...base.errors import counted, number_list
 from .hole_tables import Row
 
 USED, REPAIRED, LEFT_OUT = "used", "repaired", "left out"
+NOT_REACHED = "not_reached"  # picks that are left out, although nothing is wrong
 _LISTED = 3
 
 # By the kind of a problem; those of intervals and picks that are left out have theirs in observations.KINDS.
@@ -35,7 +36,7 @@ HOLE_PROBLEMS = {
     "reversed": "intervals end above where they begin, and are turned around",
     "elevations": "depths are heights, and are converted: the collar's height less them",
     "minus_sign": "depths have a minus sign, which is taken away",
-    "not_reached": "picks are without a depth, as the hole did not reach the surface",
+    NOT_REACHED: "picks are without a depth, as the hole did not reach the surface",
 }
 
 
@@ -63,32 +64,46 @@ class HoleProblem:
 
 
 class ProblemList(list[HoleProblem]):
-    """Problems as they are found."""
+    """Problems as they are found. values: those of values that stand for none, by file, line and column:
+    whether the rest of the row is used is known later."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.values: dict[tuple[Path, int, str], HoleProblem] = {}
 
     def note(
         self, kind: str, action: str, row: Row, what: str, depth: float | None = None, code: str | None = None
     ) -> None:
         """Adds a problem of a row. what: the end of its text. depth: None or NaN where it is not known. code:
         the unit or surface of an interval or a pick."""
-        hole = row.text("hole") if row.has("hole") else ""
-        depth = float("nan") if depth is None else float(depth)
-        at, named = "" if np.isnan(depth) else f" at {depth:.9g}", "" if code is None else f", '{code}'"
-        text = f"line {row.line}, hole '{hole}'{at}{named}: {what}"
-        if kind == "overlap" and action == LEFT_OUT:
-            text = f"hole '{hole}' {what}"
-        self.append(HoleProblem(kind, row.file, row.line, hole, depth, text, action, code))
+        self.append(_problem(kind, action, row, what, (depth, code)))
 
-    def taken(self, row: Row, column: str) -> str:
-        """Takes the problem of a value of a row that stands for none out, as the row is left out for it: what
-        it says; "" where there is none."""
-        for n in range(len(self) - 1, -1, -1):
-            problem = self[n]
-            if problem.kind == "null" and (problem.file, problem.line) == (row.file, row.line):
-                _, _, what = problem.text.partition(": ")
-                if what.startswith(f"{column} is"):
-                    del self[n]
-                    return what
-        return ""
+    def note_value(self, row: Row, column: str, what: str) -> None:
+        """Adds that a value of a row stands for none."""
+        problem = _problem("null", REPAIRED, row, f"{column} is {what}: no value", (None, None))
+        self.values[row.file, row.line, column] = problem
+
+    def in_order(self) -> list[HoleProblem]:
+        """All of them, by file and line."""
+        return sorted([*self.values.values(), *self], key=lambda problem: (str(problem.file), problem.line))
+
+    def taken(self, row: Row, *columns: str) -> str:
+        """Takes out what note_value added of some columns, as the row is left out: the first of it, "" where
+        there is none."""
+        taken = (self.values.pop((row.file, row.line, column), None) for column in columns)
+        return next((problem.text.partition(": ")[2] for problem in [*taken] if problem is not None), "")
+
+
+def _problem(
+    kind: str, action: str, row: Row, what: str, where: tuple[float | None, str | None]
+) -> HoleProblem:
+    hole = row.text("hole") if row.has("hole") else ""
+    depth, code = float("nan") if where[0] is None else float(where[0]), where[1]
+    at, named = "" if np.isnan(depth) else f" at {depth:.9g}", "" if code is None else f", '{code}'"
+    text = f"line {row.line}, hole '{hole}'{at}{named}: {what}"
+    if kind == "overlap" and action == LEFT_OUT:
+        text = f"hole '{hole}' {what}"
+    return HoleProblem(kind, row.file, row.line, hole, depth, text, action, code)
 
 
 def problem_warnings(problems: Iterable[HoleProblem]) -> list[str]:
@@ -100,7 +115,7 @@ def problem_warnings(problems: Iterable[HoleProblem]) -> list[str]:
             texts.setdefault((problem.file, problem.kind), []).append(problem.text)
     sentences = []
     for (file, kind), listed in texts.items():
-        if kind == "not_reached":
+        if kind == NOT_REACHED:
             sentences.append(f"{file}: left out: {counted(len(listed), 'pick')} without a depth")
         elif kind == "hole_name":
             names = dict.fromkeys(

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import InputRefused, number_list
 from .hole_data import HoleTables
-from .hole_problems import LEFT_OUT, REPAIRED, USED, ProblemList, problem_warnings
+from .hole_problems import LEFT_OUT, NOT_REACHED, REPAIRED, USED, ProblemList, problem_warnings
 from .hole_tables import NULL_NUMBERS, Row, column_key, normalized_name
 from .holes import end_of
 from .interval_repair import repair_intervals
@@ -40,7 +40,9 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
     for kind, columns in _NUMBERS.items():
         rows = getattr(tables, kind)
         if rows is not None:
-            setattr(tables, kind, _cleaned(rows, columns, problems))
+            rows = _cleaned(rows, columns, problems)
+            factors = tables.factors.get(kind)
+            setattr(tables, kind, [row.scaled(factors) for row in rows] if factors else rows)
     lacking: dict[str, str] = {}
     if tables.collars is not None:
         tables.collars, lacking = _complete_collars(tables, problems)
@@ -55,8 +57,8 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
         tables.intervals = repair_intervals(tables, units, problems)
     if tables.picks is not None:
         tables.picks = _repaired_picks(tables, units, problems)
-    tables.problems = problems
-    tables.warnings += problem_warnings(problems)
+    tables.problems = problems.in_order()
+    tables.warnings += problem_warnings(tables.problems)
 
 
 def _cleaned(rows: list[Row], columns: Sequence[str], problems: ProblemList) -> list[Row]:
@@ -70,7 +72,8 @@ def _cleaned(rows: list[Row], columns: Sequence[str], problems: ProblemList) -> 
         repeated = [row for row in rows if [column_key(entry) for entry in row.entries] == names]
         for row in repeated:
             problems.note("no_row", LEFT_OUT, row, "the header again")
-        rows = [row for row in rows if row not in repeated] if repeated else rows
+        gone = set(map(id, repeated))
+        rows = [row for row in rows if id(row) not in gone]
     for column in columns:
         if column in header.columns:
             rows = _cleaned_column(rows, column, problems)
@@ -89,7 +92,7 @@ def _cleaned_column(rows: list[Row], column: str, problems: ProblemList) -> list
         if value is None:
             cleaned[n] = _mended(row, column, problems)
         elif value in nulls or (np.isinf(value) and np.isfinite(usual).any()):
-            problems.note("null", REPAIRED, row, f"{column} is {row.text(column)}: no value")
+            problems.note_value(row, column, row.text(column))
             cleaned[n] = row.with_values({column: ""})
     return cleaned
 
@@ -125,7 +128,7 @@ def _mended(row: Row, column: str, problems: ProblemList) -> Row:
     elif is_number(plain, other) and len(plain.rpartition(other)[2]) != 3:  # else it may part thousands
         text = plain.replace(other, row.decimal)
     else:
-        problems.note("null", REPAIRED, row, f"{column} is '{entry:.40}': no value")
+        problems.note_value(row, column, f"'{entry:.40}'")
         return row.with_values({column: ""})
     problems.note("number", REPAIRED, row, f"{column} is '{entry}': read as {text}")
     return row.with_values({column: text})
@@ -141,7 +144,7 @@ def _complete_collars(tables: HoleTables, problems: ProblemList) -> tuple[list[R
             what = f"no {missing[0]}" if missing else "no name of a hole"
             if row.has("hole"):
                 lacking[row.text("hole")] = f"line {row.line} of {row.file} has {what}"
-            said = problems.taken(row, missing[0]) if missing else ""
+            said = problems.taken(row, *missing) if missing else ""
             problems.note("no_place", LEFT_OUT, row, said or f"it has {what}")
         else:
             complete.append(row)
@@ -194,6 +197,7 @@ def _with_collars(
             if id(row) in kept or not row.is_used or units.says_nothing(code):
                 continue
             hole = row.text("hole") if row.has("hole") else ""
+            problems.taken(row, *_NUMBERS[kind])
             reason = lacking.get(
                 hole, f"it has no collar in {tables.given.collars}" if hole else "it has no name"
             )
@@ -291,7 +295,7 @@ def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList)
             if what := problems.taken(row, column):
                 problems.note("no_depth", LEFT_OUT, row, what, None, code)
             else:
-                problems.note("not_reached", LEFT_OUT, row, f"no {column}")
+                problems.note(NOT_REACHED, LEFT_OUT, row, f"no {column}")
             continue
         value = row.number(column)
         if column == "depth" and value < 0:

@@ -83,7 +83,7 @@ def _interval(row: Row, units: UnitNames, problems: ProblemList) -> _Interval | 
         problems.note("no_row", LEFT_OUT, row, f"it has {counted(len(row.entries), 'value')}")
     elif "block" not in row.columns or not units.says_nothing(code):
         depth = next((row.number(name) for name in ("from", "to") if row.has(name)), None)
-        said = problems.taken(row, lacking[0])
+        said = problems.taken(row, *lacking)
         problems.note("no_depth", LEFT_OUT, row, said or f"'{lacking[0]}' has no value", depth, code)
     return None
 

@@ -32,9 +32,8 @@ def repair_survey(tables: HoleTables, problems: ProblemList) -> list[Row]:
         return rows
     for n, what in wrong.items():
         depth = rows[n].number("depth") if rows[n].has("depth") else None
-        names = ("depth", angle, "azimuth")
-        said = [text for name in names if not rows[n].has(name) and (text := problems.taken(rows[n], name))]
-        problems.note("station", LEFT_OUT, rows[n], said[0] if said else what, depth)
+        said = problems.taken(rows[n], "depth", angle, "azimuth")
+        problems.note("station", LEFT_OUT, rows[n], said or what, depth)
     rows = [row for n, row in enumerate(rows) if n not in wrong]
     by_hole: dict[str, list[Row]] = {}
     for row in rows:
