@@ -18,6 +18,7 @@ from ...core.readers import (
 )
 from ...core.readers.formats import HOLES, SHAPES, endings, format_of
 from ...core.readers.object_input import is_object_file
+from ...core.readers.tables.hole_logs import is_log
 from ...core.readers.tables.hole_tables import COLLARS, OBSERVED, columns_in, normalized_name
 from ...core.readers.tables.intervals import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
@@ -94,8 +95,11 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
     check_column_names(columns, ALL_COLUMNS)
     tables = {kind: file for kind in _ONE_OF_EACH if (file := of_holes.pop(kind, None)) is not None}
     sorted_tables, assays = FieldTables(), []
+    logs = [path for path in paths if is_log(path)]
+    if len(logs) == len(paths) == 1 and not tables:
+        tables["file"] = logs[0]  # which may have its collar, and tops
     for path in paths:
-        if path in tables.values():
+        if path in tables.values() or path in logs:
             continue
         if is_map(path):
             sorted_tables.maps.append(_map_file(path, of_maps or {}, units))
@@ -113,12 +117,14 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
             raise InputRefused(what, file=path, advice="choose one of them, or name columns that differ")
         else:
             tables[kind] = path
+    if logs:
+        tables["logs"] = logs
     of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
     if tables and not (assays and tables.keys() <= {"collars", "survey"}):
         sorted_tables.boreholes = Boreholes(**tables, **of_holes)
         sorted_tables.boreholes.check()
     for path in assays:
-        sorted_tables.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
+        sorted_tables.assays.append(Boreholes(**tables | {"picks": None, "intervals": path, "logs": ()}, **of_holes))
         sorted_tables.assays[-1].check()
     return sorted_tables
 
@@ -200,7 +206,8 @@ def _read(scene, rock, tables, units):
     if tables.boreholes is not None:
         picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
         intervals = tables.boreholes.intervals
-        logged += [tables.boreholes] if intervals is not None and not is_object_file(intervals) else []
+        has_values = intervals is not None and not is_object_file(intervals)
+        logged += [tables.boreholes] if has_values or tables.boreholes.logs else []
     seen, left_out = list(picks.observations), list(picks.left_out)
     for file in tables.observations:
         observed, not_used = read_observed_places(file, units, unit)

@@ -76,7 +76,8 @@ def read_hole_rows(
         file = getattr(given, kind)
         if file is None:
             continue
-        if kind in sheets and "block" in required[kind] and not _has_blocks(given, sheets[kind]):
+        is_log = kind == "intervals" and Path(file) in given.log_files
+        if is_log or (kind in sheets and "block" in required[kind] and not _has_blocks(given, sheets[kind])):
             continue  # curves of a log
         slow = step if kind in ("picks", "intervals") else no_step
         if kind in sheets:
@@ -85,7 +86,7 @@ def read_hole_rows(
             found = list(rows(given, Path(file), known, required[kind], slow))
         setattr(tables, kind, found)
         tables.factors[kind] = _to_one_unit(tables, found, model_unit)
-    if sheets and tables.picks is None and tables.intervals is None:
+    if sheets and tables.picks is None and tables.intervals is None and not given.logs:
         advice = "give a table of them: picks = ... or intervals = ..."
         raise InputRefused("it has neither picks nor intervals of blocks", file=given.files[0], advice=advice)
     return tables

@@ -40,7 +40,9 @@ def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[Interva
     strangers = [f"'{sheet.rows[0][1][0]}'" for file, sheet in sheets.items() if holes_of[file] is None]
     if strangers:
         file = next(file for file, hole in holes_of.items() if hole is None)
-        advice = f"there are {number_list(sorted(rows))}; correct the name in the file, or take it out of 'logs'"
+        advice = "give the table of collars = ..."
+        if rows:
+            advice = f"there are {number_list(sorted(rows))}; write it so in one of them, or leave the log out"
         raise InputRefused(f"no hole is called as the well {number_list(strangers)}", file=file, advice=advice)
     scale = tables.scale(model_unit)
     logs = []
