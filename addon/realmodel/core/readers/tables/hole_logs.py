@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused, number_list
-from ...base.units import factor, unit_of, unknown_unit
+from ...base.units import factor, unit_of
 from ..holes.las import begins_as_las, read_las, well_names
 from .hole_data import HoleTables
 from .hole_tables import Header, Row, Sheet, normalized_name
@@ -94,7 +94,7 @@ def _bounds(tables: HoleTables, file: Path, sheet: Sheet, model_unit: str) -> np
     of_tables = (of_tables.get("z") if isinstance(of_tables, Mapping) else of_tables) or model_unit
     text = sheet.units[1] if len(sheet.units) > 1 else ""
     unit = unit_of(text)
-    if unit is None and unknown_unit(text):
+    if unit is None and text:
         advice = "write the unit of the depths into the file, such as M or FT"
         raise InputRefused(f"'{text}' is not a unit of length", file=file, line=sheet.line, advice=advice)
     if unit not in (None, of_tables):
