@@ -88,7 +88,7 @@ class HoleLogs(PanelCase):
 
     def test_logs_of_no_hole_are_refused(self):
         logs = {"0.las": las_text("Smith 7", DEPTHS, GAMMA)}
-        self.refused(self.read, "no hole is called as the well 'Smith 7'", collars=COLLARS, logs=LOGS, **logs)
+        self.refused(self.read, "no hole is called 'Smith 7'", collars=COLLARS, logs=LOGS, **logs)
 
     def test_logs_with_collars_alone(self):
         self.read(collars=COLLARS, **{"0.las": las_text("B-0", DEPTHS, GAMMA)})
@@ -120,7 +120,7 @@ class HoleLogs(PanelCase):
         view.hole_width = 1.0
         bars, _ = self.bars()
         self.assertEqual(len(bars), 4, "of the hole that is near")
-        self.assertTrue(np.allclose(bars[:, :, 0], 20.0, atol=1e-4), "they lie in the plane")
+        self.assertTrue((np.ptp(bars[:, :, 0]) < 1e-4) and 20.0 < bars[0, 0, 0] < 21.0, "before the plane")
         self.assertTrue((bars[:, :, 1] > 50.0).all(), "right of the hole, seen from the east")
         path = self.folder / "s.svg"
         ops.save_section(filepath=str(path), hole_width=1.0, hole_column="GR")

@@ -92,7 +92,7 @@ def test_wells_are_found_by_name_and_by_number(tmp_path):
         given = tables(tmp_path, {"a.las": las_text(well, [0.0, 10.0], curve, uwi=uwi)})
         assert set(read_boreholes(given).logs.holes.tolist()) == {"B 2"}
     logs = {"a.las": las_text("Smith 7", [0.0, 10.0], curve), "b.las": las_text("A-1", [0.0, 9.0], curve)}
-    with pytest.raises(InputRefused, match=r"no hole is called as the well 'Smith 7'.*A-1 and B 2") as caught:
+    with pytest.raises(InputRefused, match=r"no hole is called 'Smith 7'.*A-1 and B 2") as caught:
         read_boreholes(tables(tmp_path, logs))
     assert caught.value.file.name == "a.las"
     (tmp_path / "x.las").write_text("depth,GR\n")

@@ -20,7 +20,7 @@ from ..project import borehole_picks, interval_values, observed_blocks, project_
 from . import heights
 
 BOREHOLES = "boreholes"
-_RADIUS = 0.005  # of the size of all
+RADIUS = 0.005  # of the size of all
 _SIDES = 8
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
 _MOST_WORDS = 24  # of a column of words that have a color of their own
@@ -38,7 +38,7 @@ def show(scene):
         return
     places = np.stack([begin, end], axis=1).reshape(-1, 3) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
-    shape = marks.lines(places, pairs, _RADIUS * heights.extent(scene), _SIDES)
+    shape = marks.lines(places, pairs, RADIUS * heights.extent(scene), _SIDES)
     mesh = bodies.add(scene, BOREHOLES, "Boreholes", shape).data
     bodies.give_materials(mesh, [tubes[number][0] for number in indices.tolist()], _SIDES)
 

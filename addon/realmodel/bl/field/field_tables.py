@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads tables of boreholes, of observed blocks and of dips for a rock mass, each told by its columns."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
 from ...core.readers import (
@@ -207,7 +207,7 @@ def _read(scene, rock, tables, units):
         picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
         intervals = tables.boreholes.intervals
         has_values = intervals is not None and not is_object_file(intervals)
-        logged += [tables.boreholes] if has_values or tables.boreholes.logs else []
+        logged += [replace(tables.boreholes, logs=())] if has_values else []
     seen, left_out = list(picks.observations), list(picks.left_out)
     for file in tables.observations:
         observed, not_used = read_observed_places(file, units, unit)
@@ -239,7 +239,7 @@ def _read(scene, rock, tables, units):
         SpaceDips.joined(of_series) if of_series else None,
         left_out,
         [name for name in meant.values() if name not in known_names],
-        [read_interval_values(boreholes, unit) for boreholes in logged],
+        [*(read_interval_values(boreholes, unit) for boreholes in logged), *([picks.logs] if picks.logs else [])],
         maps,
         warnings,
     )

@@ -5,7 +5,7 @@ are as wide as the values, and face the section plane or, without a cut, the sou
 import numpy as np
 
 from ...core.display.polygon_mesh import PolygonMesh
-from ...core.results.sections.hole_curves import bars, shares_of, ways_of
+from ...core.results.sections.hole_curves import bars, shares_of, sides_of
 from ..display import bodies, cuts
 from ..project import project_settings
 from . import boreholes, heights
@@ -27,12 +27,15 @@ def show(scene):
     limits = boreholes.limits(scene)
     normal = cuts.plane_in_model(scene)[1] if boreholes.is_on_cut(scene) else _FROM_SOUTH
     extent = heights.extent(scene)
+    right, up = _axes_of(np.array(normal, float))
+    lift = boreholes.RADIUS * extent * np.array(normal) if boreholes.is_on_cut(scene) else 0.0
     corners, materials = [], []
     for values, of_values in boreholes.by_column(scene):
         indices, begins, ends = boreholes.near_cut(scene, values.begins, values.ends)
         if not len(indices):
             continue
-        sides = _right_of(ways_of(values.holes[indices], begins, ends), np.array(normal, float))
+        sides = sides_of(values.holes[indices], begins, ends, right, up)
+        begins, ends = begins + lift, ends + lift
         shares = shares_of(values.columns[boreholes.column(scene)][indices], limits)
         corners.append(bars(begins, ends, sides, shares, _GAP * extent, _WIDTH * extent))
         materials += [of_values[number] for number in indices.tolist()]
@@ -44,10 +47,10 @@ def show(scene):
     bodies.give_materials(bodies.add(scene, CURVES, "Curves of Boreholes", shape).data, materials, 1)
 
 
-def _right_of(ways, normal):
-    """(N, 3) of length 1: across ways (N, 3) and a normal, to the right of a way that goes down, seen from
-    where the normal points; of ways along the normal to the right on the level."""
-    sides = np.cross(normal, ways)
-    level = np.array([-normal[1], normal[0], 0.0])
-    sides[np.linalg.norm(sides, axis=1) < 1e-6] = level if level.any() else (1.0, 0.0, 0.0)
-    return sides / np.linalg.norm(sides, axis=1)[:, None]
+def _axes_of(normal):
+    """(3,) of length 1 to the right on the level, and up, on a plane that is seen from where its normal, of
+    length 1, points; on a level one to the east and to the north."""
+    right = np.array([-normal[1], normal[0], 0.0])
+    length = np.linalg.norm(right)
+    right = right / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+    return right, np.cross(normal, right)

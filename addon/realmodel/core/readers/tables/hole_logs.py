@@ -19,6 +19,7 @@ from .holes import Holes
 from .interval_values import IntervalValues, column_values
 
 _HEAD = 4096  # bytes that tell what a file is
+_MOST_PLACES = 2000  # along a hole; between them it is straight
 
 
 def is_log(file: Path) -> bool:
@@ -43,15 +44,19 @@ def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[Interva
         advice = "give the table of collars = ..."
         if rows:
             advice = f"there are {number_list(sorted(rows))}; write it so in one of them, or leave the log out"
-        raise InputRefused(f"no hole is called as the well {number_list(strangers)}", file=file, advice=advice)
+        raise InputRefused(f"no hole is called {number_list(strangers)}, as its well is", file=file, advice=advice)
     scale = tables.scale(model_unit)
     logs = []
     for file, sheet in sheets.items():
         row = rows[str(holes_of[file])]
         bounds = _bounds(tables, file, sheet, model_unit)
         row = row if "from" in row.columns or "depth" in row.columns else _named(file, row.text("hole"))
-        at = {depth: holes.place(row, depth, scale) for depth in np.unique(bounds).tolist()}
-        begins, ends = (np.array([at[depth] for depth in bounds[:, side].tolist()]) for side in (0, 1))
+        depths = np.unique(bounds)
+        depths = depths[np.unique(np.linspace(0, len(depths) - 1, _MOST_PLACES).round().astype(int))]
+        places = np.array([holes.place(row, depth, scale) for depth in depths.tolist()])
+        begins, ends = (
+            np.column_stack([np.interp(bounds[:, side], depths, axis) for axis in places.T]) for side in (0, 1)
+        )
         names = np.full(len(bounds), row.text("hole"))
         logs.append(IntervalValues(names, begins, ends, bounds, _columns(sheet)))
     return logs

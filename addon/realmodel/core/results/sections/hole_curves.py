@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...base.algebra import norm
 from ...readers.tables.interval_values import IntervalValues
 
 _MOST = 500  # intervals of a hole that meet, of which no more can be seen
@@ -53,14 +52,16 @@ def shares_of(array: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
     return np.clip((array - limits[0]) / ((limits[1] - limits[0]) or 1.0), 0.0, 1.0)
 
 
-def ways_of(holes: np.ndarray, begins: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """(N, D) of length 1: for each interval (N, D) the way of its hole (N,), from its first to its last one;
-    zero where it has no length."""
+def sides_of(
+    holes: np.ndarray, begins: np.ndarray, ends: np.ndarray, right: np.ndarray, up: np.ndarray
+) -> np.ndarray:
+    """(N, D) the side of each interval (N, D) on which its graph stands: right of holes (N,) that are steeper
+    than level, seen as a whole, above others. right, up: (D,) of length 1, on the picture."""
     _, first, number = np.unique(holes, return_index=True, return_inverse=True)
     last = len(holes) - 1 - np.unique(holes[::-1], return_index=True)[1]
     ways = ends[last] - begins[first]
-    length = norm(ways)[:, None]
-    return np.divide(ways, length, out=np.zeros_like(ways), where=length > 0)[number.reshape(-1)]
+    is_steep = np.abs(ways @ up) >= np.abs(ways @ right)
+    return np.where(is_steep[:, None], right, up)[number.reshape(-1)]
 
 
 def bars(

@@ -3,21 +3,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ...base.algebra import begins_run
+from ...base.algebra import begins_run, norm
 from ...base.errors import UsageError, number_list
 from ...drawing.charts import TITLE, Axes, color_bar, tick_texts
 from ...drawing.drawing import BLACK, GRAY, Drawing, text_width
 from ...readers.tables.interval_values import IntervalValues
 from ..layer_values import colors
-from .hole_curves import bars, limits_of, seen_values, shares_of, ways_of
+from .hole_curves import bars, limits_of, seen_values, shares_of, sides_of
 from .section_holes import near_panel
 
 _GAP, _WIDTH = 4.0, 36.0  # from the middle of a hole to the lowest value, and on to the highest, in points
+_OF_DISTANCE, _LEAST_WIDTH = 0.6, 10.0  # of the distance of the nearest holes; in points
+_OF_LENGTH = 1.0  # values for a point of the longest hole
+_LINE = 0.35
 _BAR = (10.0, 80.0)  # width and height of the color bar
 _STEPS = 32  # of it
 _LAYER = "Curves"
@@ -46,32 +49,50 @@ class HoleCurves:
         self._values = seen_values(values, self.name)
         self._limits = limits_of(self._values.columns[self.name])
 
-    def draw(self, axes: Axes, panel: Panel) -> None:
-        """Draws the curves on a panel: to the right of holes that go down or, where there is no room, to the
-        left."""
-        values = self._values
+    def draw(self, axes: Axes, panels: Sequence[Panel]) -> None:
+        """Draws the curves of panels: right of the holes or, where there is no room, left of them; narrower
+        where holes are near each other, and with no more values than can be seen."""
+        drawn = [self._on(axes, panel, self._values) for panel in panels]
+        longest, places = 0.0, []
+        for values, begin, end in drawn:
+            for hole in dict.fromkeys(values.holes.tolist()):
+                of_hole = values.holes == hole
+                longest = max(longest, float(norm(end[of_hole][-1] - begin[of_hole][0])))
+                places.append(begin[of_hole][0, 0])
+        apart = np.diff(np.sort(places))
+        width = float(np.clip(_OF_DISTANCE * apart[apart > 1.0].min(initial=np.inf), _LEAST_WIDTH, _WIDTH))
+        seen = seen_values(self._values, self.name, max(int(_OF_LENGTH * longest), 2))
+        for panel in panels:
+            self._draw_panel(axes, *self._on(axes, panel, seen), width)
+
+    def _on(
+        self, axes: Axes, panel: Panel, values: IntervalValues
+    ) -> tuple[IntervalValues, np.ndarray, np.ndarray]:
+        """Values near a panel, and both ends (N, 2) of their intervals as they are drawn."""
         numbers, begin, end = near_panel(values.begins, values.ends, panel.plane, self._width, panel.span)
-        if not len(numbers):
+        return values.some(numbers), axes.at(panel.drawn(begin)), axes.at(panel.drawn(end))
+
+    def _draw_panel(
+        self, axes: Axes, values: IntervalValues, begin: np.ndarray, end: np.ndarray, width: float
+    ) -> None:
+        if not len(values.holes):
             return
-        values = values.some(numbers)
         array = values.columns[self.name]
-        begin, end = axes.at(panel.drawn(begin)), axes.at(panel.drawn(end))
-        ways = ways_of(values.holes, begin, end)
-        sides = np.column_stack([-ways[:, 1], ways[:, 0]])
-        right = axes.box[0] + axes.box[2] - _GAP - _WIDTH
+        sides = sides_of(values.holes, begin, end, np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+        right = axes.box[0] + axes.box[2] - _GAP - width
         for hole in dict.fromkeys(values.holes.tolist()):
             of_hole = values.holes == hole
             if (np.maximum(begin, end)[of_hole, 0] > right).any():
-                sides[of_hole] *= -1.0
-        corners = bars(begin, end, sides, shares_of(array, self._limits), _GAP, _WIDTH)
+                sides[of_hole, 0] *= -1.0
+        corners = bars(begin, end, sides, shares_of(array, self._limits), _GAP, width)
         fills = colors(array, self._limits)[:, :3].tolist()
         for bar, fill in zip(corners, fills, strict=True):
             axes.drawing.polygon(bar, tuple(fill), tuple(fill), 0.2, layer=_LAYER)
-        for run in np.split(np.arange(len(numbers)), self._ends_of_runs(values)):
-            axes.drawing.line(corners[run][:, [3, 2]].reshape(-1, 2), BLACK, 0.4, layer=_LAYER)
-            for side in (_GAP, _GAP + _WIDTH):  # at the low and the high
-                ends = np.stack([begin[run[0]], end[run[-1]]]) + side * sides[run[[0, -1]]]
-                axes.drawing.line(ends, GRAY, 0.4, layer=_LAYER)
+        for run in np.split(np.arange(len(array)), self._ends_of_runs(values)):
+            axes.drawing.line(corners[run][:, [3, 2]].reshape(-1, 2), BLACK, _LINE, layer=_LAYER)
+            for side in (_GAP, _GAP + width):  # at the low and the high
+                along = np.concatenate([begin[run], end[run[-1:]]]) + side * sides[run[0]]
+                axes.drawing.line(along, GRAY, _LINE, layer=_LAYER)
 
     @staticmethod
     def _ends_of_runs(values: IntervalValues) -> np.ndarray:
@@ -97,7 +118,7 @@ class HoleCurves:
 
     def _marks(self) -> list[tuple[str, float]]:
         low, high = self._limits
-        return [(text, value) for text, value in zip(_texts(low, high), (low, high), strict=True)]
+        return list(zip(_texts(low, high), (low, high), strict=True))
 
 
 def _texts(low: float, high: float) -> list[str]:

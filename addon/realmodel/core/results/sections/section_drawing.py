@@ -111,8 +111,7 @@ def draw_section(
         drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
     _draw_faults(drawing, axes, section)
     if curves is not None:
-        for panel in panels_of(section):
-            curves.draw(axes, panel)
+        curves.draw(axes, list(panels_of(section)))
     _draw_holes(drawing, axes, section, holes)
     axes.frame(*_axis_names(section), layer="Axes")
     _draw_ends(drawing, axes, section, ends, are_beside)
