@@ -6,8 +6,10 @@ import numpy as np
 
 def las_text(well, depths, curves, unit="M", null=-999.25, version="2.0", wrap=False, uwi=""):
     """The text of a LAS file. curves: {mnemonic.unit: values (N,)}, NaN for none."""
-    names = f" WELL. WELL : {well}\n UWI . UWI : {uwi}\n" if version.startswith("1") else (
-        f" WELL. {well} : WELL\n UWI . {uwi} : UWI\n"
+    names = (
+        f" WELL. WELL : {well}\n UWI . UWI : {uwi}\n"
+        if version.startswith("1")
+        else (f" WELL. {well} : WELL\n UWI . {uwi} : UWI\n")
     )
     head = (
         f"~Version Information\n VERS. {version} : CWLS\n WRAP. {'YES' if wrap else 'NO'} : wrap\n"

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from las_files import las_text
+from realmodel import core
 from realmodel.core import Boreholes, InputRefused, UsageError, Model, build, load_project
 from realmodel.core.drawing.drawing import FilledRings, Text
 from realmodel.core.readers.borehole_input import read_boreholes
@@ -101,7 +102,9 @@ def test_wells_are_found_by_name_and_by_number(tmp_path):
 
 
 def test_curves_stand_beside_the_columns_of_intervals(tmp_path):
-    logs = {"a.las": las_text("A-1", [0.0, 4.0, 10.0], {"GR.GAPI": [1.0, np.nan, 2.0], "GR.": [3.0, 4.0, 5.0]})}
+    logs = {
+        "a.las": las_text("A-1", [0.0, 4.0, 10.0], {"GR.GAPI": [1.0, np.nan, 2.0], "GR.": [3.0, 4.0, 5.0]})
+    }
     values = read_interval_values(tables(tmp_path, logs))
     assert list(values.columns) == ["block", "GR (GAPI)", "GR"]
     assert values.has("GR (GAPI)").tolist() == [False] * 4 + [True, False, True]
@@ -109,6 +112,14 @@ def test_curves_stand_beside_the_columns_of_intervals(tmp_path):
     alone.check()
     assert list(read_interval_values(alone).columns) == ["GR (GAPI)", "GR"]
     assert read_boreholes(alone).warnings == []
+
+
+def test_python_has_logs_as_a_table(tmp_path):
+    given = tables(tmp_path, {"a.las": las_text("A-1", [0.0, 10.0], {"GR.GAPI": [1.0, 2.0]}, "FT")})
+    found = core.read_boreholes(collars=given.collars, intervals=given.intervals, logs=given.logs, units="ft")
+    assert found.logs["to"].tolist() == [5.0, 10.0] and found.logs["GR (GAPI)"].tolist() == [1.0, 2.0]
+    assert set(found.logs["hole"].tolist()) == {"A-1"} and found.warnings == []
+    assert len(core.read_boreholes(collars=given.collars, intervals=given.intervals).logs["from"]) == 0
 
 
 def test_deviated_holes_have_their_logs_along_them(tmp_path):

@@ -50,9 +50,7 @@ def near_cut(scene, begin, end):
     begin, end = begin[indices], end[indices]
     if not is_on_cut(scene):
         return indices, begin, end
-    on_plane, begin, end = near_plane(
-        begin, end, cuts.plane_in_model(scene), scene.realmodel.view.hole_width
-    )
+    on_plane, begin, end = near_plane(begin, end, cuts.plane_in_model(scene), scene.realmodel.view.hole_width)
     return indices[on_plane], begin, end
 
 

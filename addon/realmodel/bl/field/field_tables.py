@@ -124,7 +124,9 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
         sorted_tables.boreholes = Boreholes(**tables, **of_holes)
         sorted_tables.boreholes.check()
     for path in assays:
-        sorted_tables.assays.append(Boreholes(**tables | {"picks": None, "intervals": path, "logs": ()}, **of_holes))
+        sorted_tables.assays.append(
+            Boreholes(**tables | {"picks": None, "intervals": path, "logs": ()}, **of_holes)
+        )
         sorted_tables.assays[-1].check()
     return sorted_tables
 
@@ -239,7 +241,10 @@ def _read(scene, rock, tables, units):
         SpaceDips.joined(of_series) if of_series else None,
         left_out,
         [name for name in meant.values() if name not in known_names],
-        [*(read_interval_values(boreholes, unit) for boreholes in logged), *([picks.logs] if picks.logs else [])],
+        [
+            *(read_interval_values(boreholes, unit) for boreholes in logged),
+            *([picks.logs] if picks.logs else []),
+        ],
         maps,
         warnings,
     )

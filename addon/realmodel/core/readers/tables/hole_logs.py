@@ -43,8 +43,12 @@ def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[Interva
         file = next(file for file, hole in holes_of.items() if hole is None)
         advice = "give the table of collars = ..."
         if rows:
-            advice = f"there are {number_list(sorted(rows))}; write it so in one of them, or leave the log out"
-        raise InputRefused(f"no hole is called {number_list(strangers)}, as its well is", file=file, advice=advice)
+            advice = (
+                f"there are {number_list(sorted(rows))}; write it so in one of them, or leave the log out"
+            )
+        raise InputRefused(
+            f"no hole is called {number_list(strangers)}, as its well is", file=file, advice=advice
+        )
     scale = tables.scale(model_unit)
     logs = []
     for file, sheet in sheets.items():
@@ -55,7 +59,8 @@ def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[Interva
         depths = depths[np.unique(np.linspace(0, len(depths) - 1, _MOST_PLACES).round().astype(int))]
         places = np.array([holes.place(row, depth, scale) for depth in depths.tolist()])
         begins, ends = (
-            np.column_stack([np.interp(bounds[:, side], depths, axis) for axis in places.T]) for side in (0, 1)
+            np.column_stack([np.interp(bounds[:, side], depths, axis) for axis in places.T])
+            for side in (0, 1)
         )
         names = np.full(len(bounds), row.text("hole"))
         logs.append(IntervalValues(names, begins, ends, bounds, _columns(sheet)))

@@ -18,7 +18,7 @@ from .hole_curves import bars, limits_of, seen_values, shares_of, sides_of
 from .section_holes import near_panel
 
 _GAP, _WIDTH = 4.0, 36.0  # from the middle of a hole to the lowest value, and on to the highest, in points
-_OF_DISTANCE, _LEAST_WIDTH = 0.6, 10.0  # of the distance of the nearest holes; in points
+_OF_DISTANCE, _LEAST_WIDTH = 0.4, 10.0  # of the distance of the nearest holes; in points
 _OF_LENGTH = 1.0  # values for a point of the longest hole
 _LINE = 0.35
 _BAR = (10.0, 80.0)  # width and height of the color bar
@@ -58,9 +58,9 @@ class HoleCurves:
             for hole in dict.fromkeys(values.holes.tolist()):
                 of_hole = values.holes == hole
                 longest = max(longest, float(norm(end[of_hole][-1] - begin[of_hole][0])))
-                places.append(begin[of_hole][0, 0])
-        apart = np.diff(np.sort(places))
-        width = float(np.clip(_OF_DISTANCE * apart[apart > 1.0].min(initial=np.inf), _LEAST_WIDTH, _WIDTH))
+                places.append((begin[of_hole][0, 0], end[of_hole][-1, 0]))
+        apart = np.abs(np.diff(np.array(sorted(places)).reshape(-1, 2), axis=0))
+        width = float(np.clip(_OF_DISTANCE * apart.min(initial=np.inf), _LEAST_WIDTH, _WIDTH))
         seen = seen_values(self._values, self.name, max(int(_OF_LENGTH * longest), 2))
         for panel in panels:
             self._draw_panel(axes, *self._on(axes, panel, seen), width)
