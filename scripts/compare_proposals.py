@@ -28,7 +28,7 @@ from field_data.measured import EDGE, Measured, measure, project, random_points,
 from realmodel.core import InputRefused, Project, build, propose_project  # noqa: E402
 
 HEADER = (
-    "| histories | neighbors in the right order | right block, order given | right block, proposed | largest loss |",
+    "| histories | neighbors in order | right block, order given | right block, proposed | largest loss |",
     "|---|---|---|---|---|",
 )
 TABLE = re.compile(re.escape("\n".join(HEADER)) + r"\n(?:\|.*\n)*")
@@ -78,10 +78,16 @@ def order_given(history: History, data: Measured) -> Project:
     for surface in rock.surfaces:
         surface.dips = None
     seen = {int(block[1:]) for block in data.logs.blocks.tolist()}
-    rock.surfaces = [surface for number, surface in enumerate(rock.surfaces) if number in seen or number == len(history.layers) - 1]
+    rock.surfaces = [
+        surface
+        for number, surface in enumerate(rock.surfaces)
+        if number in seen or number == len(history.layers) - 1
+    ]
     collars = {
         hole: (*place[:2], place[2] + depth)
-        for hole, place, depth in zip(data.logs.holes.tolist(), data.logs.places, data.logs.depths, strict=True)
+        for hole, place, depth in zip(
+            data.logs.holes.tolist(), data.logs.places, data.logs.depths, strict=True
+        )
     }
     rock.surfaces[-1].points, rock.surfaces[-1].method = np.array(list(collars.values())), None
     return given
@@ -106,9 +112,7 @@ def row(name: str, compared: list[Compared]) -> str:
     pairs, right = sum(c.pairs for c in compared), sum(c.right for c in compared)
     given, proposed_share = (np.array([getattr(c, key) for c in compared]) for key in ("given", "proposed"))
     loss = (given - proposed_share).max()
-    return (
-        f"| {name} | {right} of {pairs} | {given.mean():.3f} | {proposed_share.mean():.3f} | {loss:.3f} |"
-    )
+    return f"| {name} | {right} of {pairs} | {given.mean():.3f} | {proposed_share.mean():.3f} | {loss:.3f} |"
 
 
 def main():

@@ -343,6 +343,18 @@ class RealModelCode(bpy.types.PropertyGroup):
     )
 
 
+class RealModelHoleProblem(bpy.types.PropertyGroup):
+    """Something wrong with a row of a table of boreholes, and what was done about it."""
+
+    kind: StringProperty(name="Kind")
+    file: StringProperty(name="File")
+    line: IntProperty(name="Line")
+    hole: StringProperty(name="Hole")
+    depth: StringProperty(name="Depth", description="Along the hole, as in the table")
+    text: StringProperty(name="Problem")
+    action: StringProperty(name="Action", description="Used as it is, repaired, or left out")
+
+
 class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     """A rock mass: a region in plan and its surfaces, oldest first."""
 
@@ -368,7 +380,11 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     interval_values = ArraysProperty()  # the columns of tables of intervals
     codes: CollectionProperty(type=RealModelCode)
     active_code: IntProperty(name="Active Code", description="The code that is shown in full", options=set())
-    imports: StringProperty(options={"HIDDEN"})  # JSON: see bl.project.codes
+    hole_problems: CollectionProperty(type=RealModelHoleProblem)
+    active_hole_problem: IntProperty(
+        name="Active Problem", description="The problem that is shown in full", options=set()
+    )
+    imports: StringProperty(options={"HIDDEN"})  # JSON: see bl.project.imported
     ground: StringProperty(
         name="Ground",
         description="File with the heights of the ground: a raster, points or a mesh. The youngest surface, "

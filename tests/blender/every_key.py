@@ -140,6 +140,7 @@ name = "by points"
 region = "POLYGON ((400 0, 500 0, 500 80, 400 80, 400 0))"
 edge_length = "auto"
 base_elevation = -50
+terrain = "top"
 
 [[rock.series]]
 name = "folded"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core.surfaces.age_order import _against, _improved, age_order
+from realmodel.core.surfaces.age_order import _against, age_order, improved
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 
@@ -131,7 +131,7 @@ def test_the_fewest_contradictions_of_all_orders(seed):
     below = np.array([[int((a[:, 2] < b[:, 2]).sum()) for b in tops] for a in tops])
     fewest = min(_against(below, order) for order in itertools.permutations(range(6)))
     assert sum(found.against.values()) == fewest == _against(below, found.order)
-    assert _against(below, _improved(below, list(range(6))[::-1])) == fewest
+    assert _against(below, improved(below, list(range(6))[::-1])) == fewest
 
 
 def test_real_picks():

@@ -11,9 +11,19 @@ import pytest
 from damages import damaged_bytes
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from realmodel.core import BuildFailed, InputRefused, PointFile, load_library, load_project
-from realmodel.core.readers import read_mesh, read_point_file, read_region
+from realmodel.core import (
+    Boreholes,
+    BuildFailed,
+    InputRefused,
+    MeshFile,
+    PointFile,
+    load_library,
+    load_project,
+)
+from realmodel.core.readers import read_boreholes, read_mesh, read_point_file, read_region
 from realmodel.core.readers.fault_input import read_fault_points
+from test_mesh_dialects import GOCAD, STRINGS, WELL, datamine, legacy
+from test_named_objects import binary_dxf, dxf_blocks, dxf_meshes, glb, gmsh
 
 PROJECT = b"""format = 1
 name = "x"
@@ -73,7 +83,7 @@ def array_file(values):
 
 
 def read_points_of(file):
-    return read_point_file(PointFile(file))
+    return read_point_file(PointFile(file))[0]
 
 
 DXF = b"0\nSECTION\n2\nENTITIES\n0\n3DFACE\n8\nA\n10\n0\n20\n0\n30\n1\n11\n1\n21\n0\n31\n2\n12\n1\n22\n1\n32\n3\n"  # noqa: E501
@@ -106,6 +116,13 @@ WKT = b"POLYGON ((0 0, 4 0, 4 3, 0 3.5, 0 0), (1 1, 2 1, 2 2, 1 1))\n"
 STICKS = b"1 2 3\n1 2 5.5\n999.000 999.000 999.000\n\n4 5 6\n4 5 7\n999 999 999\n"
 LEAPFROG = b"%ARANZ-1.0\n\n[index]\nTri Integer 3 2;\nLocation Double 3 4;\n\n[binary]" + bytes(12)
 LEAPFROG += struct.pack("<6i12d", 0, 1, 2, 0, 2, 3, *range(12))
+ONE = {"a": (np.array([[0.0, 0, 1], [1, 0, 1], [0, 1, 2]]), np.array([[0, 1, 2]]))}
+
+
+def named_surface(file):
+    return read_mesh(MeshFile(file, layer="a"))
+
+
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
@@ -129,6 +146,17 @@ READERS = {
     "m.xml": (LANDXML, read_mesh),
     "m.vtp": (VTP, read_mesh),
     "m.vtu": (VTU, read_mesh),
+    "blocks.dxf": (dxf_blocks(ONE), named_surface),
+    "binary.dxf": (binary_dxf(ONE), named_surface),
+    "meshes.dxf": (dxf_meshes(ONE), named_surface),
+    "m.glb": (glb(ONE), named_surface),
+    "4.msh": (gmsh(4.0)(ONE), named_surface),
+    "5.vtk": (legacy("POLYDATA", 5.1, False), read_mesh),
+    "b.vtk": (legacy("UNSTRUCTURED_GRID", 3.0, True), read_mesh),
+    "pt.dm": (datamine(("PID", "XP", "YP", "ZP"), [[1, 0, 0, 1], [2, 1, 0, 2]], 8), read_points_of),
+    "s.str": (STRINGS.encode(), lambda file: read_point_file(PointFile(file, layer="1"))),
+    "v.ts": (GOCAD.encode(), lambda file: read_point_file(PointFile(file, layer="tops"))),
+    "w.wl": (WELL.encode(), lambda file: read_boreholes(Boreholes(picks=file))),
     "r.geojson": (REGION, read_region),
     "r.wkt": (WKT, read_region),
 }

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused, build, load_project, read_boreholes
+from realmodel.core.readers import table_contents, table_kind
 from realmodel.core.readers.tables.intervals import read_interval_values
 from test_reported_boreholes import LOG, PLACES, assert_layers
 
@@ -113,7 +114,6 @@ def test_inclined_holes_of_ags(write):
     ("text", "words"),
     [
         (quoted(("GROUP", "PROJ"), ("HEADING", "PROJ_ID"), ("DATA", "1")), "it has no rows of LOCA or HOLE"),
-        (ags4().split('"GROUP","GEOL"')[0], "it has no rows of GEOL"),
         (ags4().replace("GEOL_TOP", "GEOL_TOPP"), "the header has no column from"),
         (ags3().replace('"H0","10","10"', '"<CONT>","10","10"'), "<CONT> continues no row"),
     ],
@@ -121,6 +121,44 @@ def test_inclined_holes_of_ags(write):
 def test_damaged_ags(write, text, words):
     with pytest.raises(InputRefused, match=words):
         read_boreholes(write("site.ags", text))
+
+
+def test_what_files_that_hold_all_tables_are(write):
+    """As the panel asks it."""
+    path = write("site.ags", ags4())
+    columns, codes = table_contents(path)
+    assert table_kind(path) == "intervals" and codes == ["A", "B", "C"] and columns["block"] == "GEOL_LEG"
+    assert table_kind(write("a.txt", well_tops())) == "picks"
+    curves = LAS.format(
+        version="2.0", wrap="NO", well="W1 :", rows="\n".join(ROWS), unit="M", start=10, stop=14, step=2
+    )
+    assert table_kind(write("a.las", curves)) == "assays"
+
+
+def test_holes_without_layers(write):
+    """They can be looked at, but no model follows from them."""
+    assert len(read_boreholes(write("site.ags", ags4().split('"GROUP","GEOL"')[0])).collars) == 5
+    project = load_project(write("p.toml", PROJECT.format(boreholes='"site.ags"')))
+    with pytest.raises(InputRefused, match="it has neither picks nor intervals of blocks"):
+        build(project)
+
+
+def test_two_columns_that_name_units_are_a_warning(write):
+    text = (
+        ags3()
+        .replace('"*GEOL_GEOL"', '"*GEOL_GEOL","*GEOL_LEG"')
+        .replace('"Soft CL","A"', '"Soft CL","A","101"')
+    )
+    (warning,) = read_boreholes(write("site.ags", text)).warnings
+    assert 'columns = { block = "GEOL_LEG" }' in warning
+    found = read_boreholes(write("site.ags", text), columns={"block": "GEOL_LEG"})
+    assert set(found.intervals["block"].tolist()) == {"101", ""} and not found.warnings
+
+
+def test_places_in_degrees_are_refused(write):
+    table = write("c.csv", "HoleId,Longitude,Latitude,Elevation\nA,119.6,-32.4,379\n")
+    with pytest.raises(InputRefused, match="places are longitude and latitude; give x and y in a projected"):
+        read_boreholes(collars=table, picks=write("p.csv", "hole,surface,depth\nA,clay,3\n"))
 
 
 def test_a_file_that_holds_no_boreholes(write):
@@ -267,8 +305,7 @@ def test_curves_of_las(write, version, wrap, well, rows, unit, by):
     np.testing.assert_array_equal(found.columns["GR"], [50, np.nan, 70])
     np.testing.assert_allclose(found.depths, np.array([[10, 11], [11, 13], [13, 14]]) * by)
     np.testing.assert_allclose(found.begins[:, 2], 100 - np.array([10, 11, 13]) * by)
-    with pytest.raises(InputRefused, match="it has neither picks nor intervals of blocks"):
-        read_boreholes(boreholes.intervals)
+    assert len(read_boreholes(boreholes.intervals).intervals) == 0  # curves name no blocks
 
 
 LAS3 = """~Version

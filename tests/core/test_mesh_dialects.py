@@ -403,7 +403,8 @@ def test_wells_of_gocad(put):
 
 
 def legacy(kind, version, binary):
-    """Two triangles and a square of a PolyData or an UnstructuredGrid, with an array before and behind them."""
+    """Two triangles and a square of a PolyData or an UnstructuredGrid, with an array before and behind
+    them."""
     places = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 5], [2, 1, 5]], float)
     rows = [[0, 1, 2, 3], [1, 4, 2], [4, 5, 2]]
 
@@ -545,3 +546,70 @@ def test_wireframes_of_datamine(put, size, names):
     paths[0].unlink()
     with pytest.raises(InputRefused, match="its points are in another table"):
         read_mesh(paths[1])
+
+
+@pytest.mark.parametrize("release", ["R12", "R2000", "R2018"])
+@pytest.mark.parametrize("seed", range(4))
+def test_drawings_of_ezdxf_with_blocks_anyhow(tmp_path, release, seed):
+    """Its own places of what is inserted: turned, scaled, mirrored, extruded, in blocks of blocks."""
+    ezdxf = pytest.importorskip("ezdxf", reason="ezdxf is not installed: scripts/test.sh installs it")
+    rng = np.random.default_rng(seed)
+    document = ezdxf.new(release)
+
+    def fill(space, layer):
+        space.add_3dface(rng.uniform(-9, 9, (4, 3)).tolist(), dxfattribs={"layer": layer})
+        space.add_line(*rng.uniform(-9, 9, (2, 3)).tolist(), dxfattribs={"layer": layer})
+        space.add_point(rng.uniform(-9, 9, 3).tolist(), dxfattribs={"layer": layer})
+        space.add_polyline3d(rng.uniform(-9, 9, (4, 3)).tolist(), dxfattribs={"layer": layer})
+        if release != "R12":
+            more = {"layer": layer, "elevation": 3.5, "extrusion": rng.normal(size=3).tolist()}
+            space.add_lwpolyline(rng.uniform(-9, 9, (5, 2)).tolist(), dxfattribs=more)
+
+    def insert(space, name, layer):
+        scale = float(rng.choice([1.0, 2.0, 0.5]))  # one for all axes, so that others have a right answer
+        more = {
+            "rotation": float(rng.uniform(0, 360)),
+            "extrusion": rng.normal(size=3).tolist(),
+            "layer": layer,
+        }
+        more |= {"xscale": scale, "yscale": scale, "zscale": scale}
+        space.add_blockref(name, rng.uniform(-99, 99, 3).tolist(), dxfattribs=more)
+
+    for name in ("in", "out"):
+        block = document.blocks.new(name, base_point=rng.uniform(-5, 5, 3).tolist())
+        fill(block, "0" if name == "in" else "own")
+    insert(document.blocks.get("out"), "in", "0")
+    space = document.modelspace()
+    fill(space, "plain")
+    for name in ("in", "out", "in"):
+        insert(space, name, "site")
+    document.saveas(path := tmp_path / "m.dxf")
+    expected = {}
+
+    def add(entity, on):
+        layer = on if entity.dxf.layer == "0" else entity.dxf.layer
+        if entity.dxftype() == "INSERT":
+            for part in entity.virtual_entities():
+                add(part, layer)
+            return
+        kind = entity.dxftype()
+        places = {
+            "3DFACE": lambda: [tuple(corner) for corner in entity.wcs_vertices()],
+            "LINE": lambda: [tuple(entity.dxf.start), tuple(entity.dxf.end)],
+            "POINT": lambda: [tuple(entity.dxf.location)],
+            "POLYLINE": lambda: [tuple(vertex.dxf.location) for vertex in entity.vertices],
+            "LWPOLYLINE": lambda: [tuple(place) for place in entity.vertices_in_wcs()],
+        }[kind]()
+        expected.setdefault((layer, kind == "3DFACE"), []).extend(places)
+
+    for entity in space:
+        add(entity, "0")
+    assert set(layer_names(path)) == {"plain", "site", "own", "in", "out"}
+    for (layer, is_face), places in expected.items():
+        if is_face:
+            mesh = read_mesh(path, layer=layer)
+            read = np.unique(mesh.vertices, axis=0)
+            places = np.unique(np.round(places, 9), axis=0)
+        else:
+            read = read_points(path, layer=layer).xyz
+        assert np.allclose(np.sort(read, axis=0), np.sort(places, axis=0), atol=1e-8)

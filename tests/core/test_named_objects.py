@@ -6,7 +6,10 @@ import struct
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, MeshFile, UsageError, read_mesh, read_points
+from object_models import SHIFT, crossing_surfaces
+from realmodel.core import InputRefused, Project, Rock, UsageError, build, read_mesh, read_points
+from realmodel.core.base.triangles import open_edges
+from realmodel.core.exporters.shapes.shape_parts import model_parts
 from realmodel.core.readers import is_mesh_file
 from realmodel.core.readers.contents import layer_names
 
@@ -274,4 +277,21 @@ def test_keys_of_read_mesh(tmp_path):
         read_mesh(path, column=1)
     with pytest.raises(UsageError, match="unknown unit"):
         read_mesh(path, units="rods")
-    assert MeshFile(path, layer="a").layer == "a"
+
+
+@pytest.mark.parametrize("ending", [".obj", ".dxf", ".ts", ".glb"])
+def test_each_block_that_we_write_is_read_by_its_name(tmp_path, ending):
+    model = build(Project("crossing", [Rock("rock", crossing_surfaces(SHIFT), base_elevation=-2.0)]))
+    model.save(path := tmp_path / f"m{ending}")
+    parts = list(model_parts(model))
+    names = layer_names(path)
+    assert len(names) == len(parts) == 4
+    with pytest.raises(InputRefused, match="it has 4 surfaces"):
+        read_mesh(path)
+    for name, part in zip(names, parts, strict=True):
+        assert name[0].lower() == part.name[0].lower()
+        mesh = read_mesh(path, layer=name)
+        assert len(open_edges(mesh.vertices, mesh.triangles)) == 0
+        assert len(mesh.triangles) == len(part.triangles)
+        low, high = (end(part.vertices, axis=0) for end in (np.min, np.max))
+        assert np.allclose([mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)], [low, high], atol=1e-6)

@@ -172,6 +172,11 @@ def test_keys_of_read_points(write):
     [
         ("1 451000 5932000 -1600\n2 451100 5932000 -1601\n3 451200 5932000 -1602\n", "columns"),  # numbered
         ("326 1160 536881.6 6729209.9 -1\n327 1160 536891.0 6729218.1 -1.5\n", "columns"),
+        ("X Y Z\n0 451000 5932000 -1600\n1 451100 5932000 -1601\n", "columns"),
+        ("Well Name X Y Z Phi\nW1 451000 5932000 -1600 7\nW2 451100 5932000 -1601 7\n", "columns"),
+        ("# X Y Z\n451000 5932000 -1600 7\n451100 5932000 -1601 7\n", "columns"),
+        ("A 451000 5932000 -1600\nB 451100 5932000 -1601\n", "columns"),
+        ("x y z\n451000 5932000 -999.25\n451100 5932000 -999.25\n", "nodata"),
         ("lon,lat,z\n8.2,45.1,100\n8.3,45.2,110\n", "columns"),
         ("x,y,depth\n1,2,1600\n1,3,1605\n", "z_axis"),
         ("x,y,Z (depth)\n1,2,1600\n1,3,1605\n", "z_axis"),
@@ -192,6 +197,22 @@ def test_no_guess_without_a_word(write, text, word):
     except InputRefused as error:
         said = [str(error)]
     assert any(word in sentence for sentence in said), said
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# X Y Z\n1.5 2.5 3\n",
+        "#\tX\tY\tZ\n1\t1.5\t2.5\t3\n",
+        "Survey XYZ\nProject: North\nEasting Northing RL Code\n1.5 2.5 3 TOP\n",
+        "sep=;\nX;Y;Z\n1,5;2,5;3\n",
+        "X,Y,Z\nkm,km,m\n0.0015,0.0025,3\n",
+        "> one\n1.5 2.5 3\n> two\n",
+        "\tX\tY\tZ\na\t1.5\t2.5\t3\n",
+    ],
+)
+def test_headers_of_other_programs(write, text):
+    assert read_points(write("p.csv", text)).xyz.tolist() == [[1.5, 2.5, 3]]
 
 
 @pytest.mark.parametrize(

@@ -258,10 +258,14 @@ def test_guessed_columns_are_a_warning(write):
         ((100, 120, 1e30), 1, "1 point has the height 1e+30"),
         ((-3000, -2950, -999.25), 1, "1 point has the height -999.25"),
         ((-1400.5, -200, -999.25), 1, "1 point has the height -999.25, which often means no data, and"),
-        ((-1400, -200, -999, -999), 0, "2 points have the height -999, which often means no data: it is used"),
+        (
+            (-1400, -200, -999, -999),
+            0,
+            "2 points have the height -999, which often means no data: it is used",
+        ),
         ((9990, 9999, 10010), 0, None),  # among the others
         ((-1400, -200, -999), 0, None),
-        ((-9999, -9999), 0, None),  # there is no other
+        ((-9999, -9999), 0, "2 points have the height -9999, which often means no data: it is used"),
     ],
 )
 def test_heights_that_often_mean_no_data(write, heights, left_out, words):
@@ -275,7 +279,9 @@ def test_heights_that_often_mean_no_data(write, heights, left_out, words):
 
 
 def test_coordinates_that_mean_no_data(write):
-    file = write("p.csv", "x,y,z,id\n451000,5932000,-1600,a\n-999.25,-999.25,-1605,b\n451100,5932100,-1610,c\n")
+    file = write(
+        "p.csv", "x,y,z,id\n451000,5932000,-1600,a\n-999.25,-999.25,-1605,b\n451100,5932100,-1610,c\n"
+    )
     read = read_points(file)
     assert read.xyz[:, 2].tolist() == [-1600, -1610]
     assert read.columns["id"].tolist() == ["a", "c"]

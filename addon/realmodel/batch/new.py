@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`realmodel new`: a folder with a project from data alone, which is built at once where outputs are named."""
+"""`realmodel new`: a folder with a project from data alone, built at once where outputs are named."""
 
 from __future__ import annotations
 
@@ -54,8 +54,10 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 def run(options: argparse.Namespace) -> None:
     """Writes the folder, and builds its project where outputs are named. Raises RealModelError."""
     from ..core import UsageError, propose_project
+    from ..core.proposal.folder import require_new
     from .run import run as run_build
 
+    require_new(options.out)
     tables = {name: getattr(options, name) for name in _TABLES if getattr(options, name) is not None}
     if options.file is not None and tables:
         raise UsageError(f"{options.file} holds all tables, so --{next(iter(tables))} is one too many")

@@ -14,7 +14,7 @@ from ..bl.host import caches, notices
 from ..bl.objects import stored_arrays
 from ..bl.project import (
     borehole_picks,
-    codes,
+    imported,
     interval_values,
     method_settings,
     observed_blocks,
@@ -168,6 +168,17 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
         description="Unit of all the tables",
         items=items(READING["units"].parts["z"].words),
     )
+    unrepaired: StringProperty(
+        name="Unrepaired",
+        description="Rows of tables of boreholes that are used as they are written, such as collars.csv:17; "
+        "survey.csv:3",
+        options={"SKIP_SAVE"},
+    )
+    left_out: StringProperty(
+        name="Left Out",
+        description="Rows of tables of boreholes that are not used, such as collars.csv:17; survey.csv:3",
+        options={"SKIP_SAVE"},
+    )
     series: StringProperty(
         name="Dips Of Series",
         description="Series that the dips are of, of a field at any angle and with polarity, whatever their "
@@ -252,7 +263,7 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
             view.show_map = view.show_map or bool(data.maps)
         counts = count_codes(*tables.coded, units=scene.realmodel.units)
         known = observed_blocks.units_of(scene, rock, reading_text.named_texts(self.names))
-        codes.record(rock, self._properties(), counts, known)
+        imported.record(rock, self._properties(), counts, data.picks.problems, known)
         arrived(context, rock, places)
         self.remember({} if self.units == "NONE" else {"units": self.units})
         for text in warnings:
@@ -276,6 +287,8 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
             of_maps=self._of_maps(context, paths),
             downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
             layer=self.layer.strip() or None,
+            unrepaired=imported.rows_of(self.unrepaired),
+            left_out=imported.rows_of(self.left_out),
             **named,
         )
 

@@ -1,20 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Codes of units in field data get other meanings: their files are read again."""
+"""Codes of units in field data get other meanings, and repairs of boreholes are refused: the files are read
+again."""
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from ..bl.project import borehole_picks, codes, library_rows, observed_blocks, reading_text, settings
+from ..bl.field import hole_validation
+from ..bl.project import borehole_picks, imported, library_rows, observed_blocks, reading_text, settings
 from ..bl.scene import borehole_points, built_scene, live
-from ..core import InputRefused
+from ..core import BuildFailed, InputRefused
 from .reporting import Reporting, a_rock, require_file
-from .start import invoke
+from .start import run
 
 
 def with_codes(context):
     row = settings.active_rock(context.scene)
     has_codes = row is not None and len(row.codes)
     return None if has_codes else "no field data with codes were imported; import some first"
+
+
+def require_files(rock):
+    """Raises InputRefused where a file of the imports of a rock mass is not there any more."""
+    for entry in imported.imports(rock):
+        for file in imported.files_of(entry["properties"]):
+            require_file(file)
+
+
+def read_again(rock):
+    """Reads the files of the imports of a rock mass again, with the present meanings of its codes. Raises
+    BuildFailed."""
+    for entry in imported.imports(rock):
+        names = reading_text.of_named(imported.names(rock))
+        run(bpy.ops.realmodel.boreholes_read, **entry["properties"], names=names)
 
 
 class _Regrouping(Reporting):
@@ -32,22 +49,18 @@ class _Regrouping(Reporting):
     def act(self, context):
         rock = settings.active_rock(context.scene)
         ticked = [row for row in rock.codes if row.chosen]
-        rows = codes.fitting(rock, self.pattern) if self.pattern.strip() else ticked
+        rows = imported.fitting(rock, self.pattern) if self.pattern.strip() else ticked
         if not rows:
             advice = "tick codes in the list, or give a pattern such as Qal*"
             raise InputRefused("no code is chosen", advice=advice)
-        for entry in codes.imports(rock):
-            for file in codes.files_of(entry["properties"]):
-                require_file(file)
+        require_files(rock)
         before = {row.unit for row in rock.codes}
         known, count = observed_blocks.units_of(context.scene, rock), len(rows)
         for row in rows:
             row.unit, row.chosen = known.surface(self.unit_of(row)), False
         borehole_points.forget(rock, borehole_picks.of_rock(rock))
         _give_way(context.scene, rock, before)
-        for entry in codes.imports(rock):
-            names = reading_text.of_named(codes.names(rock))
-            invoke(bpy.ops.realmodel.boreholes_read, self, **entry["properties"], names=names)
+        read_again(rock)
         live.touch(context.scene)
         units = {row.unit for row in rock.codes if row.unit}
         self.report({"INFO"}, f"Codes changed: {count}; {len(rock.codes)} codes mean {len(units)} units")
@@ -142,6 +155,73 @@ class REALMODEL_OT_codes_choose(Reporting, bpy.types.Operator):
     def act(self, context):
         rock = settings.active_rock(context.scene)
         had_any = any(row.chosen for row in rock.codes)
-        fitting = [row.name for row in codes.fitting(rock, self.pattern)]
+        fitting = [row.name for row in imported.fitting(rock, self.pattern)]
         for row in rock.codes:
             row.chosen = row.name in fitting if self.pattern.strip() else not had_any
+
+
+def with_problems(context):
+    row = settings.active_rock(context.scene)
+    has_some = row is not None and len(row.hole_problems)
+    return None if has_some else "the tables of boreholes had no problems"
+
+
+class _OfAProblem(Reporting):
+    needs = (a_rock, with_problems)
+
+    index: IntProperty(
+        name="Index",
+        description="Number of the problem in the list, from 0; -1: the active one",
+        default=-1,
+        options={"SKIP_SAVE"},
+    )
+
+    def problem(self, context):
+        """The row of the problem. Raises InputRefused."""
+        rock = settings.active_rock(context.scene)
+        number = rock.active_hole_problem if self.index < 0 else self.index
+        if not 0 <= number < len(rock.hole_problems):
+            raise InputRefused("no row of the list is active", advice="choose a problem in the list")
+        rock.active_hole_problem = number
+        return rock, rock.hole_problems[number]
+
+
+class REALMODEL_OT_hole_problem_decide(_OfAProblem, bpy.types.Operator):
+    """Use a row of a table of boreholes as it is written, leave it out, or repair it again. The files are
+    read again"""
+
+    bl_label = "Decide on Row"
+
+    decision: EnumProperty(
+        name="Decision",
+        description="What becomes of the row",
+        items=(
+            ("REPAIR", "Repair", "It is repaired, or left out, as is found right"),
+            ("WRITTEN", "Use as Written", "It is used as it is written"),
+            ("LEFT_OUT", "Leave Out", "It is not used"),
+        ),
+    )
+
+    def act(self, context):
+        rock, problem = self.problem(context)
+        row, before = f"{problem.file}:{problem.line}", rock.imports
+        require_files(rock)
+        imported.decide(rock, problem.file, row, self.decision)
+        try:
+            read_again(rock)
+        except BuildFailed:
+            rock.imports = before
+            raise
+        live.touch(context.scene)
+        self.report({"INFO"}, f"{row}: {self.decision.lower().replace('_', ' ')}")
+
+
+class REALMODEL_OT_hole_problem_show(_OfAProblem, bpy.types.Operator):
+    """Turn the viewport to the hole of a problem, and show the boreholes with their names"""
+
+    bl_label = "Show Hole"
+
+    def act(self, context):
+        rock, problem = self.problem(context)
+        if not hole_validation.show_hole(context, rock, problem.hole):
+            raise InputRefused(f"hole '{problem.hole}' has no place", advice="it has no collar, or no data")

@@ -287,7 +287,8 @@ class REALMODEL_OT_surface_add(
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each of its objects, or for each value of a column."""
         require_file(path)
-        if objects := objects_in(path):
+        objects = [obj for obj in objects_in(path) if not obj.is_part]
+        if len(objects) > 1:
             return self._of_objects(path, objects)
         if is_mesh_file(path):
             return [_NewSurface(path.stem, "MESH_FILE", path, reading=self._other_reading(*MESH_READING))]

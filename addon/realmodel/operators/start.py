@@ -54,8 +54,13 @@ def _begin(scene, name, interfaces=()):
 def invoke(call, operator, **arguments):
     """Continues with another operator: with its window where the first one was invoked. Raises
     BuildFailed."""
+    run(call, "INVOKE_DEFAULT" if operator.options.is_invoke else "EXEC_DEFAULT", **arguments)
+
+
+def run(call, way="EXEC_DEFAULT", **arguments):
+    """Runs another operator as a part of one. Raises BuildFailed."""
     try:
-        call("INVOKE_DEFAULT" if operator.options.is_invoke else "EXEC_DEFAULT", **arguments)
+        call(way, **arguments)
     except RuntimeError as error:
         raise BuildFailed(str(error).removeprefix("Error: ").strip()) from error
 

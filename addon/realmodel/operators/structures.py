@@ -99,10 +99,10 @@ def _shapes_in(path):
     require_file(path)
     if not (objects := objects_in(path)):
         return [MeshFile(path)]
-    surfaces = [obj.name for obj in objects if obj.kind == SURFACE]
+    surfaces = [obj.name for obj in objects if obj.kind == SURFACE and not obj.is_part]
     if not surfaces:
         raise InputRefused("it has no surfaces", file=path)
-    return [MeshFile(path, layer=name) for name in surfaces]
+    return [MeshFile(path)] if len(surfaces) == 1 else [MeshFile(path, layer=name) for name in surfaces]
 
 
 def _kind_of_shape(wanted, vertices, triangles):

@@ -2,6 +2,7 @@
 """Reads tables of boreholes, of observed blocks and of dips for a rock mass, each told by its columns."""
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
 from ...core.readers import (
@@ -121,14 +122,23 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
         tables["logs"] = logs
     of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
     if tables and not (assays and tables.keys() <= {"collars", "survey"}):
-        sorted_tables.boreholes = Boreholes(**tables, **of_holes)
-        sorted_tables.boreholes.check()
+        sorted_tables.boreholes = _boreholes(tables, of_holes)
     for path in assays:
-        sorted_tables.assays.append(
-            Boreholes(**tables | {"picks": None, "intervals": path, "logs": ()}, **of_holes)
-        )
-        sorted_tables.assays[-1].check()
+        of_assays = tables | {"picks": None, "intervals": path, "logs": ()}
+        sorted_tables.assays.append(_boreholes(of_assays, of_holes))
     return sorted_tables
+
+
+def _boreholes(tables, of_holes):
+    """Boreholes, with those of the rows that are named which their tables have. Raises OptionRefused."""
+    names = {Path(file).name for kind in _ONE_OF_EACH if (file := tables.get(kind)) is not None}
+    rows = {
+        key: [row for row in of_holes.get(key, ()) if row.rpartition(":")[0].strip() in names]
+        for key in ("unrepaired", "left_out")
+    }
+    boreholes = Boreholes(**tables, **of_holes | rows)
+    boreholes.check()
+    return boreholes
 
 
 def is_map(path):

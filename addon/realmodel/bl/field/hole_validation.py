@@ -98,13 +98,21 @@ def lines(row):
 
 def show(context):
     """Turns the viewport to the hole of the active row, and shows the boreholes with their names."""
-    scene, group = context.scene, context.scene.realmodel
+    group = context.scene.realmodel
     row = group.left_out_holes[group.active_left_out_hole]
     rock = next((rock for rock in group.rocks if rock.name == row.rock), None)
-    line = None if rock is None else borehole_picks.named_paths(rock).get(row.name)
+    if rock is not None:
+        show_hole(context, rock, row.name)
+
+
+def show_hole(context, rock, hole):
+    """The same for a hole of the row of a rock mass; whether it has a place."""
+    scene, group = context.scene, context.scene.realmodel
+    line = borehole_picks.named_paths(rock).get(hole)
     if line is None:
-        return
+        return False
     group.view.show_boreholes = group.view.show_hole_names = True
     places = project_settings.in_world(scene, line)
     size = max(_FRAMED * heights.extent(scene), 0.6 * float(np.linalg.norm(np.ptp(places, axis=0))))
     viewports.look_at(context, places.mean(axis=0), size)
+    return True

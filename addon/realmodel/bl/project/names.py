@@ -5,7 +5,7 @@ updates them."""
 from ...core import Dips
 from ...core.settings.methods import OPTIONS
 from ...core.settings.setting import property_name
-from . import borehole_picks, codes, observed_blocks, settings, surface_dips
+from . import borehole_picks, imported, observed_blocks, settings, surface_dips
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
@@ -27,7 +27,7 @@ def update_references(row):
     if not old or any(other.name == old for other in alike):
         return
     if kind == "surface":
-        codes.rename(settings.rock_of(row), old, row.name)
+        imported.rename(settings.rock_of(row), old, row.name)
         borehole_picks.rename(settings.rock_of(row), old, row.name)
         observed_blocks.rename(settings.rock_of(row), old, row.name)
         rock = settings.rock_of(row)

@@ -339,8 +339,8 @@ _FOLDED = 1e-12  # of the area of a polygon: what a triangle of its fan may stan
 def concave_divided(
     vertices: np.ndarray, triangles: np.ndarray, first: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What replaces fans that do not lie within their polygons, as seen along the normal of these: rows (R,) of
-    triangles (T, 3), which come fan by fan, new triangles (R, 3), and the fans (K,) of polygons that cross
+    """What replaces fans that do not lie within their polygons, as seen along the normal of these: rows (R,)
+    of triangles (T, 3), which come fan by fan, new triangles (R, 3), and the fans (K,) of polygons that cross
     themselves, which stay. first: (F,) rows where fans begin."""
     corners = vertices[triangles]
     normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -362,8 +362,8 @@ def concave_divided(
 
 
 def _ears(ring: np.ndarray, normal: np.ndarray) -> np.ndarray | None:
-    """(N - 2, 3) the triangles of a polygon (N, 3) by the numbers of its corners; where corners repeat, some of
-    them are without area. None: it crosses itself."""
+    """(N - 2, 3) the triangles of a polygon (N, 3) by the numbers of its corners; where corners repeat, some
+    of them are without area. None: it crosses itself."""
     native, axis = native_module(), int(np.abs(normal).argmax())
     i, j = (axis + 1) % 3, (axis + 2) % 3
     above = ring[:, axis] - ring[0, axis]

@@ -40,7 +40,7 @@ from .plan_input import check_layer, is_place_elsewhere
 from .project import Project, Rock, Surface, surface_item
 from .series import Series
 from .structure_entries import FAULT, OF_TRACES, Body, Fault
-from .structure_history import displaced_surfaces
+from .structure_history import body_times, displaced_surfaces
 from .terrain import with_terrains
 
 CELL_KINDS = ("columns", "blocks")
@@ -235,7 +235,16 @@ def _check_trace(project: Project, fault: Fault, refuse: Refuse) -> None:
 
 def _check_body(project: Project, body: Body) -> None:
     refuse = body.refused
-    _check_structure_shape(body, refuse, ("mesh",))
+    if body.has_shape or body.triangles is not None:
+        _check_structure_shape(body, refuse, ("mesh",))
+        if body.reach is not None:
+            raise refuse("'reach' has no effect, as its shape is a mesh", "reach")
+    elif not any(
+        rock.boreholes is not None or rock.observations is not None
+        for rock in map(project.rocks.__getitem__, body_times(project, body))
+    ):
+        advice = "add mesh = ..., or boreholes with intervals of it"
+        raise refuse("it has no shape", advice=advice)
     check_values(body, refuse)
     if body.void and body.property:
         raise refuse("a void has no rock, so 'property' has no effect", "property")

@@ -72,6 +72,11 @@ class Shaped(Entry):
         return self.vertices, self.triangles
 
     @property
+    def has_shape(self) -> bool:
+        """Whether it has a mesh. A body without one is made of the intervals of boreholes."""
+        return self.vertices is not None or self.mesh is not None
+
+    @property
     def mesh_file(self) -> MeshFile | None:
         """The file of its mesh; None where it has none."""
         return MeshFile(self.mesh) if isinstance(self.mesh, (str, Path)) else self.mesh
@@ -215,7 +220,9 @@ def as_point_file(given: Any) -> PointFile | None:
 class Body(Shaped):
     """A body: a closed triangulated surface of any shape, within which there is another rock, or none.
 
-    Its shape is `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh`.
+    Its shape is `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh`. Without
+    one it is made of the intervals of boreholes that bear its name, and goes `reach` beyond them (None: half
+    the distance of neighboring holes).
     after: name of the surface that was the youngest when the body came; None: the youngest. property: library
     id of its rock (0: none). void: it takes rock away and leaves nothing. rock: name of the rock mass that it
     is in; None: all that have `after`.
@@ -246,8 +253,19 @@ class Body(Shaped):
         more="Default: all that have the surface `after`",
     )
     mesh: str | Path | MeshFile | None = described(MESH)
+    reach: float | None = declared(
+        kind="length",
+        label="Reach",
+        tip="How far a body from intervals goes beyond its holes, where no other hole ends it; 0: half the "
+        "distance of neighboring holes",
+        low=0.0,
+        above=0.0,
+        zero_is_none=True,
+        more="See [bodies from intervals](#bodies-from-intervals)",
+    )
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+
 
 
 FAULT = settings_of(Fault)

@@ -20,8 +20,8 @@ _DEEP = 0.25  # of the width of a map: so far below the ground its base is
 
 
 def region_around(plan: np.ndarray, within: np.ndarray | None = None) -> tuple[np.ndarray, float]:
-    """(N, 2) the convex hull of places (P, 2) with a margin, counter-clockwise, and the margin. within: (2, 2)
-    the corners of a box in which it stays."""
+    """(N, 2) the convex hull of places (P, 2) with a margin, counter-clockwise, and the margin. within:
+    (2, 2) the corners of a box in which it stays."""
     extent = float(np.ptp(plan, axis=0).max()) or 1.0
     margin = rounded(max(_MARGIN * spacing(plan), _LEAST_MARGIN * extent))
     turned = np.arange(8) * np.pi / 4

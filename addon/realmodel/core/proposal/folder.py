@@ -32,8 +32,7 @@ _WIDTH = 110  # of comments
 def save_folder(project: ProposedProject, folder: str | Path) -> list[Path]:
     """Writes a proposed project to a new folder. Raises OutputFailed."""
     folder = Path(folder)
-    if folder.exists():
-        raise OutputFailed(f"{folder}: it exists; choose a new folder")
+    require_new(folder)
     with Outputs() as outputs, outputs.folder(folder, _PROJECT) as waiting:
         files = _Files(waiting, folder)
         text = "\n".join(_project_lines(project, files)) + "\n"
@@ -43,6 +42,12 @@ def save_folder(project: ProposedProject, folder: str | Path) -> list[Path]:
         load_project(waiting / _PROJECT)  # what it says is right
         names = sorted(files.taken)
     return [folder / name for name in names]
+
+
+def require_new(folder: Path) -> None:
+    """Raises OutputFailed where something stands in the place of a new folder."""
+    if folder.exists():
+        raise OutputFailed(f"{folder}: it exists; choose a new folder")
 
 
 class _Files:
@@ -75,7 +80,9 @@ class _Files:
             name = self.free(file.stem, file.suffix)
             self._copies[file.resolve()] = self.write(name, file.read_bytes())
             for other in beside(file):
-                ending = other.name.removeprefix(file.stem) if other.name.startswith(file.stem) else other.suffix
+                ending = (
+                    other.name.removeprefix(file.stem) if other.name.startswith(file.stem) else other.suffix
+                )
                 self.write(Path(name).stem + ending, other.read_bytes())
         return self._copies[file.resolve()]
 
@@ -141,7 +148,9 @@ def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:
 
 
 def _order_comment(proposal: Proposal) -> list[str]:
-    lines = _comment("The order of units, oldest first, by which lies over which: " + ", ".join(proposal.order))
+    lines = _comment(
+        "The order of units, oldest first, by which lies over which: " + ", ".join(proposal.order)
+    )
     for other in proposal.alternatives:
         lines += _comment(
             f"Not decided: '{other.younger}' is taken to be younger than '{other.older}' "

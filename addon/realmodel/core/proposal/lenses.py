@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -40,29 +40,45 @@ class Lens:
     parts: Sequence[tuple[str, Part]]
 
 
+@dataclass(frozen=True)
+class Repeat:
+    """Several units that come again in a hole, at a depth below its collar: in reverse, as in a fold, or in
+    order, as beneath a thrust."""
+
+    hole: str
+    depth: float
+    units: Sequence[str]
+    in_reverse: bool
+
+
 @dataclass
 class Sorted:
-    """The logs without what is out of order (lenses are their hosts), the lenses and the conflicts."""
+    """The logs without what is out of order (lenses are their hosts), the lenses, the conflicts, and where
+    several units repeat."""
 
     logs: list[Log]
-    lenses: list[Lens]
-    conflicts: list[Conflict]
+    lenses: list[Lens] = field(default_factory=list)
+    conflicts: list[Conflict] = field(default_factory=list)
+    repeats: list[Repeat] = field(default_factory=list)
 
 
 def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
     """Of each hole the parts in order whose thickness is the greatest stay. Others are lenses where their
-    unit, or that around them, repeats in the hole; else they are in conflict with their neighbors."""
+    unit, or that around them, repeats in the hole; else, and where several units in a row repeat, they are in
+    conflict with their neighbors."""
     logs: list[Log] = []
     inside: dict[tuple[str, str], list[tuple[str, Part]]] = {}
     conflicts: list[Conflict] = []
+    repeats: list[Repeat] = []
     for log in data.logs:
         stays = _in_order(log.parts, order)
+        in_runs = _runs_out_of_order(log, stays, order, repeats)
         chain: list[Part] = []
         for number, part in enumerate(log.parts):
             if stays[number]:
                 chain.append(part)
                 continue
-            host = _host(log.parts, stays, number)
+            host = None if number in in_runs else _host(log.parts, stays, number)
             if host is None:
                 conflicts += _conflicts(log, stays, number, order)
             else:
@@ -73,7 +89,7 @@ def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
     lenses: list[Lens] = []
     for (unit, host), parts in sorted(inside.items()):
         lenses += [Lens("", unit, host, group) for group in _groups(parts, plan)]
-    return Sorted(logs, _named(lenses, data, logs), conflicts)
+    return Sorted(logs, _named(lenses, data, logs), conflicts, repeats)
 
 
 def _in_order(parts: Sequence[Part], order: UnitOrder) -> list[bool]:
@@ -92,6 +108,23 @@ def _in_order(parts: Sequence[Part], order: UnitOrder) -> list[bool]:
     return stays
 
 
+def _runs_out_of_order(log: Log, stays: Sequence[bool], order: UnitOrder, repeats: list[Repeat]) -> set[int]:
+    """The numbers of parts that are out of order several in a row, which are added to the repeats."""
+    numbers: set[int] = set()
+    run: list[int] = []
+    for number, is_right in enumerate([*stays, True]):
+        if not is_right:
+            run.append(number)
+            continue
+        units = [log.parts[at].unit for at in run]
+        if len(set(units)) > 1:
+            first, last = order.rank(units[0]), order.rank(units[-1])
+            repeats.append(Repeat(log.hole, log.parts[run[0]].depth, units, first < last))
+            numbers |= set(run)
+        run = []
+    return numbers
+
+
 def _host(parts: Sequence[Part], stays: Sequence[bool], number: int) -> str | None:
     """The unit around a part that is out of order, where it is a lens."""
     above = next((parts[at].unit for at in range(number - 1, -1, -1) if stays[at]), None)
@@ -103,25 +136,20 @@ def _host(parts: Sequence[Part], stays: Sequence[bool], number: int) -> str | No
 
 
 def _conflicts(log: Log, stays: Sequence[bool], number: int, order: UnitOrder) -> list[Conflict]:
-    """What a part that is out of order contradicts: the parts beside it, as far as they are in order."""
+    """What a part that is out of order contradicts: the parts beside it, each pair once."""
     parts = log.parts
     conflicts = []
     for upper, lower in ((number - 1, number), (number, number + 1)):
-        if upper < 0 or lower >= len(parts):
+        if upper < 0 or lower >= len(parts) or (upper < number and not stays[upper]):
             continue
         if order.rank(parts[upper].unit) < order.rank(parts[lower].unit):
             place = parts[lower]
-            conflicts.append(
-                Conflict(
-                    parts[upper].unit, place.unit, log.hole, place.depth, float(place.top[2])
-                )
-            )
+            height = float(place.top[2])
+            conflicts.append(Conflict(parts[upper].unit, place.unit, log.hole, place.depth, height))
     return conflicts
 
 
-def _groups(
-    parts: list[tuple[str, Part]], plan: dict[str, np.ndarray]
-) -> list[list[tuple[str, Part]]]:
+def _groups(parts: list[tuple[str, Part]], plan: dict[str, np.ndarray]) -> list[list[tuple[str, Part]]]:
     """Parts of neighboring holes at about the same height are one lens."""
     reach = _REACH * spacing(np.array(list(plan.values())))
     groups: list[list[tuple[str, Part]]] = []
@@ -224,7 +252,7 @@ def _spread(places: np.ndarray, values: np.ndarray, nodes: np.ndarray) -> np.nda
 def _closed(
     nodes: np.ndarray, triangles: np.ndarray, middle: np.ndarray, thickness: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The closed surface around where the thickness is above 0, half of it above the middle and half below."""
+    """The closed surface around where there is a thickness, half of it above the middle and half below."""
     vertices: list[tuple[float, float, float]] = []
     numbers: dict[tuple, int] = {}
 

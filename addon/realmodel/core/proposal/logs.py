@@ -40,8 +40,7 @@ class Part:
 
 @dataclass
 class Log:
-    """The parts of a hole, from above downward; no two of one unit in a row that touch. collar: (3,) or None.
-    """
+    """The parts of a hole, from above downward; no two in a row are of one unit. collar: (3,) or None."""
 
     hole: str
     parts: list[Part]
@@ -104,7 +103,10 @@ def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
 def _codes(given: Boreholes, units: str) -> list[str]:
     """What the tables write in the columns of units."""
     tables = read_repaired(given, units)
-    named = (*((row, "block") for row in tables.intervals or ()), *((row, "surface") for row in tables.picks or ()))
+    named = (
+        *((row, "block") for row in tables.intervals or ()),
+        *((row, "surface") for row in tables.picks or ()),
+    )
     return [row.text(column) for row, column in named if row.has(column)]
 
 

@@ -49,15 +49,16 @@ _AGES = (  # oldest first; what a name begins with
 
 @dataclass
 class MapUnits:
-    """units: names on the map. evidence: of their ages. touches: (U, U) the share of the border of the unit
-    of the row that is with that of the column, units in the order of evidence. reasons: sentences."""
+    """evidence: of the ages of its units. touches: (U, U) the share of the border of the unit of the row that
+    is with that of the column, in the order of the evidence. box: (2, 2) corners in plan. ground: heights.
+    has_ages: whether the map says how old units are. warnings: sentences."""
 
     polygons: list[UnitPolygon]
     evidence: Evidence
     touches: np.ndarray
     box: np.ndarray
     ground: np.ndarray
-    reasons: list[str] = field(default_factory=list)
+    has_ages: bool = False
     warnings: list[str] = field(default_factory=list)
 
 
@@ -145,22 +146,19 @@ def _add_ages(found: MapUnits, map_file: MapFile) -> None:
     shapes = read_shapes(map_file.polygons, heights=Heights(with_attributes=True))
     attributes = shapes.attributes or {}
     ages: dict[str, list[float]] = {}
-    column = ""
     for polygon in found.polygons:
         entry = attributes.get(polygon.item, {})
         by_name = {normalized_name(str(name)): name for name in entry}
         for name in _AGE_COLUMNS:
             age = None if name not in by_name else _age(entry[by_name[name]])
             if age is not None:
-                column = column or str(by_name[name])
                 ages.setdefault(polygon.unit, []).append(age)
     means = {unit: float(np.mean(values)) for unit, values in ages.items()}
     for upper, young in means.items():
         for lower, old in means.items():
             if young < old:
                 found.evidence.plus(upper, lower, _BY_AGE)
-    if means:
-        found.reasons.append(f"the ages of the map in its attribute '{column}'")
+    found.has_ages = bool(means)
 
 
 def _age(value: Any) -> float | None:
@@ -180,7 +178,6 @@ def _add_dips(found: MapUnits, dips: DipFile, polygons: Sequence[UnitPolygon], u
     far = _FAR * float(np.ptp(found.box, axis=0).max())
     steepness = np.hypot(*measured.gradients.T)
     used = measured.in_use & (steepness > np.tan(np.radians(_LEVEL)))
-    count = 0
     for place, gradient, steep in zip(
         measured.positions[used], measured.gradients[used], steepness[used], strict=True
     ):
@@ -194,9 +191,6 @@ def _add_dips(found: MapUnits, dips: DipFile, polygons: Sequence[UnitPolygon], u
             here, other = names[beds[0]], names[beds[others[0]]]
             upper, lower = (other, here) if sign > 0 else (here, other)
             found.evidence.plus(upper, lower, 1.0 / (1.0 + others[0] / _NEAR))
-            count += 1
-    if count:
-        found.reasons.append("dips: a unit that dips beneath another is older")
 
 
 def _add_heights(found: MapUnits, units: np.ndarray, ground: np.ndarray) -> None:

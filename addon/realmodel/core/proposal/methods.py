@@ -35,10 +35,13 @@ def with_methods(project: Project, holes: int) -> tuple[list[Rock], str]:
         return [rock], f"{plain}: no two that follow one another are conformable"
     if not 3 <= holes <= _MOST_HOLES:
         return [rock], plain
-    shares = [_share(project, candidate) for candidate in (rock, sheets)]
-    if None in shares:
+    alone = _share(project, rock)
+    if alone is None or alone > 1 - _BETTER:
+        right = "" if alone is None else f": left-out holes are right along {alone:.1%} of their length so"
+        return [rock], plain + right
+    together = _share(project, sheets)
+    if together is None:
         return [rock], plain
-    alone, together = shares
     figures = f"left-out holes are right along {alone:.1%} of their length so, and {together:.1%}"
     if together > alone + _BETTER:
         figures = f"left-out holes are right along {together:.1%} of their length so, and {alone:.1%}"
@@ -58,7 +61,7 @@ def _share(project: Project, rock: Rock) -> float | None:
 
 
 def _with_sheets(rock: Rock) -> Rock:
-    """The rock mass with its runs of conformable surfaces in series of sheets; itself where there are none."""
+    """The rock mass with its runs of conformable surfaces in series of sheets."""
     series: list[Series] = []
     surfaces: list[Surface] = []
     for run in _runs(rock.surfaces[:-1]):
@@ -67,7 +70,7 @@ def _with_sheets(rock: Rock) -> Rock:
             series.append(Series(name, SHEETS))
             run = [replace(surface, series=name) for surface in run]
         surfaces += run
-    return replace(rock, surfaces=[*surfaces, rock.surfaces[-1]], series=series) if series else rock
+    return replace(rock, surfaces=[*surfaces, rock.surfaces[-1]], series=series)
 
 
 def _runs(surfaces: Sequence[Surface]) -> list[list[Surface]]:

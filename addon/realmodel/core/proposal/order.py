@@ -14,10 +14,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..surfaces.age_order import improved
 from .logs import Log
 
 _EXACT = 12  # units in a circle
 _CLOSE = 2 / 3  # of the holes that say the one: so many that say the other leave a pair undecided
+_OF_BORDERS = 1.0  # of what two units have as evidence: the weight of their common border
 _NEAREST = 6  # pairs of holes from which heights of two units are compared
 
 
@@ -77,8 +79,10 @@ def evidence_of(names: Sequence[str], columns: Iterable[Sequence[tuple[str, floa
     return Evidence(names, over, adjacent)
 
 
-def find_order(evidence: Evidence, logs: Sequence[Log] = ()) -> UnitOrder:
-    """The order that contradicts the evidence least; where it says nothing, heights decide."""
+def find_order(evidence: Evidence, logs: Sequence[Log] = (), near: np.ndarray | None = None) -> UnitOrder:
+    """The order that contradicts the evidence least; where it says nothing, heights decide. near: (U, U) how
+    much of their borders on a map units share: such units are neighbors in the order, too, as far as the
+    evidence allows."""
     names, over = evidence.names, evidence.over
     hints = _Hints(names, logs)
     decides = over > over.T
@@ -97,6 +101,8 @@ def find_order(evidence: Evidence, logs: Sequence[Log] = ()) -> UnitOrder:
     least = np.min(np.abs(over - over.T)[over != over.T], initial=1.0)
     weights = over + soft * least / (4.0 * max(len(undecided), 1))
     downward = _linear_order(weights)
+    if near is not None:
+        downward = _neighbors_near(weights, near, downward)
     rank = {number: place for place, number in enumerate(downward)}
     found = UnitOrder([names[number] for number in reversed(downward)])
     for a, b in sorted(undecided, key=lambda pair: sorted(rank[number] for number in pair)):
@@ -180,23 +186,41 @@ def _exact(weights: np.ndarray) -> list[int]:
 
 
 def _moved(weights: np.ndarray) -> list[int]:
-    """By the balance of each, then each to its best place until none moves."""
+    """By the balance of each, then moved."""
     balance = weights.sum(axis=1) - weights.sum(axis=0)
-    order = np.argsort(-balance, kind="stable").tolist()
-    gain = weights - weights.T
-    for _ in range(len(order)):
-        before = list(order)
-        for number in before:
-            at = order.index(number)
-            rest = order[:at] + order[at + 1 :]
-            # value of standing before rest[k:]: what it lies over there, less what lies over it
-            values = np.append(np.cumsum(gain[number, rest][::-1])[::-1], 0.0)
-            values -= np.append(0.0, np.cumsum(gain[number, rest]))
-            best = int(np.argmax(values))
-            if values[best] > values[at] + 1e-12:
-                order = [*rest[:best], number, *rest[best:]]
-        if order == before:
+    return improved(weights.T, np.argsort(balance, kind="stable").tolist())[::-1]
+
+
+def _neighbors_near(weights: np.ndarray, near: np.ndarray, order: list[int]) -> list[int]:
+    """The order, changed by turning runs of units around and moving units as long as less contradicts it,
+    or is apart although it touches."""
+    both = weights + weights.T
+    touch = (near + near.T) / 2
+    known = (both > 0) & (touch > 0)
+    touch = touch * _OF_BORDERS * (float(both[known].mean()) if known.any() else 1.0)
+
+    def cost(candidate: Sequence[int]) -> float:
+        at = np.array(candidate)
+        apart = np.abs(np.arange(len(at))[:, None] - np.arange(len(at))) - 1
+        wrong = np.tril(weights[np.ix_(at, at)], -1).sum()
+        return float(wrong + np.triu(touch[np.ix_(at, at)] * apart, 1).sum())
+
+    least = cost(order)
+    for _ in range(len(order) ** 2):
+        changed = [
+            candidate
+            for a in range(len(order))
+            for b in range(a + 1, len(order))
+            for candidate in (
+                [*order[:a], *order[a : b + 1][::-1], *order[b + 1 :]],
+                [*order[:a], *order[a + 1 : b + 1], order[a], *order[b + 1 :]],
+                [*order[:a], order[b], *order[a:b], *order[b + 1 :]],
+            )
+        ]
+        best = min(changed, key=cost, default=order)
+        if cost(best) >= least - 1e-9:
             break
+        order, least = best, cost(best)
     return order
 
 
@@ -266,7 +290,7 @@ class _Hints:
         ]
         if min(thick) > 0.5 * max(thick):
             said.append(
-                f"they are about as thick ({thick[0]:.3g} and {thick[1]:.3g}): they may be the same bed of two rocks"
+                f"they are about as thick ({thick[0]:.3g} and {thick[1]:.3g}): perhaps one bed of two rocks"
             )
         return said
 

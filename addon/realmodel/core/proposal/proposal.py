@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +25,11 @@ from ..settings.dips import DipFile, dip_file_of
 from ..settings.method_options import OptionRefused
 from .colors import library_of
 from .extent import base_below, edge_length, region_around
-from .lenses import Conflict, Lens, Sorted, lens_mesh, sort_out, spacing
+from .lenses import Conflict, Lens, Repeat, Sorted, lens_mesh, sort_out, spacing
 from .logs import HoleLogs, Log, read_logs
 from .maps import MapUnits, map_file_of, read_map_units, unconformities
 from .methods import with_methods
-from .order import Alternative, Evidence, UnitOrder, evidence_of, find_order
+from .order import Alternative, UnitOrder, evidence_of, find_order
 from .rules import CUTS, RuleChoice, choose_rules
 
 
@@ -38,15 +38,16 @@ class Proposal:
     """Why a project is as it is.
 
     order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
-    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became
-    bodies. rules: of the surface over each unit, with reasons. reasons: of the other choices, by the key of
-    the project file. warnings: sentences.
+    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became bodies.
+    repeats: where several units come again in a hole. rules: of the surface over each unit, with reasons.
+    reasons: of the other choices, by the key of the project file. warnings: sentences.
     """
 
     order: list[str]
     alternatives: list[Alternative] = field(default_factory=list)
     conflicts: list[Conflict] = field(default_factory=list)
     lenses: list[Lens] = field(default_factory=list)
+    repeats: list[Repeat] = field(default_factory=list)
     rules: list[RuleChoice] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
@@ -95,10 +96,10 @@ def propose_project(
 ) -> ProposedProject:
     """A project that builds at once, from data alone.
 
-    boreholes: a file that holds all tables (AGS), or Boreholes or their keys: {"collars": ..., "intervals":
-    ...}. map: a file of polygons, or a MapFile or its keys; without `block`, the attribute that names units is
-    found by its name. ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None:
-    around the data. dips: a table. units: of the model. name: of the project.
+    boreholes: a file that holds all tables, or Boreholes or their keys: {"collars": ..., "intervals": ...}.
+    map: a file of polygons, or a MapFile or its keys; without `block`, the attribute of units is found.
+    ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None: around the data.
+    dips: a table. units: of the model. name: of the project.
 
     The order of units follows from which lies over which; see `ProposedProject.proposal`. Raises InputRefused
     naming the file, UsageError.
@@ -119,12 +120,17 @@ def propose_project(
         heights = None if data.ground is None else _heights_of(data.ground, units)
         data.mapped = read_map_units(data.map, data.dips, heights, units)
     order = _order(data)
-    out = sort_out(data.holes, order) if data.holes is not None else Sorted([], [], [])
+    out = sort_out(data.holes, order) if data.holes is not None else Sorted([])
     lens_units = {lens.unit for lens in out.lenses}
     in_stack = {part.unit for log in out.logs for part in log.parts}
     order.order = [unit for unit in order.order if unit in in_stack or unit not in lens_units]
     rules = _rules(data, out, order)
-    proposal = Proposal(list(order.order), order.alternatives, out.conflicts, out.lenses, rules)
+    alternatives = [
+        replace(other, order=[unit for unit in other.order if unit in order.order])
+        for other in order.alternatives
+        if other.younger in order.order and other.older in order.order
+    ]
+    proposal = Proposal(list(order.order), alternatives, out.conflicts, out.lenses, out.repeats, rules)
     project = _Maker(data, out, proposal, units).project(name, region)
     check_project(project)
     project.rocks, proposal.reasons["method"] = with_methods(project, len(data.logs))
@@ -197,7 +203,10 @@ def _order(data: _Data) -> UnitOrder:
         at = [evidence.names.index(unit) for unit in mapped.evidence.names]
         evidence.over[np.ix_(at, at)] += mapped.evidence.over
         evidence.adjacent[np.ix_(at, at)] += mapped.evidence.adjacent
-    return find_order(Evidence(evidence.names, evidence.over, evidence.adjacent), data.logs)
+    near = None
+    if mapped is not None and not data.logs and not mapped.has_ages:
+        near = mapped.touches
+    return find_order(evidence, data.logs, near)
 
 
 def _rules(data: _Data, out: Sorted, order: UnitOrder) -> list[RuleChoice]:
@@ -359,9 +368,7 @@ class _Maker:
         for lens in lenses:
             vertices, triangles = lens_mesh(lens, at, reach)
             after = None if tops[lens.host] == len(tops) - 1 else f"{lens.host} top"
-            bodies.append(
-                Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit])
-            )
+            bodies.append(Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit]))
         return bodies
 
 
@@ -390,5 +397,13 @@ def _warn(proposal: Proposal, data: _Data) -> None:
         found.append(
             f"'{lens.unit}' is a lens in '{lens.host}' in {counted(len(lens.parts), 'hole')}: the body "
             f"'{lens.name}'; where it ends between holes is a guess"
+        )
+    for repeat in proposal.repeats:
+        how = "in reverse, as in a fold: give their surfaces a series of kind 'field' with dips and polarity"
+        if not repeat.in_reverse:
+            how = "in the same order, as beneath a thrust: add the fault"
+        found.append(
+            f"hole '{repeat.hole}', depth {repeat.depth:.9g}: {', '.join(repeat.units)} come again, {how}. "
+            "Not used"
         )
     proposal.warnings = found

@@ -69,6 +69,10 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
                 best = flipped
         if best == before:
             break
+    for number in range(count):  # what decides nothing cuts nothing
+        flipped = (*best[:number], False, *best[number + 1 :])
+        if best[number] and right(flipped) >= right(best):
+            best = flipped
     choices = []
     for number, unit in enumerate(units[:-1]):
         cuts = best[number] and bool(gaps[number])
@@ -207,9 +211,7 @@ def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarra
     origin = places.mean(axis=0)
     places, at = (places - origin) / scale, (at - origin) / scale
     has_plane = len(places) > 4 and np.linalg.svd(places - places.mean(axis=0))[1][-1] > 0.1
-    drift, drift_at = (
-        np.column_stack([np.ones(len(p)), *(p.T if has_plane else ())]) for p in (places, at)
-    )
+    drift, drift_at = (np.column_stack([np.ones(len(p)), *(p.T if has_plane else ())]) for p in (places, at))
     count, terms = len(places), drift.shape[1]
     system = np.zeros((count + terms, count + terms))
     system[:count, :count] = -np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))

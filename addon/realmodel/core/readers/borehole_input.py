@@ -37,6 +37,10 @@ def read_boreholes(
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
         tables = read_repaired(given, model_unit, step, units)
+        if tables.picks is None and tables.intervals is None and not given.logs:
+            advice = "give a table of them: picks = ... or intervals = ..."
+            what = "it has neither picks nor intervals of blocks"
+            raise InputRefused(what, file=given.files[-1], advice=advice)
         logs = read_logs(tables, Holes(tables), model_unit)
         picks = picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
         picks.logs = IntervalValues.joined(logs) if logs else None

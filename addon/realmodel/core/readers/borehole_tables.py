@@ -30,7 +30,8 @@ class BoreholeTables:
     collars: hole, x, y, z, end (the depth of the end). survey: hole, depth, azimuth (degrees clockwise from
     north), inclination (degrees from the vertical), dip (from the horizontal). intervals: hole, from, to,
     block. picks: hole, surface, depth, elevation. logs: hole, from, to, and the curves of LAS files by their
-    names with units, "GR (GAPI)": a row for each sample, up to the middle between it and the next one. problems: of rows that were repaired, left out, or are
+    names with units, "GR (GAPI)": a row for each sample, up to the middle between it and the next one.
+    problems: of rows that were repaired, left out, or are
     used although something is wrong. warnings: sentences.
     """
 

@@ -16,8 +16,8 @@ from .objects.geo_object import SURFACE
 
 
 def is_mesh_file(file: str | Path) -> bool:
-    """Whether there is a surface in a file, by its content or else by its ending. Raises InputRefused where it
-    cannot be read."""
+    """Whether there is a surface in a file, by its content or else by its ending. Raises InputRefused where
+    it cannot be read."""
     file_format = format_of(file, OBJECTS, MESH)
     if file_format is None or file_format.holds == MESH:
         return file_format is not None

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.errors import InputRefused, RealModelError, counted
+from ..base.errors import InputRefused, RealModelError, counted, number_list
 from ..base.text import Step, no_step
 from ..settings.data_files import Boreholes
 from .formats import OBJECTS, FileFormat, format_of
@@ -23,6 +23,7 @@ from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
 from .tables.unit_names import UnitNames
 
+_NAMES_LISTED = 60
 _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE: "boreholes"}
 
 
@@ -61,10 +62,10 @@ def read_objects(
 def _chosen(
     file: Path, objects: list[ObjectName], layer: str | None, kinds: Collection[str], several: bool
 ) -> list[ObjectName]:
-    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name has
-    several kinds the first of `kinds` counts."""
+    """The objects of some kinds, or those of a name: as it is written, or else in any case. Where one name
+    has several kinds the first of `kinds` counts."""
     said = " or ".join(_PLURALS[kind] for kind in kinds)
-    listed = f"it has {names_shown([obj.name for obj in objects])}" if objects else None
+    listed = f"it has {_listed(objects)}" if objects else None
     if layer is None:
         fitting = [obj for obj in objects if obj.kind in kinds and not obj.is_part]
     else:
@@ -89,9 +90,14 @@ def _chosen(
     if layer is not None:
         what, advice = f"it has {len(fitting)} objects '{layer}'", "give each object another name"
         raise InputRefused(what, file=file, advice=advice)
-    names = [obj.name for obj in objects if obj.kind in kinds]
-    advice = f'say which: layer = "..."; it has {names_shown(list(dict.fromkeys(names)))}'
+    advice = f'say which: layer = "..."; it has {_listed([obj for obj in objects if obj.kind in kinds])}'
     raise InputRefused(f"it has {len(fitting)} {said}", file=file, advice=advice)
+
+
+def _listed(objects: list[ObjectName]) -> str:
+    """The names of objects, for messages."""
+    names = [f"{name:.60}" for name in dict.fromkeys(obj.name for obj in objects)]
+    return number_list(names, _NAMES_LISTED) if len(names) > _NAMES_LISTED else ", ".join(names)
 
 
 @contextmanager

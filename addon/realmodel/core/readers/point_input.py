@@ -57,6 +57,7 @@ def read_map_points(
 
 
 _END_OF_LINE = 999.0  # in all three columns, of IRAP's points
+_BY_CHANCE = 1e-3  # of all points
 _LOOKED_FOR = (*OFTEN_NO_VALUE, _END_OF_LINE)
 OF_POINTS = (POINTS, LINES, SURFACE, HOLE)
 
@@ -302,16 +303,19 @@ class _Values:
         return points
 
     def without_often_none(self, points: np.ndarray, columns: dict[str, np.ndarray] | None) -> np.ndarray:
-        """The points without those that have such a value far from all others, and the columns without
-        theirs."""
+        """The points without those that have such a value far from all others, and without the rows 999 999
+        999 that end lines; and the columns without theirs."""
         if self._given.nodata_values:
             return points
+        ends = {counts.pop(_END_OF_LINE, 0) for counts in self._counts}
         far = [self._far(axis) for axis in range(3)]
-        if not any(far):
+        has_ends = len(ends) == 1 and ends != {0} and not self._low[0] <= _END_OF_LINE <= self._high[0]
+        if not any(far) and not has_ends:
             return points
 
         def is_known(piece: np.ndarray) -> np.ndarray:
-            return ~np.any([np.isin(piece[:, axis], far[axis]) for axis in range(3)], axis=0)
+            unknown = np.any([np.isin(piece[:, axis], far[axis]) for axis in range(3)], axis=0)
+            return ~(unknown | (has_ends & (piece == _END_OF_LINE).all(axis=1)))
 
         for name, values in (columns or {}).items():
             assert columns is not None
@@ -324,28 +328,24 @@ class _Values:
         called = "height" if axis == 2 else name
         values = []
         for value, count in self._counts[axis].items():
-            if low > high or (value == _END_OF_LINE and not self._ends_lines()):
-                continue
             number = "1 point has" if count == 1 else f"{count} points have"
             what = f"{self._file}: {number} the {called} {value:.9g}"
             near = min(abs(value - low), abs(value - high))
-            is_far = near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
-            # of a number such as -999.25 it is less likely that it is a value
-            if is_far or value == self.nodata or value % 1 or abs(value) > 1e19:
+            has_others = low <= high
+            is_far = has_others and near > max(high - low, 0.5 * abs(value)) and not low <= value <= high
+            # among others such a number comes by chance, where there are many of them
+            is_rare = low <= value <= high and count <= _BY_CHANCE * self._count
+            if has_others and (is_far or value == self.nodata or (value % 1 and not is_rare)):
                 values.append(value)
                 self.warnings.append(
                     f"{what}, {'far from all others, ' if is_far else ''}which often means no data, and left "
                     'out: if it is a value, set nodata = "none"'
                 )
-            elif value != _END_OF_LINE and count > 1:
+            elif value % 1 or (count > 1 and not is_rare):
                 self.warnings.append(
                     f"{what}, which often means no data: it is used; if it is none, set nodata = {value:g}"
                 )
         return values
-
-    def _ends_lines(self) -> bool:
-        """Whether 999 stands in x, y and z as often, as at the ends of lines."""
-        return len({counts.get(_END_OF_LINE, 0) for counts in self._counts}) == 1
 
 
 def refuse_keys(file: Path, what: str, keys: Iterable[str], but: Container[str] = ()) -> None:

@@ -148,7 +148,7 @@ _Z_AXIS = Setting(
 _LAYER = Setting(
     kind="layer",
     label="Layer",
-    tip="Layer of a GeoPackage, or object of an OMF or geoh5 file; needed where there are several",
+    tip="Layer of a GeoPackage, or object of a file of objects; needed where there are several",
     check=checked_name,
 )
 
@@ -156,7 +156,7 @@ _LAYER = Setting(
 @dataclass(frozen=True)
 class PointFile:
     """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, a file of shapes (GeoJSON, well-known text, a
-    shapefile or a layer of a GeoPackage), or an object of an OMF or geoh5 file.
+    shapefile or a layer of a GeoPackage), or an object of a file of objects.
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
@@ -166,7 +166,7 @@ class PointFile:
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
     z_axis: "up", or "down" where z is a depth.
     height: the attribute of features or points that holds their height; None: the z of their positions.
-    layer: of a GeoPackage, or the object of an OMF or geoh5 file; needed where there are several.
+    layer: of a GeoPackage, or the object of a file of objects; needed where there are several.
     columns, separator and decimal are for tables only, height and layer for shapes and objects.
     """
 
@@ -259,7 +259,7 @@ class PointFile:
 @dataclass(frozen=True)
 class MeshFile:
     """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the model.
-    layer: the name of the surface in a file of several objects (OMF, geoh5)."""
+    layer: the name of the surface in a file of several objects, in upper or lower case."""
 
     file: str | Path = described(FILE, is_needed=True)
     units: str | Mapping | None = described(_FILE_UNITS)
@@ -317,6 +317,17 @@ def _checked_files(key: str, files: Any) -> Any:
     return files
 
 
+_ROW = re.compile(r".*\S:\s*\d+\s*")
+
+
+def _checked_rows(key: str, rows: Any) -> Any:
+    texts = rows if isinstance(rows, (list, tuple)) else [rows]
+    if not all(isinstance(text, str) and _ROW.fullmatch(text) for text in texts):
+        what = f"'{key}' must be rows of tables, each a name of a file and a line, not {rows!r}"
+        raise OptionRefused(what, key, f'write {key} = ["collars.csv:17"]')
+    return rows
+
+
 def _checked_sense(key: str, sense: Any) -> Any:
     if sense is not None and sense not in DOWNWARD_DIPS:
         raise OptionRefused(f'\'{key}\' must be "negative" or "positive", not {sense!r}', key)
@@ -345,10 +356,12 @@ class Boreholes:
     of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
     tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops, GOCAD wells and LAS;
     those given beside it count in their place. tolerance: up to which gaps and overlaps of intervals are
-    closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a tenth
-    of the thinner interval; 0: none are. logs: LAS files of logs along the holes, a file or a list of them, each
-    of the hole that is called as its well; their curves are shown, and their depths are in the unit that the
-    file states. With collars and without picks and intervals they are shown alone.
+    closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
+    tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
+    are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
+    logs: LAS files of logs along the holes, a file or a list of them, each of the hole that is called as its
+    well; their curves are shown, and their depths are in the unit that the file states. With collars and
+    without picks and intervals they are shown alone.
     """
 
     picks: str | Path | None = described(FILE)
@@ -371,12 +384,14 @@ class Boreholes:
         check=_checked_tolerance,
     )
     logs: Sequence[str | Path] | str | Path = declared((), kind="files", check=_checked_files)
+    unrepaired: Sequence[str] = declared((), kind="table_rows", check=_checked_rows)
+    left_out: Sequence[str] = declared((), kind="table_rows", check=_checked_rows)
 
     @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
-        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance", "logs")
-        return [key for key in keys if getattr(self, key)]
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance", "unrepaired")
+        return [key for key in (*keys, "left_out", "logs") if getattr(self, key)]
 
     @property
     def log_files(self) -> list[Path]:

@@ -19,6 +19,7 @@ from .shared_places import places_of
 _MOST_SHARED = 5000  # places at which two surfaces are compared
 _ASKED, _NEAR = 200, 1000  # points that look for the nearest one of another surface, and among how many
 _LEAST_SPREAD = 1e-9  # of the points' spread, added so that points on a line give no slope across it
+_NO_GAIN = 1e-9  # of weights that are no whole numbers: rounding
 _WHOLE = 1000  # weight of a shared place; so much weighs a whole comparison of surfaces that share none
 
 
@@ -146,7 +147,7 @@ def _fewest_against(below: np.ndarray, by_name: list[int]) -> list[int]:
     starts = sorted([by_name, by_name[::-1]], key=lambda order: _against(below, order))[:1]
     wins = (below > below.T).sum(axis=1)
     starts.append(sorted(starts[0], key=lambda k: -wins[k]))
-    return min((_improved(below, order) for order in starts), key=lambda order: _against(below, order))
+    return min((improved(below, order) for order in starts), key=lambda order: _against(below, order))
 
 
 def _against(below: np.ndarray, order: Sequence[int]) -> int:
@@ -154,19 +155,20 @@ def _against(below: np.ndarray, order: Sequence[int]) -> int:
     return int(np.tril(below[np.ix_(at, at)], -1).sum())
 
 
-def _improved(below: np.ndarray, order: list[int]) -> list[int]:
-    """The order after moves of single surfaces, as long as one lessens the weight against it."""
+def improved(below: np.ndarray, order: list[int]) -> list[int]:
+    """The order, oldest first, after moves of single surfaces, as long as one lessens the weight against it.
+    below: (n, n) the weight of what speaks for surface i below surface j."""
     order = list(order)
     while True:
         gain, move = 0, (0, 0)
         for begin, moved in enumerate(order):
             others = order[:begin] + order[begin + 1 :]
             # Each step up passes one surface: what spoke for the one below is against it then.
-            steps = [int(below[other, moved] - below[moved, other]) for other in others]
+            steps = [below[other, moved] - below[moved, other] for other in others]
             height = np.concatenate([[0], np.cumsum(steps)])
             best = int(height.argmax())
-            if height[best] - height[begin] > gain:
-                gain, move = int(height[best] - height[begin]), (begin, best)
+            if height[best] - height[begin] > gain + _NO_GAIN:
+                gain, move = height[best] - height[begin], (begin, best)
         if gain == 0:
             return order
         order.insert(move[1], order.pop(move[0]))

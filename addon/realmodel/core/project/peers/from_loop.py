@@ -136,21 +136,22 @@ def _of_names(
     features: _Features, column: Sequence[Group], faults: Sequence[str]
 ) -> tuple[list[PeerGroup], str | None]:
     members = [[group] if isinstance(group, str) else list(group) for group in column]
-    last = members[-1][-1] if members and members[-1] else None
-    basement = None if last is None or features.has(last) else last
     named = {name for group in members for name in group}
     left = sorted(set(features.names.tolist()) - named - {*faults, ""})
-    groups = []
-    for units in members:
-        with_base = [unit for unit in units if unit != basement]
-        if any(map(features.has, with_base)):
-            surfaces = [surface for unit in with_base for surface in _of_feature(features, unit)]
+    groups, basement = [], None
+    for number, units in enumerate(members, 1):
+        levels = features.levels(left[0]) if len(left) == 1 and not any(map(features.has, units)) else None
+        is_last = number == len(members)
+        has_base = (
+            [*map(features.has, units)] if levels is None else [n < len(levels) for n in range(len(units))]
+        )
+        if is_last and has_base and not has_base[-1]:
+            *units, basement = units
+        if levels is not None:
+            groups.append(_of_levels(left.pop(), levels, units, features))
+        elif units:
+            surfaces = [surface for unit in units for surface in _of_feature(features, unit)]
             groups.append(PeerGroup(_name_of(units), surfaces, features.dips(units), ERODE))
-        elif with_base:
-            if len(left) != 1:
-                what = f"no feature of the data is called {number_list(map(repr, with_base))}"
-                raise InputRefused(what, advice=f"features that are not used: {number_list(left) or 'none'}")
-            groups.append(_of_levels(features, left[0], with_base))
     return groups, basement
 
 
@@ -165,9 +166,10 @@ def _of_feature(features: _Features, name: str) -> list[PeerSurface]:
     return [PeerSurface(f"{name} {value:g}", points) for value, points in levels]
 
 
-def _of_levels(features: _Features, feature: str, units: Sequence[str]) -> PeerGroup:
+def _of_levels(
+    feature: str, levels: Sequence[tuple[float, np.ndarray]], units: Sequence[str], features: _Features
+) -> PeerGroup:
     """Units that are the values of one feature, in their order."""
-    levels = features.levels(feature)
     if len(levels) != len(units):
         what = f"feature '{feature}' has {len(levels)} values for the {len(units)} units {_name_of(units)}"
         raise InputRefused(what, advice="each unit needs the value of its base")

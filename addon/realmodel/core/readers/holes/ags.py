@@ -45,7 +45,8 @@ def begins_as_ags(head: bytes, _size: int = 0) -> bool:
 
 
 def read_ags(file: Path) -> dict[str, Sheet]:
-    """The collars, intervals and survey of a file. Raises InputRefused naming the line."""
+    """The collars of a file, its intervals and survey where it has them. Raises InputRefused naming the
+    line."""
     groups = _groups(file)
     sheets = {}
     for kind, names in _KINDS.items():
@@ -55,9 +56,8 @@ def read_ags(file: Path) -> dict[str, Sheet]:
     survey = sheets.get("survey")
     if survey is not None and not any(name.endswith("_INCL") for name in survey.names):
         del sheets["survey"]
-    for kind, names in list(_KINDS.items())[:2]:
-        if kind not in sheets:
-            raise InputRefused(f"it has no rows of {' or '.join(names)}", file=file)
+    if "collars" not in sheets:
+        raise InputRefused("it has no rows of LOCA or HOLE", file=file)
     return sheets
 
 
@@ -113,7 +113,17 @@ def _sheet(group: _Group) -> Sheet:
             and not any(_entry(row, names.index(name)) for _, row in group.rows)
         ):
             names[names.index(name)], names[names.index(other)] = "", name
-    return Sheet(names, group.rows, group.line, group.units)
+    return Sheet(names, group.rows, group.line, group.units, _choice(names, group.rows))
+
+
+def _choice(names: list[str], rows: list[tuple[int, list[str]]]) -> str:
+    """What is said where two columns name units otherwise."""
+    if not {"GEOL_GEOL", "GEOL_LEG"} <= set(names):
+        return ""
+    pairs = {(_entry(row, names.index("GEOL_GEOL")), _entry(row, names.index("GEOL_LEG"))) for _, row in rows}
+    if all(legend in ("", code) for code, legend in pairs):
+        return ""
+    return 'blocks are named by GEOL_GEOL; GEOL_LEG names them otherwise: columns = { block = "GEOL_LEG" }'
 
 
 def _entry(row: list[str], at: int) -> str:

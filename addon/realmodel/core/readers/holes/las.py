@@ -191,6 +191,8 @@ def _rows(file: Path, data: _Section, count: int, version: _Section) -> list[tup
         entries = [
             entry.strip() for entry in next(csv.reader([plain], delimiter=sign, skipinitialspace=True))
         ]
+        if sign != ",":
+            entries = [entry.replace(",", ".") if is_number(entry, ",") else entry for entry in entries]
         if len(entries) < count and not wrapped:
             entries = _RUN_ON.sub(" -", text).split()
         values += entries

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wireframes of Datamine: two tables, points (PID, XP, YP, ZP) and triangles (PID1, PID2, PID3), as text or in
-the binary format .dm of single or extended precision (the layout is public by the open readers pygslib and
+"""Wireframes of Datamine: two tables, points (PID, XP, YP, ZP) and triangles (PID1, PID2, PID3), as text or
+in the binary format .dm of single or extended precision (the layout is public by the open readers pygslib and
 dmfile: pages of 512 words, of which the first has the fields)."""
 
 from __future__ import annotations
@@ -98,8 +98,8 @@ def _text_table(file: Path) -> dict[str, np.ndarray]:
 
 
 def _word_size(raw: bytes) -> int:
-    """4 of single precision, 8 of extended; 0: it is no binary file. The first field, behind the head of 28 words,
-    has its type in its third word, or its fifth half."""
+    """4 of single precision, 8 of extended; 0: it is no binary file. The first field, behind the head of 28
+    words, has its type in its third word, or its fifth half."""
     for size in (4, 8):
         kind = raw[28 * size + 2 * size :][:4]
         if len(raw) >= 32 * size and kind in _KINDS and 1 <= _numbers(raw, size, 25 * size)[0] <= 500:
@@ -112,8 +112,8 @@ def _numbers(raw: bytes, size: int, at: int, count: int = 1) -> np.ndarray:
 
 
 def _binary_table(raw: bytes, size: int) -> dict[str, np.ndarray]:
-    """The fields: each has a name in two words, its type, where it is stored in a record (0: it is the same in
-    all), its word of a text, and that value. Raises ValueError."""
+    """The fields: each has a name in two words, its type, where it is stored in a record (0: it is the same
+    in all), its word of a text, and that value. Raises ValueError."""
     fields, last_page, last_rows = (int(value) for value in _numbers(raw, size, 25 * size, 3))
     names, stored, same, words = [], [], [], 0
     for number in range(fields):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""glTF 2.0 (Khronos, "glTF 2.0 Specification"), .gltf and .glb: the triangles of each node, by its name, where
-its scene places them, in meters. Y is up there: it is turned to z."""
+"""glTF 2.0 (Khronos, "glTF 2.0 Specification"), .gltf and .glb: the triangles of each node, by its name,
+where its scene places them, in meters. Y is up there: it is turned to z."""
 
 from __future__ import annotations
 
@@ -23,7 +23,14 @@ _MAGIC, _JSON, _BINARY = b"glTF", 0x4E4F534A, 0x004E4942
 _TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_ALLOWED = ("KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_")
+_ALLOWED = (
+    "KHR_mesh_quantization",
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_technique",
+    "KHR_lights_",
+    "EXT_texture_",
+)
 _DEEPEST = 64
 _Z_UP = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 _TURNED = ("its y axis is up, as in all of its format: it is turned to z",)
@@ -37,8 +44,8 @@ def begins_as_gltf(head: bytes, _size: int = 0) -> bool:
 
 
 def read_gltf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
-    """The nodes that have triangles; corners at the same place become one vertex, for normals and colors divide
-    them. Raises InputRefused naming the file."""
+    """The nodes that have triangles; corners at the same place become one vertex, for normals and colors
+    divide them. Raises InputRefused naming the file."""
     file = Path(file)
     try:
         content = _Content(file)
@@ -71,6 +78,9 @@ class _Content:
         if raw.startswith(_MAGIC):
             raw = self._chunks(raw)
         self._json = json.loads(raw)
+        version = str(self._json["asset"].get("version", ""))
+        if not version.startswith("2."):
+            raise InputRefused(f"glTF {version:.10} is not read", file=file, advice="export it as glTF 2.0")
         required = self._json.get("extensionsRequired", [])
         for name in required:
             if not str(name).startswith(_ALLOWED):
@@ -80,6 +90,9 @@ class _Content:
 
     def _chunks(self, raw: bytes) -> bytes:
         """The JSON of a binary file. Raises ValueError."""
+        if raw[4:8] != (2).to_bytes(4, "little"):
+            what = f"glTF {int.from_bytes(raw[4:8], 'little')} is not read"
+            raise InputRefused(what, file=self._file, advice="export it as glTF 2.0")
         at, text = 12, b""
         while at + 8 <= len(raw):
             length, kind = (int.from_bytes(raw[k : k + 4], "little") for k in (at, at + 4))
@@ -111,7 +124,8 @@ class _Content:
             if "mesh" in node:
                 mesh = self._json["meshes"][node["mesh"]]
                 corners = [self._corners(primitive) for primitive in mesh["primitives"]]
-                places = np.concatenate([np.empty((0, 3)), *corners]) @ change[:3, :3].T + change[:3, 3]
+                with np.errstate(invalid="ignore"):  # what is not finite is refused when it is read
+                    places = np.concatenate([np.empty((0, 3)), *corners]) @ change[:3, :3].T + change[:3, 3]
                 if np.linalg.det(change[:3, :3]) < 0:  # a mirror turns faces
                     places = places.reshape(-1, 3, 3)[:, ::-1].reshape(-1, 3)
                 if len(places):

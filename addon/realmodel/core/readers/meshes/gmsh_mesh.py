@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangulated surfaces in Gmsh's MSH 2, 4.0 and 4.1, text or binary (Gmsh Reference Manual, "MSH file format"):
-the triangles and quadrangles of each physical surface that has a name, or all."""
+"""Triangulated surfaces in Gmsh's MSH 2, 4.0 and 4.1, text or binary (Gmsh Reference Manual, "MSH file
+format"): the triangles and quadrangles of each physical surface that has a name, or all."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def begins_as_msh(head: bytes, _size: int = 0) -> bool:
 
 
 def read_msh(file: str | Path, step: Step = no_step) -> list[ObjectName]:
-    """Reads the faces by the names of their physical groups; those of none have none. Without names it is called
-    as its file. Raises InputRefused naming the file."""
+    """Reads the faces by the names of their physical groups; those of none have none. Without names it is
+    called as its file. Raises InputRefused naming the file."""
     file = Path(file)
     raw = read_bytes(file)
     sections = {name: _section(file, raw, name) for name in (b"MeshFormat", b"Nodes", b"Elements")}

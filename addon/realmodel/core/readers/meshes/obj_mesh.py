@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wavefront OBJ ("Object Files", the appendix B1 of the manual of Advanced Visualizer): the faces of each object
-(`o`), and of each group (`g`). Coordinates are read as they stand: z is up. Normals, colors and materials are
-left out."""
+"""Wavefront OBJ ("Object Files", the appendix B1 of the manual of Advanced Visualizer): the faces of each
+object (`o`), and of each group (`g`). Coordinates are read as they stand: z is up. Normals, colors and
+materials are left out."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def begins_as_obj(head: bytes, _size: int = 0) -> bool:
 
 
 def read_obj(file: str | Path, step: Step = no_step) -> list[ObjectName]:
-    """The objects of a file; where it has none, its groups. A group within an object is a part of it. A group is
-    called by its line, and by each word of that: `g a b` belongs to "a b", to "a" and to "b". Points where there
-    are no faces. Raises InputRefused naming file and line."""
+    """The objects of a file; where it has none, its groups. A group within an object is a part of it. A group
+    is called by its line, and by each word of that: `g a b` belongs to "a b", to "a" and to "b". Points where
+    there are no faces. Raises InputRefused naming file and line."""
     file = Path(file)
     vertices: list[tuple[float, ...]] = []
     blocks: dict[tuple[str, str], list[tuple[tuple[int, ...], int]]] = {}  # by object and group: faces, lines

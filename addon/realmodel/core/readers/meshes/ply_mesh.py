@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stanford's PLY, binary and as text (Turk, "The PLY polygon file format"): faces, strips of triangles, and points
-where there are none."""
+"""Stanford's PLY, binary and as text (Turk, "The PLY polygon file format"): faces, strips of triangles, and
+points where there are none."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def begins_as_ply_points(head: bytes, _size: int = 0) -> bool:
 
 
 def read_ply_points(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
-    """Reads the vertices of a PLY without faces, binary or text, with their other properties as columns. Raises
-    InputRefused."""
+    """Reads the vertices of a PLY without faces, binary or text, with their other properties as columns.
+    Raises InputRefused."""
     file = Path(file)
     raw = FileBytes(file)
     try:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""STL, binary and as text (3D Systems, "Stereolithography interface specification"): each `solid` of a text is
-an object."""
+"""STL, binary and as text (3D Systems, "Stereolithography interface specification"): each `solid` of a text
+is an object."""
 
 from __future__ import annotations
 
@@ -58,7 +58,8 @@ def _object(file: Path, name: str, corners: np.ndarray) -> ObjectName:
 
 
 def _is_text(raw: bytes) -> bool:
-    """Whether it is text: it begins so, and its size is not that of the facets that a binary file announces."""
+    """Whether it is text: it begins so, and its size is not that of the facets that a binary file
+    announces."""
     if raw.lstrip()[:5].lower() != b"solid":
         return False
     count = int.from_bytes(raw[_HEAD - 4 : _HEAD], "little")
@@ -77,7 +78,8 @@ def _facets(raw: bytes) -> np.ndarray:
 
 
 def _solids(raw: bytes) -> list[tuple[str, np.ndarray]]:
-    """The name of each solid of a text that has facets, and their corners. Raises DamagedError, ValueError."""
+    """The name of each solid of a text that has facets, and their corners. Raises DamagedError,
+    ValueError."""
     begins = list(_SOLID.finditer(raw))
     solids = []
     for number, begin in enumerate(begins):

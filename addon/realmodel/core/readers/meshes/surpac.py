@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""GEOVIA Surpac as text: strings (.str), a record with number, northing, easting, elevation for each point, and
-triangles of them (.dtm), which name the points of the string file beside it by their numbers from 1 ("Surpac file
-formats: string files, DTM files"; two open readers of them agree)."""
+"""GEOVIA Surpac as text: strings (.str), a record with number, northing, easting, elevation for each point,
+and triangles of them (.dtm), which name the points of the string file beside it by their numbers from 1
+("Surpac file formats: string files, DTM files"; two open readers of them agree)."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def begins_as_dtm(head: bytes, _size: int = 0) -> bool:
 
 
 def read_dtm(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
-    """The sets of triangles of a .dtm: of one, by the name of the file, of several, by their numbers and those of
-    their objects. Raises InputRefused naming file and line."""
+    """The sets of triangles of a .dtm: of one, by the name of the file, of several, by their numbers and
+    those of their objects. Raises InputRefused naming file and line."""
     file = Path(file)
     if b"\0" in FileBytes(file)[:4096]:
         raise InputRefused("a binary .dtm of Surpac is not read", file=file, advice="save it as text (ASCII)")

@@ -24,12 +24,12 @@ _MOST_VERTICES = np.iinfo(np.int32).max
 
 @dataclass(frozen=True)
 class TriangleMesh:
-    """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner, or divided
-    within themselves where a fan would leave them.
+    """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner, or
+    divided within themselves where a fan would leave them.
 
     face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
-    unit: of its lengths, as the file names it, or {"xy": ..., "z": ...}; None: it states none. said_unit: one of
-    units.METERS that may not be meant. warnings: sentences.
+    unit: of its lengths, as the file names it, or {"xy": ..., "z": ...}; None: it states none. said_unit: one
+    of units.METERS that may not be meant. warnings: sentences.
     """
 
     vertices: np.ndarray
@@ -205,9 +205,9 @@ def surface_object(
     is_part: bool = False,
     **more: Any,
 ) -> ObjectName:
-    """A surface of a file by its vertices (V, 3), of which others may be used by others, and the corners of its
-    faces; arguments as of mesh_of_faces, which is called when it is read. is_part: as of an ObjectName. more: as
-    of a GeoObject."""
+    """A surface of a file by its vertices (V, 3), of which others may be used by others, and the corners of
+    its faces; arguments as of mesh_of_faces, which is called when it is read. is_part: as of an ObjectName.
+    more: as of a GeoObject."""
 
     def made() -> GeoObject:
         return object_of_mesh(name, mesh_of_faces(file, vertices, faces, lines), **more)

@@ -3,8 +3,8 @@
 each layer, and of each block that is inserted.
 
 Faces: 3DFACE, polyface and polygon meshes (POLYLINE), and MESH, of which the coarsest level counts. Lines and
-points: POLYLINE, LWPOLYLINE, LINE and POINT, by their vertices. What stands in a block is where it is inserted,
-and on the layer of the insert if it is on layer 0.
+points: POLYLINE, LWPOLYLINE, LINE and POINT, by their vertices. What stands in a block is where it is
+inserted, and on the layer of the insert if it is on layer 0.
 """
 
 from __future__ import annotations
@@ -92,14 +92,21 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     parts = [layer for name, layer in inserted.items() if name not in layers]
     objects += [obj for layer in parts for obj in _objects(file, layer, said_unit, True)]
     if not objects:
+        what = "it has no 3D faces, lines or points"
+        not_read = _kinds(sum((layer.not_read for layer in layers.values()), Counter()))
+        what += f", but {not_read}, which are not read" if not_read else ""
         advice = "export the surface as 3D faces (3DFACE), as a polyface mesh or as contour lines"
-        raise InputRefused("it has no 3D faces, lines or points", file=file, advice=advice)
+        raise InputRefused(what, file=file, advice=advice)
     return objects
 
 
+def _kinds(entities: Counter) -> str:
+    return number_list(f"{count} {name}" for name, count in sorted(entities.items()))
+
+
 def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) -> Iterator[ObjectName]:
-    kinds = [f"{count} {name}" for name, count in sorted(layer.not_read.items())]
-    warnings = (f"'{layer.name}' has {number_list(kinds)}, which are not read",) if kinds else ()
+    kinds = _kinds(layer.not_read)
+    warnings = (f"'{layer.name}' has {kinds}, which are not read",) if kinds else ()
 
     def surface() -> GeoObject:
         mesh = mesh_of_corners(file, layer.corners, layer.sizes)
@@ -186,8 +193,8 @@ def _insert_changes(insert: Entity, block: Entity) -> Iterator[np.ndarray]:
 
 
 def _axes(entity: Entity) -> np.ndarray:
-    """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded: the
-    "arbitrary axis algorithm" of the reference. Raises ValueError."""
+    """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded:
+    the "arbitrary axis algorithm" of the reference. Raises ValueError."""
     normal = np.array([entity.number(code, default) for code, default in ((210, 0), (220, 0), (230, 1))])
     length = math.sqrt(float(normal @ normal))
     if not length > 0.0 or ((normal[:2] == 0).all() and normal[2] > 0):
@@ -268,7 +275,8 @@ def _polyline(entity: Entity) -> _Shape:
 
 
 def _mesh_faces(entity: Entity) -> list[list[_Place]]:
-    """The faces of a MESH on its coarsest level: behind code 93 stand the size and the corners of each face."""
+    """The faces of a MESH on its coarsest level: behind code 93 stand the size and the corners of each
+    face."""
     places = list(zip(entity.all_of(10), entity.all_of(20), entity.all_of(30), strict=True))
     numbers, is_list = [], False
     for code, value in entity.pairs:

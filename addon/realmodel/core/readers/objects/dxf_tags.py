@@ -29,8 +29,8 @@ _CHUNKS = (*range(310, 320), 1004)  # bytes behind their number
 
 @dataclass
 class Entity:
-    """An entity: its name, the line where it begins, None in a binary file, its values by group code, in their
-    order, and the entities within it: the vertices of a POLYLINE, those of a BLOCK."""
+    """An entity: its name, the line where it begins, None in a binary file, its values by group code, in
+    their order, and the entities within it: the vertices of a POLYLINE, those of a BLOCK."""
 
     name: str
     line: int | None
@@ -67,8 +67,8 @@ class Entity:
 
 
 def read_entities(file: Path, step: Step) -> tuple[list[Entity], dict[str, Entity], int | None]:
-    """The entities of a drawing, its blocks by their names in small letters, and the number of the unit in its
-    header. Raises InputRefused naming file and line."""
+    """The entities of a drawing, its blocks by their names in small letters, and the number of the unit in
+    its header. Raises InputRefused naming file and line."""
     raw = read_bytes(file)
     tags = _binary_tags(file, raw) if raw.startswith(BINARY) else _text_tags(file, raw, step)
     entities: list[Entity] = []

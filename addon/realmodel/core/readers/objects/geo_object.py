@@ -57,7 +57,8 @@ class Values:
 @dataclass(frozen=True, eq=False)
 class GeoObject:
     """vertices (V, 3) float64, z up; triangles (T, 3) of a surface; values: of its points and its intervals;
-    collar (3,): of a borehole that says it. face_of_triangle, unit, said_unit, warnings: as of a TriangleMesh."""
+    collar (3,): of a borehole that says it. face_of_triangle, unit, said_unit, warnings: as of a
+    TriangleMesh."""
 
     name: str
     kind: str
@@ -87,8 +88,8 @@ class OpenFile(Protocol):
 
 
 class ReadObjects:
-    """An OpenFile of objects that were read together; the key of each is a function that makes it. Those of one
-    name and kind are pieces of one object; one without a name is called by its number."""
+    """An OpenFile of objects that were read together; the key of each is a function that makes it. Those of
+    one name and kind are pieces of one object; one without a name is called by its number."""
 
     def __init__(self, objects: Iterable[ObjectName]):
         self._pieces: dict[tuple[str, str], list[ObjectName]] = {}

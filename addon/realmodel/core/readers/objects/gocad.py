@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of GOCAD and SKUA as text: surfaces (TSurf), points (VSet), lines (PLine) and wells (Well), any number
-of them in a file (Paradigm, "GOCAD ASCII file formats"; open readers of RING and LoopStructural follow it).
+"""Files of GOCAD and SKUA as text: surfaces (TSurf), points (VSet), lines (PLine) and wells (Well), any
+number of them in a file (Paradigm, "GOCAD ASCII file formats"; open readers of RING and LoopStructural follow
+it).
 
 Depths that are positive downward become heights. Units of the axes are those that the file states.
 """
@@ -199,8 +200,8 @@ def _well(obj: _Object, units: str | dict | None) -> Callable[[], GeoObject]:
 
 
 def _path(obj: _Object) -> tuple[np.ndarray, np.ndarray]:
-    """The depths (N,) along a well and their places (N, 3): of its path or its vertices, straight on from these
-    to what is deeper, or straight down. Raises ValueError where it has no place."""
+    """The depths (N,) along a well and their places (N, 3): of its path or its vertices, straight on from
+    these to what is deeper, or straight down. Raises ValueError where it has no place."""
     if obj.path and obj.collar:
         path = np.array(obj.path)
         places = np.column_stack([obj.collar[0] + path[:, 2], obj.collar[1] + path[:, 3], path[:, 1]])

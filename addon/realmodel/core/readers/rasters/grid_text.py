@@ -16,6 +16,7 @@ from ...base.work import native_module
 
 _LONGEST = 1 << 10  # bytes of a number, mostly
 _BLANK = re.compile(rb"\s")
+_OF_NUMBERS = b"0123456789+-.,eE\n"
 _LINE_END = re.compile(rb"\n")
 NO_HEIGHT_WORDS = ("nan", "-nan", "+nan", "null", "na", "1.#qnan", "-1.#ind")
 _NONE = -1.7976931348623157e308  # what such words are read as
@@ -46,10 +47,11 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
     count, at = 0, body
     while at < len(raw):
         chunk = _to_blank(raw, at, _LINE_END if comment else _BLANK)
-        if comment is not None:
+        if comment is not None and any(sign in chunk for sign in text.comments):
             chunk = comment.sub(lambda match: b" " * len(match[0]), chunk)
         chunk = chunk.translate(one_a_line)
-        piece = no_height.sub(as_number, chunk)
+        has_words = chunk.translate(None, _OF_NUMBERS)
+        piece = no_height.sub(as_number, chunk) if has_words else chunk
         try:
             numbers = native.read_numbers(piece, (" ", text.decimal), [0], [], ([], []))[0][:, 0]
         except native.InputError as error:

@@ -82,13 +82,12 @@ def read_hole_rows(
         slow = step if kind in ("picks", "intervals") else no_step
         if kind in sheets:
             found = sheet_rows(given, Path(file), sheets[kind], known, required[kind])
+            if sheets[kind].choice and "block" not in given.columns:
+                tables.warnings.append(f"{file}: {sheets[kind].choice}")
         else:
             found = list(rows(given, Path(file), known, required[kind], slow))
         setattr(tables, kind, found)
         tables.factors[kind] = _to_one_unit(tables, found, model_unit)
-    if sheets and tables.picks is None and tables.intervals is None and not given.logs:
-        advice = "give a table of them: picks = ... or intervals = ..."
-        raise InputRefused("it has neither picks nor intervals of blocks", file=given.files[0], advice=advice)
     return tables
 
 

@@ -36,8 +36,13 @@ HOLE_PROBLEMS = {
     "reversed": "intervals end above where they begin, and are turned around",
     "elevations": "depths are heights, and are converted: the collar's height less them",
     "minus_sign": "depths have a minus sign, which is taken away",
+    "unrepaired": "rows are used as they are written, as 'unrepaired' says",
+    "switched_off": "rows are not used, as 'left_out' says",
     NOT_REACHED: "picks are without a depth, as the hole did not reach the surface",
 }
+
+
+DECIDED = ("unrepaired", "switched_off")  # kinds that are the user's word, and no problem any more
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,7 @@ class HoleProblem:
     code: str | None = None
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}: {self.text} ({self.action})"
+        return f"{self.file}: {self.text} ({self.action})"
 
 
 class ProblemList(list[HoleProblem]):

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import InputRefused, number_list
 from .hole_data import HoleTables
-from .hole_problems import LEFT_OUT, NOT_REACHED, REPAIRED, USED, ProblemList, problem_warnings
+from .hole_problems import DECIDED, LEFT_OUT, NOT_REACHED, REPAIRED, USED, ProblemList, problem_warnings
 from .hole_tables import NULL_NUMBERS, Row, column_key, normalized_name
 from .holes import end_of
 from .interval_repair import repair_intervals
@@ -37,6 +37,7 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
     InputRefused where nothing of a table can be used."""
     units = units or UnitNames()
     problems = ProblemList()
+    unrepaired = _taken_out(tables, problems)
     for kind, columns in _NUMBERS.items():
         rows = getattr(tables, kind)
         if rows is not None:
@@ -57,8 +58,43 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
         tables.intervals = repair_intervals(tables, units, problems)
     if tables.picks is not None:
         tables.picks = _repaired_picks(tables, units, problems)
+    for kind, rows in unrepaired.items():
+        setattr(tables, kind, sorted([*getattr(tables, kind), *rows], key=lambda row: row.line))
     tables.problems = problems.in_order()
-    tables.warnings += problem_warnings(tables.problems)
+    tables.warnings += problem_warnings([problem for problem in tables.problems if problem.kind not in DECIDED])
+
+
+def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]]:
+    """The rows, by their table, that take no part in the repair and are used as they are; they and those that
+    are not used are taken out of the tables. Raises InputRefused for a row that there is not."""
+    unrepaired, left_out = (_row_names(names) for names in (tables.given.unrepaired, tables.given.left_out))
+    taken: dict[str, list[Row]] = {}
+    seen = set()
+    for kind in _NUMBERS if unrepaired or left_out else ():
+        others = []
+        for row in getattr(tables, kind) or ():
+            name = row.file.name, row.line
+            if name in unrepaired:
+                problems.note("unrepaired", USED, row, "used as it is written, as 'unrepaired' says")
+                taken.setdefault(kind, []).append(row)
+            elif name in left_out:
+                problems.note("switched_off", LEFT_OUT, row, "not used, as 'left_out' says")
+            else:
+                others.append(row)
+                continue
+            seen.add(name)
+        if getattr(tables, kind) is not None:
+            setattr(tables, kind, others)
+    for name, line in sorted((unrepaired | left_out) - seen):
+        what = f"there is no row '{name}:{line}', which 'unrepaired' or 'left_out' names"
+        raise InputRefused(what, file=tables.given.files[0])
+    return taken
+
+
+def _row_names(names: Sequence[str]) -> set[tuple[str, int]]:
+    """(name of the file, line) of texts such as "collars.csv:17"."""
+    parts = (name.rpartition(":") for name in names)
+    return {(file.strip(), int(line)) for file, _, line in parts}
 
 
 def _cleaned(rows: list[Row], columns: Sequence[str], problems: ProblemList) -> list[Row]:

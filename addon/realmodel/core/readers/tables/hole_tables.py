@@ -175,6 +175,7 @@ OBSERVED = {
     "on": ("seen_on",),
     "error": ("height_error",),
 }
+_GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 # Numbers that programs write where there is no value.
 NULL_NUMBERS = frozenset(
@@ -232,13 +233,14 @@ class Header:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table in a file that holds several: the names of its columns, the lines and entries of its rows, and
-    what units its columns have, as they are written, "" for none."""
+    """A table in a file that holds several: the names of its columns, the lines and entries of its rows, what
+    units its columns have, as they are written, "" for none, and what was chosen for the user to know."""
 
     names: Sequence[str]
     rows: Sequence[tuple[int, list[str]]]
     line: int = 1
     units: Sequence[str] = ()
+    choice: str = ""
 
 
 @dataclass(frozen=True)
@@ -317,7 +319,7 @@ class Row:
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
-    table = _opened(given, file, known)
+    table = _opened(given, file, known, needed)
     layout = table.layout
     names, name_line = layout.names or (), layout.name_line or 1
     columns = _columns(given, file, layout, known)
@@ -374,11 +376,16 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(reading: Reading, file: Path, meanings: Columns) -> TextTable:
+def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = ()) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
     for aliases in meanings.values():
         names.update(*map(_spellings, aliases))
-    return open_table(file, Expected(reading.separator, (), names, 1, 2))
+
+    def is_header(cells: list[str]) -> bool:
+        columns = _columns(reading, file, TableLayout("\t", tuple(cells), 0, 0, None), meanings)
+        return set(needed) <= columns.keys() and len(columns) > 2
+
+    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header))
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:
@@ -455,4 +462,7 @@ def _require(reading: Reading, header: Header, needed: Sequence[str]) -> None:
             called = reading.columns.get(column)
             what = f"the header has no column {called or column}"
             advice = f'name it: columns = {{ {column} = "..." }}'
+            if column in ("x", "y") and _named(header.names, _GEOGRAPHIC) is not None:
+                what = "places are longitude and latitude"
+                advice = "give x and y in a projected system, in meters or feet"
             raise InputRefused(what, file=header.file, line=header.line, advice=advice)

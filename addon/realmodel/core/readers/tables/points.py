@@ -61,7 +61,27 @@ _WORDS = {
 _BESIDE = (
     *("utm", "coord", "coordinate", "coordinates", "coords", "point", "rd", "pos", "position", "map", "grid"),
     *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat", "mga", "lv95", "gk"),
-    *("world", "local", "projected", "nat_grid", "nap", "nn", "nhn", "asl", "amsl", "msl", "wert", "l93"),
+    *(
+        "world",
+        "local",
+        "projected",
+        "nat_grid",
+        "value",
+        "utme",
+        "utmn",
+        "nap",
+        "nn",
+        "nhn",
+        "asl",
+        "amsl",
+        "msl",
+        "wert",
+        "l93",
+    ),
+)
+_DEPTHS = (
+    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
+    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
 )
 _SYSTEM = re.compile(
     r"(?:utm|mga|lv|gda|epsg|zone|l|gk|cc|rt|osgb|ch|etrs|wgs|nad|nzgd|sweref|dhdn|ed|itrf)?\d+[a-z]{0,2}"
@@ -71,7 +91,7 @@ AXES = {
     axis: (
         *words,
         *(f"{beside}_{word}" for word in words for beside in _BESIDE),
-        *(f"{word}_{beside}" for word in words for beside in _BESIDE),
+        *(f"{word}_{beside}" for word in words for beside in (*_BESIDE, *(_DEPTHS if axis == "z" else ()))),
         *(f"{beside}{word}" for word in words[:3] for beside in _BESIDE),
         *(f"{word}{beside}" for word in words[:3] for beside in _BESIDE),
     )
@@ -82,10 +102,6 @@ _DEGREES = {
     "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),
     "y": ("lat", "latitude", "latitud", "breite"),
 }
-_DEPTHS = (
-    *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
-    *("profundidad", "profundidade", "true_vertical_depth", "subsea_depth", "depth_subsea"),
-)
 _NAMES = {axis: (*AXES[axis], *_DEGREES.get(axis, ()), *(_DEPTHS if axis == "z" else ())) for axis in AXES}
 KNOWN = frozenset(name for names in _NAMES.values() for name in names)
 
@@ -170,7 +186,7 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None, step: S
     are expected. Raises InputRefused where there are no rows."""
     raw: Content
     if begins_as_workbook(FileBytes(file)[:100]):
-        raw = sheet_text(file, sheet, partial(_has_columns, expected), step)
+        raw = sheet_text(file, sheet, expected.is_header or partial(_has_columns, expected), step)
         expected = replace(expected, separator="\t")
     else:
         raw = text_content(file)
@@ -212,7 +228,25 @@ def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> lis
             raise InputRefused(
                 f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
+    _require_names_of_entries(table)
     return [names.index(alias) for alias in headings.values() if alias]
+
+
+def _require_names_of_entries(table: TextTable) -> None:
+    """Refuses a header whose names are plainly not those of the entries: more of them, some with blanks in
+    them, or one less where the first entries count the rows."""
+    names, rows = table.layout.names or (), head_rows(table, 1000)
+    width = max(map(len, rows), default=0)
+    counts = len(rows) > 1 and _count_rows([row[0] for row in rows])
+    if (table.layout.separator == " " and 0 < width < len(names)) or (width > len(names) and counts):
+        what = f"the header has {len(names)} names, and the rows have {width} entries"
+        advice = "say by numbers which columns are x, y and z: columns = [1, 2, 3]"
+        raise InputRefused(what, file=table.file, line=table.layout.name_line, advice=advice)
+
+
+def _count_rows(entries: list[str]) -> bool:
+    """Whether entries are 0, 1, 2, ... or 1, 2, 3, ..."""
+    return any(entries == [str(n) for n in range(first, first + len(entries))] for first in (0, 1))
 
 
 def _require_xyz_first(table: TextTable) -> None:
@@ -221,11 +255,11 @@ def _require_xyz_first(table: TextTable) -> None:
     rows = [row for row in head_rows(table, 1000) if all(map(is_number, row[:3]))]
     if len(rows) < 2 or min(map(len, rows)) < 4:
         return
-    first, second = (np.array([float(row[n]) for row in rows]) for n in (0, 1))
+    whole = all(float(entry) % 1 == 0 for row in rows for entry in row[:2])
     what = ""
-    if np.array_equal(first, first[0] + np.arange(len(rows))) and float(first[0]) in (0.0, 1.0):
+    if _count_rows([row[0] for row in rows]):
         what = "its first column counts the rows"
-    elif {len(row) for row in rows} == {5} and not ((first % 1).any() or (second % 1).any()):
+    elif {len(row) for row in rows} == {5} and whole:
         what = "its first two columns are whole numbers, coordinates or the indices of a grid"
     if what:
         columns = [2, 3, 4] if "counts" in what else [3, 4, 5]
@@ -256,13 +290,18 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str)
             doubts.append(
                 f"'{names[wanted[2]]}' is read as elevations, upward: if it has depths, set z_axis = \"down\""
             )
+        if width > len(names) and is_number(row[-1]):
+            doubts.append(
+                f"the header has {len(names)} names, the rows have {width} entries: the first are taken for "
+                "those; if that is wrong, set columns = [1, 2, 3] with their numbers"
+            )
     elif len(names) == width > 2 and not any(map(is_number, names)):
         listed = ", ".join(f"'{name}'" for name in names[:3])
         doubts.append(
             f"no column is named x, y or z: the first three, {listed}, are used; if that is wrong, "
             f"{_SAY_COLUMNS}"
         )
-    elif width > 3:
+    elif width > max(3, len(names)):
         doubts.append(
             f"no header names its {width} columns: the first three are used as x, y and z; if that is "
             "wrong, set columns = [1, 2, 3] with their numbers"
@@ -354,6 +393,8 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     """(P,) the values of each further column, by its name, or by its number from 1 where it has none: numbers
     (NaN where there is none), or texts if not all are numbers."""
     table, mark = rows.table, rows.decimal
+    if max(map(len, head_rows(table, 2000)), default=0) <= 3 and len(table.layout.names or ()) <= 3:
+        return {}
     filters, missing = _filters(table, given)
     separator = table.layout.separator
     lines = table.raw[table.layout.body :].split(b"\n")
@@ -498,7 +539,9 @@ def _refused(table: TextTable, columns: Sequence[int], decimal: str, error: Nati
         advice = "write decimals with a point"
     elif decimal == "," and "." in entry:
         advice = "this file has decimal commas: use them in all numbers"
-    elif not entry:
+    elif not table.layout.names and not entry[:1].isdigit():
+        advice = "say which columns are x, y and z: columns = [2, 3, 4]"
+    if not entry:
         advice = 'remove points without a value, or set nodata = ""'
     return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
 

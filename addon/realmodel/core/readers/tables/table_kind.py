@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
 from ...base.errors import InputRefused
 from ...base.text import no_step
+from ...base.units import MODEL_UNIT
 from ...settings.data_files import Boreholes
+from ..formats import HOLES, format_of
 from .dips import DIPS, NAMED
-from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, columns_in, rows
+from .hole_data import read_hole_rows
+from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, Row, columns_in, rows
 
 _KNOWN = {
     "collars": COLLARS,
@@ -32,11 +36,17 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
     columns: names or numbers of those that are called otherwise, by meaning, as of Boreholes, ObservationFile
     and DipFile; they decide where the names in the header do not: a column that is named as `surface` makes a
     table one of picks, as `block` one of intervals or observations, as `dip_direction` one of dips.
-    Assays are intervals without blocks, whose other columns are shown.
+    Assays are intervals without blocks, whose other columns are shown. A file that holds all tables of
+    boreholes is what its data of blocks or surfaces are.
     Raises InputRefused where it may be none of them.
     """
     file = Path(file)
     reading = Boreholes(columns=columns or {})
+    if format_of(file, HOLES) is not None:
+        whole = read_hole_rows(Boreholes(columns=reading.columns, file=file), MODEL_UNIT)
+        if whole.intervals is None and whole.picks is None:
+            return "assays"
+        return "picks" if whole.intervals is None else "intervals"
     hole, logged, survey, seen, dips = (
         columns_in(reading, file, meanings) for meanings in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
     )
@@ -88,8 +98,16 @@ def table_contents(
     """What is read of a table: its columns, by meaning, as columns_in, and the codes of surfaces or blocks in
     its first 2,000 rows, sorted. columns: as for table_kind. Raises InputRefused."""
     reading, kind = Boreholes(columns=columns or {}), table_kind(file, columns)
-    by_meaning = columns_in(reading, Path(file), _KNOWN[kind])
-    coded = [key for key in ("surface", "block") if key in by_meaning and kind != "collars"]
-    first = islice(rows(reading, Path(file), _KNOWN[kind], (), no_step), _LOOKED_AT) if coded else ()
+    first: Iterable[Row]
+    if format_of(file, HOLES) is not None:
+        whole = read_hole_rows(replace(reading, file=file), MODEL_UNIT)
+        first = (whole.intervals or whole.picks or [])[:_LOOKED_AT]
+        header = first[0].header if first else None
+        by_meaning = {} if header is None else {key: header.names[at] for key, at in header.columns.items()}
+        coded = [key for key in ("surface", "block") if key in by_meaning]
+    else:
+        by_meaning = columns_in(reading, Path(file), _KNOWN[kind])
+        coded = [key for key in ("surface", "block") if key in by_meaning and kind != "collars"]
+        first = islice(rows(reading, Path(file), _KNOWN[kind], (), no_step), _LOOKED_AT) if coded else ()
     codes = {row.text(key) for row in first for key in coded if row.has(key)}
     return by_meaning, sorted(codes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -73,14 +73,17 @@ def is_any_number(entry: str) -> bool:
 @dataclass(frozen=True)
 class Expected:
     """What is known of a table before it is read. separator: None where it is to be found. wanted: the
-    requested columns; texts are names that the header must have. known: names that make a line a header, in
-    small letters. numbers, columns: how many of them a row has at least."""
+    requested columns; texts are names that the header must have. known: names that make a line a header,
+    in small letters. numbers, columns: how many of them a row has at least. is_header: whether texts are
+    the names of the columns that are needed, by which a sheet of a workbook is chosen; None: by wanted and
+    known."""
 
     separator: str | None = None
     wanted: Sequence[str | int] = ()
     known: Container[str] = ()
     numbers: int = 3
     columns: int = 3
+    is_header: Callable[[list[str]], bool] | None = None
 
 
 def table_layout(
@@ -142,11 +145,11 @@ def _with_unit(name: str, unit: str) -> str:
 
 
 def _commented(text: str, separator: str, count: int) -> list[str]:
-    """The entries of a comment, as many as a row has where the sign that begins it is the name of the
-    first."""
+    """The entries of a comment, as many as a row has where the sign that begins it is the name of the first:
+    not with blanks between them, where it rather is the sign of a comment."""
     entries = fields(text.lstrip(_SIGNS + " "), separator)
     whole = fields(text, separator)
-    return whole if len(whole) == count > len(entries) else entries
+    return whole if separator != " " and len(whole) == count > len(entries) else entries
 
 
 def _is_comment(text: str) -> bool:
@@ -180,9 +183,10 @@ def _header(
     for n, entries in [*headings, *commented]:
         if asked and set(asked) <= {entry.lower() for entry in entries}:
             return n, tuple(entries)
-    for n, entries in headings:
-        if any(plain_name(entry) in known_names for entry in entries):
-            return n, tuple(entries)
+    known = [sum(plain_name(entry) in known_names for entry in entries) for _, entries in headings]
+    if any(known):
+        n, entries = headings[known.index(max(known))]
+        return n, tuple(entries)
     for n, entries in commented:
         if {"x", "y", "z"} <= {plain_name(entry) for entry in entries}:
             return n, tuple(entries)

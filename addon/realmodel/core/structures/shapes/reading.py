@@ -24,11 +24,12 @@ from ...base.work import Work, native_module, on_threads
 from ...heights.interpolate import checked_points
 from ...project.project import Project
 from ...project.structure_entries import Body, Fault
-from ...project.structure_history import displaced_surfaces
+from ...project.structure_history import body_times, displaced_surfaces
 from ...readers import read_mesh, read_space_dips
 from ...readers.fault_input import read_fault_points
 from ...settings.dips import SpaceDips
 from ...surfaces.rock_input import RockInput
+from .between_walls import body_between_walls, pierced
 from .continued import extended
 from .fitted import fit_points, fit_sticks, read_trace, trace_surface
 from .ground import Top
@@ -39,7 +40,8 @@ def read_structures(
 ) -> tuple[list[Fault], list[Body], list[BuildWarning]]:
     """The faults and bodies of a project, their shapes as vertices (V, 3) float64 and triangles (T, 3) int32
     only; and the warnings of reading and fitting. inputs: the rock masses, read (RockInput), which faults
-    given by a trace go through; None: these keep their traces, read. Raises InputRefused."""
+    given by a trace go through, and whose intervals bodies are made of; None: these keep their traces, read,
+    and such bodies have no shape yet. Raises InputRefused."""
     warnings: list[BuildWarning] = []
     total = len(project.faults) + len(project.bodies) or 1
     faults, bodies = [], []
@@ -51,7 +53,7 @@ def read_structures(
             faults.append(_read_fault(work, fault, project.units, warnings))
     for number, body in enumerate(project.bodies, len(faults)):
         work.step(number / total)
-        bodies.append(_read_body(body, project.units, warnings))
+        bodies.append(_read_body(work, body, project, inputs, warnings))
     return faults, bodies, warnings
 
 
@@ -178,10 +180,25 @@ def _two_sided(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         raise InputRefused(what, advice="cut it open there", place=tuple(place.tolist())) from error
 
 
-def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
+def _read_body(
+    work: Work,
+    body: Body,
+    project: Project,
+    inputs: list[RockInput] | None,
+    warnings: list[BuildWarning],
+) -> Body:
     shape_file = body.input_file or body.shape_file
+    if not body.has_shape and inputs is None:
+        return body
     with naming(body.item, body.shape_source):
-        vertices, triangles = _mesh_of(body, units, warnings)
+        if body.has_shape:
+            vertices, triangles = _mesh_of(body, project.units, warnings)
+        else:
+            assert inputs is not None
+            seen = [inputs[rock].rock.observed for rock in body_times(project, body)]
+            met, texts = pierced(body.name, [observed for observed in seen if observed is not None])
+            (vertices, triangles), more = body_between_walls(work, met, body.reach)
+            warnings += [BuildWarning(f"{body.item}: {text}", "points") for text in (*texts, *more)]
         edges = open_edges(vertices, triangles)
         if len(edges):
             place = vertices[edges[0]].mean(axis=0)
@@ -192,7 +209,7 @@ def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
                 place=tuple(place.tolist()),
             )
         triangles = _two_sided(vertices, triangles)
-    return replace(body, vertices=vertices, triangles=triangles, mesh=None, shape_file=shape_file)
+    return replace(body, vertices=vertices, triangles=triangles, mesh=None, reach=None, shape_file=shape_file)
 
 
 def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning]) -> Sheet:

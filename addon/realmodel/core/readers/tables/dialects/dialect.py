@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-_UNIT = re.compile(r"(.*?(?:\b|_)units?\b[^:=]*)[:=]\s*(\S.*?)\s*$", re.IGNORECASE)
+_UNIT = re.compile(r"(.*?(?:\b|_)units?(?![a-z])[^:=>]*)(?:[:=]|->)\s*(\S.*?)\s*$", re.IGNORECASE)
 _PLAN = re.compile(r"(?:\b|_)(?:x|y|xy|horizontal|lateral|plan|easting|northing)(?:\b|_)", re.IGNORECASE)
 _HEIGHT = re.compile(r"(?:\b|_)(?:z|depth|vertical|elevation|height|altitude)(?:\b|_)", re.IGNORECASE)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """OpenWorks' horizons as text (IJXYZ): lines of keys that begin with @, a line #End_of_Horizon_ASCII_Header_,
-rows with the two indices of the grid (or line and trace), x, y and z, and EOD at the end.
+rows with the two indices of the grid (or line and trace), x, y and z, and EOD (or EOB) at the end.
 
 The layout is that of xtgeo (`tests/test_surface/test_surface_ijxyz.py`, equinor/xtgeo#36).
 """
@@ -16,7 +16,7 @@ from .dialect import Header, comment_units
 _END = "#End_of_Horizon_ASCII_Header_"
 _BEGINNING = re.compile(rb"\s*@\w+ *:|[^\0]*#End_of_Horizon_ASCII_Header_", re.IGNORECASE)
 _NAMES = {3: ("X", "Y", "Z"), 5: ("I", "J", "X", "Y", "Z")}
-NOT_ROWS = re.compile(rb"(?m)^[ \t]*(?=EOD\b)")
+NOT_ROWS = re.compile(rb"(?m)^[ \t]*(?=EO[BD]\b)")
 
 
 def begins_as_openworks(head: bytes, _size: int = 0) -> bool:
@@ -33,4 +33,6 @@ def openworks_header(file: Path, lines: list[str]) -> Header:
     if count not in _NAMES:
         what = f"its rows have {count} columns, not I, J, X, Y and Z"
         raise InputRefused(what, file=file, line=first + 1, advice="remove its header and set columns")
-    return Header(first, _NAMES[count], None, comment_units(lines[:first]))
+    *others, z = _NAMES[count]
+    z = "Z (depth)" if any("depth" in line.lower() for line in lines[:first]) else z
+    return Header(first, (*others, z), None, comment_units(lines[:first]))
