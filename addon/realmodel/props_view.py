@@ -188,8 +188,16 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     boreholes_by: StringProperty(
         name="Color By",
-        description="Column of the tables of intervals and assays that the tubes show; empty: the blocks",
+        description="Column of the tables of intervals and assays, or curve of logs, that the tubes show; "
+        "empty: the blocks",
         search=lambda self, _context, _text: boreholes.columns(self.id_data),
+        options=set(),
+        update=changes.field_data,
+    )
+    show_hole_curves: BoolProperty(
+        name="Curve Beside",
+        description="Show the numbers that color the boreholes also as a curve beside each, from the lowest to "
+        "the highest; on sections that are saved, too",
         options=set(),
         update=changes.field_data,
     )

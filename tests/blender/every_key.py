@@ -25,7 +25,7 @@ size = [{ at = "outline", length = 4.1, distance = 2.3 },
   { at = [[60, 20], [70, 25.5]], length = 2.5, distance = 0 },
   { at = "constraints", length = 3, distance = 1 }]
 constraints = ["river.geojson", [[5, 5], [30.3, 60]], [80, 60]]
-boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft", columns={hole="BHID"}}
+boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft", columns={hole="BHID"}, logs=["b.las"]}
 observations = "seen.csv"
 names = { B = "Bottom", D = "distance" }
 
@@ -256,6 +256,10 @@ def write_files(folder: Path):
     (folder / "picks.csv").write_text("BHID,surface,depth\n" + picks)
     log = "".join(f"B{n},{top},{bottom},{block}\n" for n in (1, 2, 3) for top, bottom, block in LOG)
     (folder / "log.csv").write_text("BHID,from,to,block\n" + log)
+    (folder / "b.las").write_text(
+        "~V\n VERS. 2.0 :\n WRAP. NO :\n~W\n NULL. -999.25 :\n WELL. b1 :\n~C\n DEPT.FT :\n GR.GAPI :\n~A\n"
+        "0 50\n10 60\n20 70\n"
+    )
     (folder / "dips.csv").write_text("x,y,dip,strike\n20,20,10,0\n70,20.5,20.25,100\n")
     (folder / "in_space.csv").write_text(
         "x,y,z,dip,strike,polarity\n420,20,9,80,0,1\n470,20.5,2,20.25,100,-1\n"

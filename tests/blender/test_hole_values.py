@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
-from realmodel.bl.field import boreholes, interval_values
-from realmodel.bl.project import borehole_picks, project_settings
+from realmodel.bl.field import boreholes
+from realmodel.bl.project import borehole_picks, interval_values, project_settings
 
 COLLARS = "hole,x,y,z,eoh\n" + "".join(f"B{n},{20 + 30 * n},{50 + n},60,40\n" for n in range(3))
 LOGS = "hole,from,to,lith,note\n" + "".join(f"B{n},0,10,Sand,wet\nB{n},10,30,Clay,\n" for n in range(3))

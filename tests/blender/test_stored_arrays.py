@@ -12,12 +12,19 @@ import numpy as np
 from blender_state import empty_file
 from panel_case import PanelCase, ops
 from realmodel.bl.display import coordinates, modes
-from realmodel.bl.field import interval_values, map_settings
+from realmodel.bl.field import map_settings
 from realmodel.bl.objects.stored_arrays import StoredArrays
-from realmodel.bl.project import borehole_picks, method_settings, observed_blocks, settings, surface_dips
+from realmodel.bl.project import (
+    borehole_picks,
+    interval_values,
+    method_settings,
+    observed_blocks,
+    settings,
+    surface_dips,
+)
 from realmodel.bl.scene import planned_holes
 from realmodel.core import Dips, InputRefused, Observations
-from realmodel.core.readers.tables.intervals import IntervalValues
+from realmodel.core.readers.tables.interval_values import IntervalValues
 from recording_layout import draw_tab
 
 GIVEN = {

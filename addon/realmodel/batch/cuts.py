@@ -25,7 +25,7 @@ from .sources import ENDINGS, OpenedFile
 @dataclass
 class SectionRequest:
     """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2).
-    exaggeration, hole_width: of drawings, as of Section.save. exporter: writes the file."""
+    exaggeration, hole_width, hole_column: of drawings, as of Section.save. exporter: writes the file."""
 
     option: str
     file: Path
@@ -33,6 +33,7 @@ class SectionRequest:
     exporter: Exporter = SECTION
     exaggeration: float = 1.0
     hole_width: float = 0.0
+    hole_column: str | None = None
 
     @property
     def outputs(self) -> list[Path]:
@@ -56,7 +57,8 @@ class SectionRequest:
         """Makes the section and stages its file. Returns the summary for the terminal."""
         progress(1.0, f"cutting {self.file.name}")
         section = self.cut(model, threads)
-        drawn = {"exaggeration": self.exaggeration, "hole_width": self.hole_width}
+        names = ("exaggeration", "hole_width", "hole_column")
+        drawn = {name: getattr(self, name) for name in names}
         self.exporter.write(section, self.file, outputs, **drawn)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(section)} polygons, area {section.area:.2f}"

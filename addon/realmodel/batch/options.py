@@ -225,6 +225,12 @@ OPTIONS = (
         needs=("section", "fence"),
     ),
     Option(
+        "hole-column",
+        "NAME",
+        "draw a curve of the logs of the boreholes beside them, such as GR",
+        needs=("hole-width",),
+    ),
+    Option(
         "cut",
         "CUTTER=BELOW,ABOVE",
         "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK, "

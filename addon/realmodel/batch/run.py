@@ -241,7 +241,7 @@ def _validation(options: argparse.Namespace, model, progress):
 
 def _requests(options: argparse.Namespace) -> list:
     """Sections, fences, boreholes and cuts, in this order. Raises UsageError."""
-    drawn = {"exaggeration": options.exaggeration, "hole_width": options.hole_width}
+    drawn = {name: getattr(options, name) for name in ("exaggeration", "hole_width", "hole_column")}
     return [
         *(replace(section_request(text), **drawn) for text in options.section),
         *(replace(fence_request(text), **drawn) for text in options.fence),

@@ -9,12 +9,13 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl.field import field_tables, interval_values, map_settings
+from ..bl.field import boreholes, field_tables, map_settings
 from ..bl.host import caches, notices
 from ..bl.objects import stored_arrays
 from ..bl.project import (
     borehole_picks,
     imported,
+    interval_values,
     method_settings,
     observed_blocks,
     plan_mesh,
@@ -36,6 +37,7 @@ from ..core.readers.borehole_input import read_repaired
 from ..core.readers.code_counts import count_codes
 from ..core.readers.formats import HOLES, OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.object_input import is_object_file
+from ..core.readers.tables.hole_logs import is_log
 from ..core.settings.data_files import READING
 from ..core.settings.series_kinds import FIELD
 from ..core.surfaces.field_data import left_out_texts
@@ -88,7 +90,8 @@ def _rasters(properties):
 
 class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, FilesImportHelper):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
-    the surfaces), of logged intervals and of assays, or the drillholes of an OMF or geoh5 file; tables of
+    the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of an
+    OMF or geoh5 file; tables of
     places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
     name, or for the active surface or its series where none names any; and geological maps. Choose all of
     them at once: each is told by its columns. Surfaces get these data beside their own, and are added where
@@ -251,7 +254,11 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
             plan_mesh.propose_base(rock, np.concatenate(places), is_of_map=bool(data.maps))
         with settings.filling():
             view = scene.realmodel.view
-            view.show_boreholes = view.show_boreholes or bool(data.picks.holes)
+            logs = data.picks.logs
+            view.show_boreholes = view.show_boreholes or bool(data.picks.holes) or logs is not None
+            if logs is not None:
+                view.boreholes_by = boreholes.column(scene) or next(iter(logs.columns), "")
+                view.show_hole_curves = True
             view.show_dips = view.show_dips or bool(tables.dips or tables.rock_dips or tables.series_dips)
             view.show_map = view.show_map or bool(data.maps)
         counts = count_codes(*tables.coded, units=scene.realmodel.units)
@@ -410,6 +417,7 @@ def shown_kind(path, columns, map_layer="", map_block=""):
         try:
             named = reading_text.named_columns(columns)
             kind = "boreholes" if field_tables.has_holes(path) else None
+            kind = "log" if kind and is_log(path) else kind
             kind = "map" if field_tables.is_map(path) else kind
             if kind == "map":
                 contained = _map_contents(path, map_layer.strip() or None, map_block.strip())

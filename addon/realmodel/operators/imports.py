@@ -421,6 +421,8 @@ def _terrain_row(rock):
         project_settings.forget_shape(row)
         row.is_terrain = True
     return row
+
+
 def _letters(name):
     return normalized_name(name).replace("_", "")
 

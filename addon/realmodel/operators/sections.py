@@ -3,13 +3,14 @@
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from mathutils import Quaternion, Vector
 
 from ..bl import display
 from ..bl.display import cuts, sections
+from ..bl.field import boreholes, hole_curves
 from ..bl.objects import exaggeration, viewports, visible
-from ..bl.project import project_settings, settings
+from ..bl.project import interval_values, project_settings, settings
 from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
 from ..core.exporters import SECTION
@@ -233,6 +234,12 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         min=0.0,
         subtype="DISTANCE",
     )
+    hole_column: StringProperty(
+        name="Curve Beside",
+        description="Column of numbers of the intervals, or curve of the logs, that is drawn beside the "
+        "boreholes; empty: none",
+        search=lambda _properties, context, _text: boreholes.columns(context.scene),
+    )
 
     def of_what(self, _context):
         return ("section",)
@@ -242,6 +249,9 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.exaggeration = exaggeration.factor(context.scene)
         if not self.properties.is_property_set("hole_width"):
             self.hole_width = context.scene.realmodel.view.hole_width
+        shows = self.hole_width > 0.0 and hole_curves.is_wanted(context.scene)
+        if shows and not self.properties.is_property_set("hole_column"):
+            self.hole_column = boreholes.column(context.scene)
         return super().invoke(context, event)
 
     def draw(self, context):
@@ -249,7 +259,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.layout.prop(self, name)
         if self.along == "PLANE":
             _draw_plane(self, context)
-        for name in ("exaggeration", "hole_width"):
+        for name in ("exaggeration", "hole_width", "hole_column"):
             self.layout.prop(self, name)
 
     def write(self, context, path):
@@ -267,7 +277,8 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
                 raise InputRefused(reason)
             line = sections.line_of(context.active_object)
             section = sections.along(context.scene, line, context.evaluated_depsgraph_get())
-        section.save(path, settings.plain(self.exaggeration), width)
+        section.hole_values = interval_values.of_scene(context.scene)
+        section.save(path, settings.plain(self.exaggeration), width, self.hole_column.strip() or None)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

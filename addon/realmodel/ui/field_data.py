@@ -38,6 +38,8 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
         column = layout.column(align=True)
         if group.view.show_boreholes and boreholes.columns(context.scene):
             column.prop(group.view, "boreholes_by")
+            if boreholes.limits(context.scene) is not None:
+                column.prop(group.view, "show_hole_curves")
         if group.view.show_boreholes or group.view.show_contacts or group.view.show_dips:
             column.prop(group.view, "hole_width", text="Within")
         _draw_datum(layout, context)

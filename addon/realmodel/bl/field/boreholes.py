@@ -11,15 +11,16 @@ import numpy as np
 from ...core.drawing.overlay import ColorKey
 from ...core.project.looks import hex_color, rgb
 from ...core.results import layer_values
+from ...core.results.sections.hole_curves import limits_of, seen_values, shares_of
 from ...core.results.sections.section_holes import near_plane
 from ..display import bodies, colors, cuts
 from ..host import caches
 from ..objects import marks
-from ..project import borehole_picks, observed_blocks, project_settings
-from . import heights, interval_values
+from ..project import borehole_picks, interval_values, observed_blocks, project_settings
+from . import heights
 
 BOREHOLES = "boreholes"
-_RADIUS = 0.005  # of the size of all
+RADIUS = 0.005  # of the size of all
 _SIDES = 8
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
 _MOST_WORDS = 24  # of a column of words that have a color of their own
@@ -30,23 +31,27 @@ _scales = caches.new(most=8)  # by column and the texts of the values: viewports
 def show(scene):
     """Shows the boreholes of a scene, in place of those that are shown."""
     bodies.remove(scene, BOREHOLES)
-    tubes = list(_by_column(scene) if column(scene) else _by_block(scene))
+    tubes = list(_colored(scene) if column(scene) else _by_block(scene))
     begin, end = (np.array([tube[side] for tube in tubes], np.float64).reshape(-1, 3) for side in (1, 2))
-    indices = np.flatnonzero((begin != end).any(axis=1))
-    if is_on_cut(scene):
-        on_plane, begin, end = near_plane(
-            begin[indices], end[indices], cuts.plane_in_model(scene), scene.realmodel.view.hole_width
-        )
-        indices = indices[on_plane]
-    else:
-        begin, end = begin[indices], end[indices]
+    indices, begin, end = near_cut(scene, begin, end)
     if not len(indices):
         return
     places = np.stack([begin, end], axis=1).reshape(-1, 3) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
-    shape = marks.lines(places, pairs, _RADIUS * heights.extent(scene), _SIDES)
+    shape = marks.lines(places, pairs, RADIUS * heights.extent(scene), _SIDES)
     mesh = bodies.add(scene, BOREHOLES, "Boreholes", shape).data
     bodies.give_materials(mesh, [tubes[number][0] for number in indices.tolist()], _SIDES)
+
+
+def near_cut(scene, begin, end):
+    """The numbers of the lines from begin to end, (N, 3) each, that are shown, and both ends of them: all in
+    their places or, on a cut, what is near the section plane, on it."""
+    indices = np.flatnonzero((begin != end).any(axis=1))
+    begin, end = begin[indices], end[indices]
+    if not is_on_cut(scene):
+        return indices, begin, end
+    on_plane, begin, end = near_plane(begin, end, cuts.plane_in_model(scene), scene.realmodel.view.hole_width)
+    return indices[on_plane], begin, end
 
 
 def is_on_cut(scene):
@@ -61,9 +66,15 @@ def column(scene):
 
 
 def columns(scene):
-    """The columns of the tables of intervals that there are."""
+    """The columns of the tables of intervals, and the curves of logs, that there are."""
     tables = (interval_values.of_rock(rock) for rock in scene.realmodel.rocks)
     return list(dict.fromkeys(name for values in tables if values is not None for name in values.columns))
+
+
+def limits(scene):
+    """(low, high) of the column that the tubes show; None where it is not one of numbers."""
+    name = column(scene)
+    return _scale(scene, name)[0] if name else None
 
 
 def key(scene):
@@ -71,13 +82,13 @@ def key(scene):
     name = column(scene)
     if not (name and scene.realmodel.view.show_boreholes):
         return None
-    limits, words = _scale(scene, name)
-    if limits is None:
+    between, words = _scale(scene, name)
+    if between is None:
         return ColorKey(name, [(word, rgb(colors.hue(n))) for n, word in enumerate(words)])
-    if not limits[1] > limits[0]:
+    if not between[1] > between[0]:
         return None
     shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
-    return ColorKey(name, limits=limits, colors=shades)
+    return ColorKey(name, limits=between, colors=shades)
 
 
 def labels(scene):
@@ -105,19 +116,25 @@ def _by_block(scene):
             yield material_of(layer or 0), begin, end
 
 
-def _by_column(scene):
+def _colored(scene):
+    for values, materials in by_column(scene):
+        yield from zip(materials, values.begins.tolist(), values.ends.tolist(), strict=True)
+
+
+def by_column(scene):
+    """For each rock mass the IntervalValues of the column that the tubes show, as far as they can be seen,
+    and their materials."""
     name = column(scene)
-    limits, words = _scale(scene, name)
+    between, words = _scale(scene, name)
     for rock in scene.realmodel.rocks:
         values = interval_values.of_rock(rock)
         if values is None or name not in values.columns:
             continue
-        values = values.some(values.has(name))
+        values = values.some(values.has(name)) if between is None else seen_values(values, name)
         column_values = values.columns[name]
-        codes = _hues(column_values, words) if limits is None else _shades(column_values, limits)
+        codes = _hues(column_values, words) if between is None else _shades(column_values, between)
         materials = {code: colors.plain_material(f"{name} {code}", code) for code in sorted(set(codes))}
-        for code, begin, end in zip(codes, values.begins.tolist(), values.ends.tolist(), strict=True):
-            yield materials[code], begin, end
+        yield values, [materials[code] for code in codes]
 
 
 def _scale(scene, name):
@@ -136,16 +153,14 @@ def _scale_of(scene, name):
         if values is not None and name in values.columns:
             parts.append(values.columns[name])
     if all(part.dtype.kind == "f" for part in parts):
-        numbers = np.concatenate(parts)
-        numbers = numbers[np.isfinite(numbers)]
-        return ((float(numbers.min()), float(numbers.max())) if len(numbers) else (0.0, 0.0)), []
+        return limits_of(np.concatenate(parts)), []
     words, counts = np.unique(np.concatenate([part.astype(str) for part in parts]), return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return None, [word for word in words[order].tolist() if word][:_MOST_WORDS]
 
 
-def _shades(values, limits):
-    steps = np.rint((values - limits[0]) / ((limits[1] - limits[0]) or 1.0) * (_STEPS - 1))
+def _shades(values, between):
+    steps = np.rint(shares_of(values, between) * (_STEPS - 1))
     shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))[:, :3].tolist()
     codes = [hex_color(shade) for shade in shades]
     return [codes[int(step)] for step in steps.tolist()]

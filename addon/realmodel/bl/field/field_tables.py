@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads tables of boreholes, of observed blocks and of dips for a rock mass, each told by its columns."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
@@ -19,6 +19,7 @@ from ...core.readers import (
 )
 from ...core.readers.formats import HOLES, SHAPES, endings, format_of
 from ...core.readers.object_input import is_object_file
+from ...core.readers.tables.hole_logs import is_log
 from ...core.readers.tables.hole_tables import COLLARS, OBSERVED, columns_in, normalized_name
 from ...core.readers.tables.intervals import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
@@ -95,8 +96,11 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
     check_column_names(columns, ALL_COLUMNS)
     tables = {kind: file for kind in _ONE_OF_EACH if (file := of_holes.pop(kind, None)) is not None}
     sorted_tables, assays = FieldTables(), []
+    logs = [path for path in paths if is_log(path)]
+    if len(logs) == len(paths) == 1 and not tables:
+        tables["file"] = logs[0]  # which may have its collar, and tops
     for path in paths:
-        if path in tables.values():
+        if path in tables.values() or path in logs:
             continue
         if is_map(path):
             sorted_tables.maps.append(_map_file(path, of_maps or {}, units))
@@ -114,17 +118,20 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
             raise InputRefused(what, file=path, advice="choose one of them, or name columns that differ")
         else:
             tables[kind] = path
+    if logs:
+        tables["logs"] = logs
     of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
     if tables and not (assays and tables.keys() <= {"collars", "survey"}):
         sorted_tables.boreholes = _boreholes(tables, of_holes)
     for path in assays:
-        sorted_tables.assays.append(_boreholes(tables | {"picks": None, "intervals": path}, of_holes))
+        of_assays = tables | {"picks": None, "intervals": path, "logs": ()}
+        sorted_tables.assays.append(_boreholes(of_assays, of_holes))
     return sorted_tables
 
 
 def _boreholes(tables, of_holes):
     """Boreholes, with those of the rows that are named which their tables have. Raises OptionRefused."""
-    names = {Path(file).name for file in tables.values() if file is not None}
+    names = {Path(file).name for kind in _ONE_OF_EACH if (file := tables.get(kind)) is not None}
     rows = {
         key: [row for row in of_holes.get(key, ()) if row.rpartition(":")[0].strip() in names]
         for key in ("unrepaired", "left_out")
@@ -211,7 +218,8 @@ def _read(scene, rock, tables, units):
     if tables.boreholes is not None:
         picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
         intervals = tables.boreholes.intervals
-        logged += [tables.boreholes] if intervals is not None and not is_object_file(intervals) else []
+        has_values = intervals is not None and not is_object_file(intervals)
+        logged += [replace(tables.boreholes, logs=())] if has_values else []
     seen, left_out = list(picks.observations), list(picks.left_out)
     for file in tables.observations:
         observed, not_used = read_observed_places(file, units, unit)
@@ -243,7 +251,10 @@ def _read(scene, rock, tables, units):
         SpaceDips.joined(of_series) if of_series else None,
         left_out,
         [name for name in meant.values() if name not in known_names],
-        [read_interval_values(boreholes, unit) for boreholes in logged],
+        [
+            *(read_interval_values(boreholes, unit) for boreholes in logged),
+            *([picks.logs] if picks.logs else []),
+        ],
         maps,
         warnings,
     )

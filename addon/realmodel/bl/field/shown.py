@@ -14,7 +14,7 @@ from .. import display
 from ..display import bodies, colors, cuts
 from ..objects import exaggeration, marks
 from ..project import project_settings, settings
-from . import boreholes, data, handle, heights, map_settings, misfits
+from . import boreholes, data, handle, heights, hole_curves, map_settings, misfits
 
 MAP, CONTACTS, DIPS, MISFITS = "map", "contacts", "dips", "misfits"
 KINDS = (CONTACTS, DIPS, MISFITS)  # shaped for the exaggeration
@@ -68,6 +68,7 @@ def _show_near_cut(scene):
     _show(
         scene,
         (boreholes.BOREHOLES, view.show_boreholes, boreholes.show),
+        (hole_curves.CURVES, hole_curves.is_wanted(scene), hole_curves.show),
         (CONTACTS, view.show_contacts, _contacts),
         (DIPS, view.show_dips, _dips),
     )

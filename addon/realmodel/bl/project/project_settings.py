@@ -27,6 +27,7 @@ from ..objects import built_models, exaggeration, shapes, stored_arrays
 from ..objects.origin import KEY as ORIGIN_KEY
 from . import (
     borehole_picks,
+    interval_values,
     library_rows,
     method_settings,
     names,
@@ -514,6 +515,8 @@ def add_rock(group, rock):
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
         borehole_picks.keep_ends(row, rock.hole_ends)
+        if rock.hole_values is not None:
+            interval_values.add(row, rock.hole_values)
         observed_blocks.keep(row, rock.observed)
         surface_dips.keep(row, rock.dips)
         series_settings.fill(row, rock.series)

@@ -22,6 +22,7 @@ from ..project.library import Library, Property
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_entries import Body, Fault
+from ..readers.tables.interval_values import IntervalValues
 from ..readers.tables.observations import Bounds, LeftOut, Observations, Origin
 from ..settings.data_files import MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, Dips, SpaceDips
@@ -39,7 +40,7 @@ RECORDED: tuple[type, ...] = (
     *(BuildWarning, InputRefused, Project, Library, Property, Interpolation, Variogram, Structure),
     *(SeriesField, Lattice, ScalarField, SolvedField, Anisotropy),
     *(MapLayer, MeshFile, PointFile, DipFile, Dips, SpaceDips, Series),
-    *(Observations, Bounds, LeftOut, Origin, SurfaceData),
+    *(Observations, Bounds, LeftOut, Origin, SurfaceData, IntervalValues),
 )
 RECORD = "record"  # the table of objects; its arrays are record_0, record_1, ...
 _STORED = StoredClasses(RECORDED)

@@ -57,7 +57,8 @@ def _blocks(model: ModelData, options: dict) -> list[Part]:
 
 
 def _drawn(section: SectionData, options: dict) -> Drawing:
-    return draw_section(section, options.pop("exaggeration", 1.0), hole_width=options.pop("hole_width", 0.0))
+    names = ("exaggeration", "hole_width", "hole_column")
+    return draw_section(section, **{name: options.pop(name) for name in names if name in options})
 
 
 def _drawn_samples(asked: tuple[SectionSamples, Probabilities], options: dict) -> Drawing:

@@ -27,19 +27,27 @@ from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
 from ..results.sections.section_data import FenceData, SectionData, traces_on_fence, traces_on_plane
 from ..results.sections.section_drawing import draw_section
-from ..results.sections.section_holes import hole_lines, hole_places, line_through
+from ..results.sections.section_holes import hole_lines, hole_places, hole_values, line_through
 from ..settings.method_options import check_threads
 
 
 class Section(SectionData):
     """Convex polygons on a cutter."""
 
-    def save(self, path: str | Path, exaggeration: float = 1.0, hole_width: float = 0.0) -> None:
+    def save(
+        self,
+        path: str | Path,
+        exaggeration: float = 1.0,
+        hole_width: float = 0.0,
+        hole_column: str | None = None,
+    ) -> None:
         """Writes the polygons, with block and property, to a file in the format of its ending, or a drawing
         of them to a .svg, .dxf or .png. exaggeration: of heights in drawings. hole_width: drawings have the
-        boreholes within this distance of the section, model units. The file appears whole or not at all.
-        Raises UsageError, OutputFailed."""
-        SECTION.save(self, path, exaggeration=exaggeration, hole_width=hole_width)
+        boreholes within this distance of the section, model units. hole_column: beside these as a curve, a
+        column of `hole_values`; its unit may be left out. The file appears whole or not at all. Raises
+        UsageError, OutputFailed."""
+        drawn = {"exaggeration": exaggeration, "hole_width": hole_width, "hole_column": hole_column}
+        SECTION.save(self, path, **drawn)
 
     def _repr_svg_(self) -> str | None:
         """The drawing that `save` writes; None where there is none, as of the section by a surface."""
@@ -238,6 +246,7 @@ def section(
             plane=(point, normal),
             faults=traces_on_plane(model, point, normal),
             holes=hole_lines(model),
+            hole_values=hole_values(model.project),
         )
 
     return run(task, progress, cancel, threads=threads)
@@ -348,6 +357,7 @@ def fence(
             panel=np.concatenate(numbers),
             faults=traces_on_fence(model, polyline),
             holes=hole_lines(model),
+            hole_values=hole_values(model.project),
         )
 
     return run(task, progress, cancel, threads=threads)

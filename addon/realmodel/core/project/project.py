@@ -16,6 +16,7 @@ from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
+from ..readers.tables.interval_values import IntervalValues
 from ..readers.tables.observations import Observations
 from ..settings.crs import checked_crs
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, ObservationFile, PointFile
@@ -218,7 +219,7 @@ class Rock(Entry):
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
     `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
     blocks; `hole_picks` is what each of them met once they are read (Picks.holes), and `hole_ends` where it
-    ends (Picks.ends): for display, no input.
+    ends (Picks.ends), `hole_values` the curves of their logs (Picks.logs): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
     they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are
     those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it.
@@ -301,6 +302,7 @@ class Rock(Entry):
     series: list[Series] = declared(kind="tables", of=Series, factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     hole_ends: Mapping = field(default_factory=dict, repr=False, compare=False)
+    hole_values: IntervalValues | None = field(default=None, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 

@@ -14,7 +14,7 @@ from ..base.algebra import is_number
 from ..base.errors import InputRefused
 from ..base.toml_table import Source, TomlDocument, TomlTable
 from ..readers import is_mesh_file
-from ..settings.data_files import MESH_READING, READING, MapLayer, MeshFile, PointFile, is_wkt
+from ..settings.data_files import MESH_READING, READING, MapLayer, MeshFile, PointFile, is_wkt, list_of
 from ..settings.method_options import checked
 from ..settings.setting import Setting, declarations, settings_of
 from .entry import check_file, errors_located, is_file
@@ -157,6 +157,12 @@ def _with_reading(table: TomlTable, values: dict) -> dict:
 
 def _options(key: _Key) -> dict:
     return {name: key.table.content[name] for name in key.setting.parts if name in key.table}
+
+
+def _files(key: _Key) -> list[Path]:
+    """A file, or a list of files."""
+    files = list_of(_checked(key))
+    return [key.folder / file for file in files]
 
 
 def _line(key: _Key) -> str:
@@ -309,6 +315,7 @@ READ: Mapping[str, Read] = {
     "integer": lambda key: key.table.integer(key.name, required=True),
     "note": _note,
     "file": _Key.path,
+    "files": _files,
     "points": _Key.path,
     "mesh": _Key.path,
     "trace": _trace,

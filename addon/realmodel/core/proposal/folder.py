@@ -20,7 +20,7 @@ from ..project.project_file import load_project
 from ..project.project_writer import library_text, off_text, points_text, region_text, toml_value
 from ..readers.map_input import map_companions
 from ..readers.point_input import companions
-from ..settings.data_files import MapLayer, MeshFile, PointFile, is_wkt
+from ..settings.data_files import MapLayer, MeshFile, PointFile, is_wkt, list_of
 from .choices import Proposal
 
 _PROJECT, _LIBRARY, _PROPOSAL, _GROUND = "project.toml", "library.toml", "proposal.json", "ground.csv"
@@ -208,7 +208,9 @@ def _entries(given: Any, files: _Files, name: str = "file") -> dict[str, str]:
 
 
 def _copied(part: Any, value: Any, files: _Files) -> Any:
-    """A file as a text, or a value that is none."""
+    """A file as a text, several as a list, or a value that is none."""
+    if part.setting.kind == "files":
+        return [files.copy(file) for file in list_of(value)]
     is_file = part.setting.kind in ("ground", "layer_file") and isinstance(value, str) and not is_wkt(value)
     return files.copy(value) if is_file else value
 

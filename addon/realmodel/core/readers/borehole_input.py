@@ -15,7 +15,10 @@ from .object_input import hole_sheets, is_object_file, read_hole_objects
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, picks_of_tables
 from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
+from .tables.hole_logs import read_logs
 from .tables.hole_repair import repair
+from .tables.holes import Holes
+from .tables.interval_values import IntervalValues
 from .tables.unit_names import UnitNames
 
 
@@ -41,11 +44,14 @@ def read_boreholes(
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
         tables = read_repaired(given, model_unit, step, units)
-        if tables.picks is None and tables.intervals is None:
+        if tables.picks is None and tables.intervals is None and not given.logs:
             advice = "give a table of them: picks = ... or intervals = ..."
             what = "it has neither picks nor intervals of blocks"
             raise InputRefused(what, file=given.files[-1], advice=advice)
-        return picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
+        logs = read_logs(tables, Holes(tables), model_unit)
+        picks = picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
+        picks.logs = IntervalValues.joined(logs) if logs else None
+        return picks
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"

@@ -16,9 +16,11 @@ from ..settings.data_files import Boreholes
 from ..settings.method_options import OptionRefused
 from .borehole_input import read_repaired
 from .tables.hole_data import HoleTables
+from .tables.hole_logs import read_logs
 from .tables.hole_problems import HoleProblem
 from .tables.hole_tables import Row
-from .tables.holes import end_of
+from .tables.holes import Holes, end_of
+from .tables.interval_values import IntervalValues
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,9 @@ class BoreholeTables:
 
     collars: hole, x, y, z, end (the depth of the end). survey: hole, depth, azimuth (degrees clockwise from
     north), inclination (degrees from the vertical), dip (from the horizontal). intervals: hole, from, to,
-    block. picks: hole, surface, depth, elevation. problems: of rows that were repaired, left out, or are
+    block. picks: hole, surface, depth, elevation. logs: hole, from, to, and the curves of LAS files by their
+    names with units, "GR (GAPI)": a row for each sample, up to the middle between it and the next one.
+    problems: of rows that were repaired, left out, or are
     used although something is wrong. warnings: sentences.
     """
 
@@ -35,6 +39,7 @@ class BoreholeTables:
     survey: Table
     intervals: Table
     picks: Table
+    logs: Table
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
@@ -57,6 +62,7 @@ def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **ke
         _survey(tables, height),
         _intervals(tables, height),
         _picks(tables, height),
+        _logs(tables, units),
         tables.problems,
         tables.warnings,
     )
@@ -119,6 +125,15 @@ def _intervals(tables: HoleTables, height: float) -> Table:
     rows = [row for row in tables.intervals or () if row.is_used]
     depths = {name: _numbers(rows, name, height) for name in ("from", "to")}
     return Table({"hole": _texts(rows, "hole"), **depths, "block": _texts(rows, "block")})
+
+
+def _logs(tables: HoleTables, unit: str) -> Table:
+    logs = read_logs(tables, Holes(tables), unit) if tables.given.logs else []
+    values = IntervalValues.joined(logs) if logs else None
+    if values is None:
+        return Table({"hole": np.array([], str), "from": np.zeros(0), "to": np.zeros(0)})
+    begins, ends = values.depths.T * tables.scale(unit)[2]
+    return Table({"hole": values.holes, "from": begins, "to": ends, **values.columns})
 
 
 def _picks(tables: HoleTables, height: float) -> Table:

@@ -128,9 +128,7 @@ def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterat
 _KINDS = (HOLE, LINES, POINTS)
 
 
-def _read_holes(
-    boreholes: Boreholes, file: Path, model_unit: str
-) -> tuple[list[GeoObject], list[str]]:
+def _read_holes(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[list[GeoObject], list[str]]:
     """The boreholes of a file, or its object `layer`, in the model's unit, and warnings, sentences. Raises
     InputRefused for a unit that is not known."""
     objects, warnings = [], []
@@ -163,9 +161,7 @@ def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_
     return picks
 
 
-def hole_sheets(
-    boreholes: Boreholes, file: Path, model_unit: str
-) -> tuple[dict[str, Sheet], list[str]]:
+def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[dict[str, Sheet], list[str]]:
     """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
     those that it has, in the model's unit; and warnings, sentences. Raises as read_object."""
     rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}

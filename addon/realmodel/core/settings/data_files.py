@@ -314,6 +314,13 @@ def _checked_tolerance(key: str, length: Any) -> Any:
     return length
 
 
+def _checked_files(key: str, files: Any) -> Any:
+    if not all(isinstance(file, Path) or (isinstance(file, str) and file.strip()) for file in list_of(files)):
+        advice = f'write {key} = ["h1.las", "h2.las"]'
+        raise OptionRefused(f"'{key}' must be a file or a list of files, not {files!r}", key, advice)
+    return files
+
+
 _ROW = re.compile(r".*\S:\s*\d+\s*")
 
 
@@ -356,6 +363,9 @@ class Boreholes:
     are closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
     tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
     are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
+    logs: LAS files of logs along the holes, a file or a list of them, each of the hole that is called as its
+    well; their curves are shown, and their depths are in the unit that the file states. With collars and
+    without picks and intervals they are shown alone.
     """
 
     picks: str | Path | None = described(FILE)
@@ -377,6 +387,7 @@ class Boreholes:
         unset="a thousandth of the depth of the hole, at most a tenth of the thinner interval",
         check=_checked_tolerance,
     )
+    logs: Sequence[str | Path] | str | Path = declared((), kind="files", check=_checked_files)
     unrepaired: Sequence[str] = declared((), kind="table_rows", check=_checked_rows)
     left_out: Sequence[str] = declared((), kind="table_rows", check=_checked_rows)
 
@@ -384,17 +395,23 @@ class Boreholes:
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
         keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance", "unrepaired")
-        return [key for key in (*keys, "left_out") if getattr(self, key)]
+        return [key for key in (*keys, "left_out", "logs") if getattr(self, key)]
+
+    @property
+    def log_files(self) -> list[Path]:
+        """The files of logs."""
+        return [Path(file) for file in list_of(self.logs)]
 
     @property
     def files(self) -> list[Path]:
         """The files that there are."""
-        tables = (self.collars, self.survey, self.picks, self.intervals, self.file)
+        tables = (*self.log_files, self.collars, self.survey, self.picks, self.intervals, self.file)
         return [Path(file) for file in tables if file is not None]
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if self.picks is None and self.intervals is None and self.file is None:
+        has_logs = bool(self.collars and self.logs)
+        if self.picks is None and self.intervals is None and self.file is None and not has_logs:
             what = "there are neither picks nor intervals"
             raise OptionRefused(what, "picks", "give the table of picks = ... or intervals = ...")
         check_column_names(self.columns, HOLE_COLUMNS)

@@ -102,6 +102,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         series=series,
         hole_picks=picks.holes or rock.hole_picks,
         hole_ends=picks.ends or rock.hole_ends,
+        hole_values=picks.logs or rock.hole_values,
     )
     return FieldData(
         read,

@@ -28,6 +28,7 @@ _DEPTHS = ("DEPT", "DEPTH", "MD", "DPTH", "TDEP", "BDEP")
 _X = ("XCOORD", "X", "EASTING", "EAST", "UTMX", "XWELL", "X-COORD", "XLOC")
 _Y = ("YCOORD", "Y", "NORTHING", "NORTH", "UTMY", "YWELL", "Y-COORD", "YLOC")
 _Z = ("EKB", "KB", "EREF", "EDF", "ELEV", "EGL", "GL", "ELEVATION")
+_NAMES = ("WELL", "UWI", "API", "WELL NAME")
 _END = ("TD", "TDD", "TDL", "DTD")
 
 
@@ -59,12 +60,8 @@ def read_las(file: Path) -> dict[str, Sheet]:
     """The curves of a file as values of intervals, which meet between depths; and its collar, tops and
     directions where it has them. Raises InputRefused naming the line."""
     sections = _sections(file)
-    version, well = _section(sections, "V"), _section(sections, "W")
-    is_old = version.item("VERS")[0].startswith("1.")
-    if is_old:  # descriptions stand where later versions have the values
-        texts = ("STRT", "STOP", "STEP", "NULL")
-        well.items = [(m, u, v, d) if m.upper() in texts else (m, u, d, v) for m, u, v, d in well.items]
-    hole = well.item("WELL", "UWI", "API", "WELL NAME")[0] or file.stem
+    version, well = _section(sections, "V"), _well(sections)
+    hole = well.item(*_NAMES)[0] or file.stem
     sheets = {}
     if (curves := _curves(file, sections, hole)) is not None:
         sheets["intervals"] = curves
@@ -78,6 +75,21 @@ def read_las(file: Path) -> dict[str, Sheet]:
         rows = [(line, [hole, *row]) for line, row in ways.rows]
         sheets["survey"] = Sheet(["hole", *names], rows, ways.line, ["", *ways.units])
     return sheets
+
+
+def well_names(file: Path) -> list[str]:
+    """What a file calls its well: by its name, and by its numbers."""
+    well = _well(_sections(file))
+    return [name for mnemonic in _NAMES if (name := well.item(mnemonic)[0])]
+
+
+def _well(sections: list[_Section]) -> _Section:
+    well = _section(sections, "W")
+    if _section(sections, "V").item("VERS")[0].startswith("1."):
+        # descriptions stand where later versions have the values
+        texts = ("STRT", "STOP", "STEP", "NULL")
+        well.items = [(m, u, v, d) if m.upper() in texts else (m, u, d, v) for m, u, v, d in well.items]
+    return well
 
 
 def _sections(file: Path) -> list[_Section]:
@@ -152,7 +164,8 @@ def _curves(file: Path, sections: list[_Section], hole: str) -> Sheet | None:
         if begin < end
     ]
     length = _FEET.get(unit.upper(), unit)
-    return Sheet(["hole", "from", "to", *names[1:]], entries, definition.line, ["", length, length])
+    units = ["", length, length, *(unit for _, unit, *_ in definition.items[1:])]
+    return Sheet(["hole", "from", "to", *names[1:]], entries, definition.line, units)
 
 
 def _known(values: list[str], null: str) -> list[str]:

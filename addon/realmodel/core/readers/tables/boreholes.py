@@ -13,6 +13,7 @@ from .hole_data import HoleTables
 from .hole_problems import HoleProblem
 from .hole_tables import Row
 from .holes import Holes
+from .interval_values import IntervalValues
 from .intervals import read_intervals
 from .observations import LeftOut, Observations, Origin, left_out_of
 from .unit_names import UnitNames
@@ -26,7 +27,8 @@ class Picks:
     (3,), where it is known, and (surface, place (3,)) of its picks, and of the tops of its intervals, the
     highest first; warnings, sentences. ends: where holes end (3,), as far as their collars say. observations:
     of the blocks of intervals; left_out: intervals and picks that are not used. switched_off: as points,
-    those of rows that are. problems: what was wrong with rows of tables."""
+    those of rows that are. problems: what was wrong with rows of tables. logs: the curves of LAS files, where
+    there are any."""
 
     of_surfaces: dict[str, list[Pick]] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -35,6 +37,7 @@ class Picks:
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
     switched_off: dict[str, np.ndarray] = field(default_factory=dict)
+    logs: IntervalValues | None = None
     problems: list[HoleProblem] = field(default_factory=list)
 
     @property

@@ -83,7 +83,10 @@ def read_hole_rows(
         file = getattr(boreholes, kind)
         if file is None:
             continue
-        if kind in sheets and "block" in required[kind] and not _has_blocks(boreholes, sheets[kind]):
+        is_log = kind == "intervals" and Path(file) in boreholes.log_files
+        if is_log or (
+            kind in sheets and "block" in required[kind] and not _has_blocks(boreholes, sheets[kind])
+        ):
             continue  # curves of a log
         slow = step if kind in ("picks", "intervals") else no_step
         if kind in sheets:
@@ -107,7 +110,7 @@ def _whole_files(boreholes: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
     """The same with the tables of files that hold all of them in the places of those that are not named, and
     these tables by their kind."""
     sheets: dict[str, Sheet] = {}
-    for file in dict.fromkeys(boreholes.files):
+    for file in dict.fromkeys(boreholes.files[len(boreholes.log_files) :]):
         file_format = format_of(file, HOLES)
         if file_format is None:
             if file == boreholes.file:

@@ -308,7 +308,7 @@ class Holes:
         if self._without_survey:
             names = number_list(self._without_survey)
             warnings.append(f"{self.given.survey}: no direction for {names}: taken as vertical")
-        if self._unused:
+        if self._unused and (self.given.picks or self.given.intervals):
             what = "picks" if self.given.intervals is None else "picks or intervals"
             what = "intervals" if self.given.picks is None else what
             warnings.append(f"{self.given.collars}: no {what} for {number_list(sorted(self._unused))}")

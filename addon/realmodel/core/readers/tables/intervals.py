@@ -16,12 +16,13 @@ from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT
 from ...settings.data_files import Boreholes
-from .hole_data import read_hole_rows
+from .hole_data import HoleTables, read_hole_rows
+from .hole_logs import read_logs
 from .hole_repair import repair
-from .hole_tables import NO_VALUE, Row
+from .hole_tables import Row
 from .holes import Holes
+from .interval_values import IntervalValues, column_values
 from .observations import LeftOut, Observations, unknown_block
-from .table_layout import is_number
 from .unit_names import UnitNames
 
 _ALIKE = 1e-6  # of the largest depth in a hole: depths that are nearer are one, which digits have parted
@@ -226,78 +227,38 @@ def tops_of(observations: Observations) -> list[tuple[str, np.ndarray]]:
 _PLACES = ("hole", "x", "y", "z", "from", "to", "azimuth", "dip", "inclination")  # columns that say where
 
 
-@dataclass(frozen=True, eq=False)
-class IntervalValues:
-    """holes: (N,) texts. begins, ends: (N, 3) float64, the ends of the intervals, model units. depths: (N, 2)
-    float64 along the hole. columns: by name (N,) numbers, NaN where there are none, or texts."""
-
-    holes: np.ndarray
-    begins: np.ndarray
-    ends: np.ndarray
-    depths: np.ndarray
-    columns: dict[str, np.ndarray]
-
-    def has(self, name: str) -> np.ndarray:
-        """(N,) bool: which have a value in a column."""
-        array = self.columns[name]
-        return np.isfinite(array) if array.dtype.kind == "f" else array != ""
-
-    def some(self, chosen: np.ndarray) -> IntervalValues:
-        """Some of them. chosen: (N,) bool, or numbers of rows."""
-        columns = {name: array[chosen] for name, array in self.columns.items()}
-        begins, ends = self.begins[chosen], self.ends[chosen]
-        return IntervalValues(self.holes[chosen], begins, ends, self.depths[chosen], columns)
-
-    @classmethod
-    def joined(cls, parts: Sequence[IntervalValues]) -> IntervalValues:
-        """Several, one after another; columns that some lack have no value there."""
-        names = list(dict.fromkeys(name for part in parts for name in part.columns))
-        columns = {name: _joined(name, parts) for name in names}
-        keys = ("holes", "begins", "ends", "depths")
-        arrays = {key: np.concatenate([getattr(part, key) for part in parts]) for key in keys}
-        return cls(**arrays, columns=columns)
-
-
-def _joined(name: str, parts: Sequence[IntervalValues]) -> np.ndarray:
-    columns = [part.columns.get(name) for part in parts]
-    are_numbers = all(array is None or array.dtype.kind == "f" for array in columns)
-    lacking = np.nan if are_numbers else ""
-    arrays = [
-        np.full(len(part.holes), lacking) if array is None else array if are_numbers else _texts(array)
-        for part, array in zip(parts, columns, strict=True)
-    ]
-    return np.concatenate(arrays)
-
-
-def _texts(array: np.ndarray) -> np.ndarray:
-    return (
-        array if array.dtype.kind != "f" else np.array(["" if v != v else f"{v:g}" for v in array.tolist()])
-    )
-
-
 def read_interval_values(
     given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step
 ) -> IntervalValues:
     """The columns of the table of intervals of some boreholes that do not say where an interval is, in the
-    order of the table. A column is of numbers where all its values are numbers. Rows without a depth, and
-    of holes without a collar, are left out. Raises InputRefused naming file and line."""
+    order of the table, and the curves of their logs. A column is of numbers where all its values are numbers.
+    Rows without a depth, and of holes without a collar, are left out. Raises InputRefused naming file and
+    line."""
     tables = read_hole_rows(given, model_unit, step, ("hole", "from", "to"))
     repair(tables)
-    scale = tables.scale(model_unit)
-    holes, read, ends, depths = Holes(tables), [], [], []
-    names: list[str] = []
-    for row in tables.intervals or ():
-        if not names:
-            names = _names(row)
-        if not (row.has("from") and row.has("to")):
-            continue
+    return interval_values(tables, model_unit)
+
+
+def interval_values(tables: HoleTables, model_unit: str) -> IntervalValues:
+    """The same of tables that are repaired."""
+    holes = Holes(tables)
+    parts = read_logs(tables, holes, model_unit)
+    rows = [row for row in tables.intervals or () if row.has("from") and row.has("to")]
+    if rows:
+        parts.insert(0, _values_of(rows, holes, tables.scale(model_unit)))
+    if not parts:
+        raise InputRefused("there are no intervals in it", file=tables.given.intervals)
+    return IntervalValues.joined(parts)
+
+
+def _values_of(rows: list[Row], holes: Holes, scale: np.ndarray) -> IntervalValues:
+    read, ends, depths = [], [], []
+    for row in rows:
         between = row.number("from"), row.number("to")
         ends.append([holes.place(row, depth, scale) for depth in between])
         depths.append(between)
         read.append((row.text("hole"), row.entries, row.decimal))
-    if not read:
-        raise InputRefused("there are no intervals in it", file=given.intervals)
-    columns = {name: _column(read, at) for at, name in enumerate(names) if name}
+    columns = {name: column_values(read, at) for at, name in enumerate(_names(rows[0])) if name}
     places = np.array(ends, np.float64)
     texts = np.array([hole for hole, _, _ in read], str)
     return IntervalValues(texts, places[:, 0], places[:, 1], np.array(depths), columns)
@@ -310,14 +271,3 @@ def _names(row: Row) -> list[str]:
         if column in row.columns and row.columns[column] < len(names):
             names[row.columns[column]] = ""
     return names
-
-
-def _column(read: list[tuple[str, list[str], str]], at: int) -> np.ndarray:
-    entries = [row[at].strip() if at < len(row) else "" for _, row, _ in read]
-    decimals = [decimal for _, _, decimal in read]
-    lacking = [entry.lower() in NO_VALUE for entry in entries]
-    triples = list(zip(entries, lacking, decimals, strict=True))
-    if all(lacks or is_number(entry, decimal) for entry, lacks, decimal in triples):
-        values = [np.nan if lacks else float(entry.replace(",", ".")) for entry, lacks, _ in triples]
-        return np.array(values, np.float64)
-    return np.array(["" if lacks else entry for entry, lacks, _ in triples], str)

@@ -16,6 +16,7 @@ from ...base.algebra import dot
 from ...base.units import number_text
 from ...cells.model_data import ModelData
 from ...notebook import data_frame, polygon_mesh, with_data
+from ...readers.tables.interval_values import IntervalValues
 from .section_holes import HoleLine
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ class SectionData:
     compartment, of compartment_names. block_names: (B,) of the model's, from the oldest of each rock mass;
     block_colors (B, 3), sRGB from 0 to 1. name: of the model; unit: of its lengths. plane: its point and
     normal, where the cutter is one. faults: where they are on planes and fences. holes: the boreholes of the
-    model, wherever they are.
+    model, wherever they are. hole_values: the curves of their logs; None where there are none.
     """
 
     vertices: np.ndarray
@@ -126,6 +127,7 @@ class SectionData:
     compartment_names: list[str] = field(kw_only=True)
     faults: list[FaultTrace] = field(default_factory=list, kw_only=True)
     holes: list[HoleLine] = field(default_factory=list, kw_only=True)
+    hole_values: IntervalValues | None = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
         met = len(np.unique(self.block))
@@ -222,7 +224,7 @@ class FenceData(SectionData):
 
     def along_panels(self, points: np.ndarray, panel: np.ndarray) -> np.ndarray:
         """(N, 2) float64: distance along the polyline and height of points (N, 3). panel: (N,), that of
-        each."""
+        each, or () of all."""
         steps = np.diff(self.polyline, axis=0)
         away = points[:, :2] - self.polyline[panel]
         along = self.bends[panel] + (away * steps[panel]).sum(axis=1) / np.hypot(*steps.T)[panel]

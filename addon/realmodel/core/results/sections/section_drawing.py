@@ -5,6 +5,8 @@ age, and the coordinates of both ends."""
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +15,7 @@ from ...base.errors import UsageError
 from ...base.units import METERS
 from ...drawing.charts import Axes, legend, legend_size, tick_texts
 from ...drawing.drawing import BLACK, WHITE, Drawing, text_width
+from .section_curves import HoleCurves, Panel
 from .section_data import FenceData, SectionData
 from .section_holes import UNKNOWN, HoleLine, parts_near
 
@@ -39,13 +42,15 @@ def draw_section(
     title: str | None = None,
     cells: tuple[np.ndarray, np.ndarray] | None = None,
     hole_width: float = 0.0,
+    hole_column: str | None = None,
 ) -> Drawing:
     """The section on a page, in its own coordinates at a scale of 1, 2, 2.5, or 5 times a power of ten.
 
     exaggeration: of heights, where the section is vertical. The drawing's layers are named after the blocks.
     cells: corners (N, 4, 2), as of `flattened`, and colors (N, 3) of what is drawn below the outlines of the
     blocks, in place of their colors. hole_width: boreholes within this distance of the section are drawn on
-    it, with their names; of a fence on the panel beside which they lie.
+    it, with their names; of a fence on the panel beside which they lie. hole_column: of section.hole_values,
+    drawn beside the holes as a curve with a color bar.
     Raises UsageError for a section that is empty or not plane, or an exaggeration that is not above 0.
     """
     if not 0 < exaggeration <= MOST_EXAGGERATION:
@@ -56,6 +61,7 @@ def draw_section(
         raise UsageError("there is nothing to draw: the section does not meet the model")
     flat = flattened(section)
     exaggeration = exaggeration if is_vertical(section) else 1.0
+    curves = None if hole_column is None else HoleCurves(section.hole_values, hole_column, hole_width)
     holes = holes_on(section, hole_width) if hole_width > 0 else []
     places = np.concatenate(
         [flat, *([] if cells is None else [cells[0].reshape(-1, 2)]), *(line for _, line in holes)]
@@ -77,6 +83,8 @@ def draw_section(
     present = [int(block) for block in np.unique(section.block)[::-1]]
     entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
     legend_width, legend_height = legend_size(_LEGEND, entries, _SIZE)
+    bar_width, bar_height = (0.0, 0.0) if curves is None else curves.key_size(_SIZE)
+    legend_width = max(legend_width, bar_width)
     subtitle = _subtitle(section, ratio, exaggeration)
     title = title or section.name
     ends = _end_texts(section, flat)
@@ -87,7 +95,7 @@ def draw_section(
         *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle)),
         *(_LEFT + 20 + text_width(text, _SIZE - 1) for text in ends),
     )
-    plot_height = max(height, legend_height)
+    plot_height = max(height, legend_height + bar_height)
     drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + above))
     base = _BELOW + plot_height - height
     drawing.scale, drawing.origin = (
@@ -102,10 +110,14 @@ def draw_section(
         color, name = tuple(section.block_colors[block]), section.block_names[block]
         drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
     _draw_faults(drawing, axes, section)
+    if curves is not None:
+        curves.draw(axes, list(panels_of(section)))
     _draw_holes(drawing, axes, section, holes)
     axes.frame(*_axis_names(section), layer="Axes")
     _draw_ends(drawing, axes, section, ends, are_beside)
     legend(drawing, (_LEFT + width + _GAP, base + height), _LEGEND, entries, _SIZE, layer="Legend")
+    if curves is not None:
+        curves.draw_key(drawing, (_LEFT + width + _GAP, base + height - legend_height), _SIZE)
     top = drawing.height - 20
     drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
     drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")
@@ -141,16 +153,21 @@ def flat_of(section: SectionData, points: np.ndarray) -> np.ndarray:
 def holes_on(section: SectionData, width: float) -> list[tuple[HoleLine, np.ndarray]]:
     """The parts of boreholes within a width of a section, moved onto it, and their corners (N, 2) as they are
     drawn."""
+    return [
+        (part, panel.drawn(part.places))
+        for panel in panels_of(section)
+        for part in parts_near(section.holes, panel.plane, width, panel.span)
+    ]
+
+
+def panels_of(section: SectionData) -> Iterator[Panel]:
+    """The planes of a section: one, or those of the panels of a fence."""
     if not isinstance(section, FenceData):
-        parts = parts_near(section.holes, plane_of(section), width)
-        return [(part, flat_of(section, part.places)) for part in parts]
-    hole_parts = []
-    for panel, (start, end) in enumerate(pairwise(section.polyline)):
+        yield Panel(plane_of(section), None, partial(flat_of, section))
+        return
+    for number, (start, end) in enumerate(pairwise(section.polyline)):
         plane = np.append(start, 0.0), np.array([end[1] - start[1], start[0] - end[0], 0.0])
-        for part in parts_near(section.holes, plane, width, (start, end)):
-            flat = section.along_panels(part.places, np.full(len(part.places), panel))
-            hole_parts.append((part, flat))
-    return hole_parts
+        yield Panel(plane, (start, end), partial(section.along_panels, panel=np.array(number)))
 
 
 def _draw_holes(

@@ -14,6 +14,7 @@ from ...base.algebra import begins_run, norm
 from ...base.errors import InputRefused, UsageError, number_list
 from ...cells.model_data import ModelData
 from ...project.project import Project, Rock
+from ...readers.tables.interval_values import IntervalValues
 from ...readers.tables.observations import Observations
 
 UNKNOWN = -1  # block of a part of a hole that nothing is known of
@@ -106,22 +107,34 @@ def near_plane(
     return numbers, *ends
 
 
+def near_panel(
+    begin: np.ndarray,
+    end: np.ndarray,
+    plane: tuple[np.ndarray, np.ndarray],
+    width: float,
+    span: tuple[np.ndarray, np.ndarray] | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """As near_plane, of a plane that is cut to a panel. span: both ends (2,) of this in plan; None: the whole
+    plane."""
+    numbers, begin, end = near_plane(begin, end, plane, width)
+    if span is None or not len(numbers):
+        return numbers, begin, end
+    middle, way = 0.5 * (begin + end)[:, :2], span[1] - span[0]
+    share = ((middle - span[0]) * way).sum(axis=1) / (way * way).sum()
+    inside = (share >= 0.0) & (share <= 1.0)
+    return numbers[inside], begin[inside], end[inside]
+
+
 def parts_near(
     holes: Iterable[HoleLine],
     plane: tuple[np.ndarray, np.ndarray],
     width: float,
     span: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> list[HoleLine]:
-    """What of holes lies within a width of a plane, moved onto it. span: both ends (2,) in plan of the panel
-    that the plane is cut to; None: the whole plane."""
+    """What of holes lies within a width of a plane, moved onto it. span: as of near_panel."""
     parts = []
     for hole in holes:
-        numbers, begin, end = near_plane(hole.places[:-1], hole.places[1:], plane, width)
-        if span is not None and len(numbers):
-            middle, way = 0.5 * (begin + end)[:, :2], span[1] - span[0]
-            share = ((middle - span[0]) * way).sum(axis=1) / (way * way).sum()
-            inside = (share >= 0.0) & (share <= 1.0)
-            numbers, begin, end = numbers[inside], begin[inside], end[inside]
+        numbers, begin, end = near_panel(hole.places[:-1], hole.places[1:], plane, width, span)
         for run in _runs(numbers):
             places = np.concatenate([begin[run], end[run[-1:]]])
             parts.append(HoleLine(hole.name, places, hole.blocks[numbers[run]]))
@@ -134,6 +147,12 @@ def _runs(numbers: np.ndarray) -> Iterator[np.ndarray]:
     for a, b in pairwise(starts):
         if b > a:
             yield np.arange(a, b)
+
+
+def hole_values(project: Project) -> IntervalValues | None:
+    """The values along the boreholes of a project; None where there are none."""
+    parts = [rock.hole_values for rock in project.rocks if rock.hole_values is not None]
+    return IntervalValues.joined(parts) if parts else None
 
 
 def hole_places(project: Project) -> dict[str, np.ndarray]:

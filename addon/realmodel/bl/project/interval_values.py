@@ -5,7 +5,7 @@ be looked at; a build does not use it."""
 import numpy as np
 
 from ...core import RealModelError
-from ...core.readers.tables.intervals import IntervalValues
+from ...core.readers.tables.interval_values import IntervalValues
 from ..host import caches
 
 _known = caches.new(most=8)  # by digest
@@ -37,6 +37,12 @@ def of_rock(row):
     if digest not in _known:
         _known[digest] = _read(row.interval_values)
     return _known[digest]
+
+
+def of_scene(scene):
+    """Those of all rock masses of a scene; None where there are none."""
+    parts = [values for rock in scene.realmodel.rocks if (values := of_rock(rock)) is not None]
+    return IntervalValues.joined(parts) if parts else None
 
 
 def _read(arrays):

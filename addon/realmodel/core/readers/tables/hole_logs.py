@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Logs along boreholes, of LAS files: each sample of a curve is an interval, up to the middle between it and
+the next one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import count
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused, number_list
+from ...base.units import factor, unit_of
+from ..holes.las import begins_as_las, read_las, well_names
+from .hole_data import HoleTables
+from .hole_tables import Header, Row, Sheet, normalized_name
+from .holes import Holes
+from .interval_values import IntervalValues, column_values
+
+_HEAD = 4096  # bytes that tell what a file is
+_MOST_PLACES = 2000  # along a hole; between them it is straight
+
+
+def is_log(file: Path) -> bool:
+    """Whether a file is one of logs. Raises InputRefused where it cannot be read."""
+    try:
+        with Path(file).open("rb") as opened:
+            return begins_as_las(opened.read(_HEAD))
+    except OSError as error:
+        raise InputRefused(f"it cannot be read: {error.strerror or error}", file=file) from error
+
+
+def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[IntervalValues]:
+    """The curves of the logs of boreholes, one after another; those of one name, too, by the numbers 2, 3 and
+    so on. A unit stands in brackets behind the name of its curve. tables: repaired; what there is to say is
+    added to their warnings. Raises InputRefused, also where a well is no hole of the tables."""
+    rows = _rows_of_holes(tables)
+    sheets = {file: _curves(file) for file in tables.given.log_files}
+    holes_of = {file: _hole(file, sheet, rows) for file, sheet in sheets.items()}
+    strangers = [f"'{sheet.rows[0][1][0]}'" for file, sheet in sheets.items() if holes_of[file] is None]
+    if strangers:
+        file = next(file for file, hole in holes_of.items() if hole is None)
+        advice = "give the table of collars = ..."
+        if rows:
+            advice = (
+                f"there are {number_list(sorted(rows))}; write it so in one of them, or leave the log out"
+            )
+        raise InputRefused(
+            f"no hole is called {number_list(strangers)}, as its well is", file=file, advice=advice
+        )
+    scale = tables.scale(model_unit)
+    logs = []
+    for file, sheet in sheets.items():
+        row = rows[str(holes_of[file])]
+        bounds = _bounds(tables, file, sheet, model_unit)
+        row = row if "from" in row.columns or "depth" in row.columns else _named(file, row.text("hole"))
+        depths = np.unique(bounds)
+        depths = depths[np.unique(np.linspace(0, len(depths) - 1, _MOST_PLACES).round().astype(int))]
+        places = np.array([holes.place(row, depth, scale) for depth in depths.tolist()])
+        begins, ends = (
+            np.column_stack([np.interp(bounds[:, side], depths, axis) for axis in places.T])
+            for side in (0, 1)
+        )
+        names = np.full(len(bounds), row.text("hole"))
+        logs.append(IntervalValues(names, begins, ends, bounds, _columns(sheet)))
+    return logs
+
+
+def _curves(file: Path) -> Sheet:
+    if not is_log(file):
+        raise InputRefused("it is not a LAS file", file=file, advice="export the log as LAS")
+    sheet = read_las(file).get("intervals")
+    if sheet is None or not sheet.rows:
+        raise InputRefused("it has no curves", file=file)
+    return sheet
+
+
+def _rows_of_holes(tables: HoleTables) -> dict[str, Row]:
+    """A row of each hole, which says where it begins: of collars or, without them, of picks or intervals."""
+    rows = tables.collars
+    if rows is None:
+        rows = [*(tables.picks or ()), *(tables.intervals or ())]
+    return {row.text("hole"): row for row in reversed(rows)}
+
+
+def _hole(file: Path, sheet: Sheet, holes: Mapping[str, Row]) -> str | None:
+    """The hole that is called as the well of a file; None where none is."""
+    alike = {normalized_name(hole): hole for hole in holes}
+    for name in (sheet.rows[0][1][0], *well_names(file)):
+        if name in holes or normalized_name(name) in alike:
+            return name if name in holes else alike[normalized_name(name)]
+    return None
+
+
+def _named(file: Path, hole: str) -> Row:
+    """A row that says of which hole it is."""
+    return Row(Header(file, ("hole", "from"), 1, {"hole": 0, "from": 1}), 1, [hole, ""])
+
+
+def _bounds(tables: HoleTables, file: Path, sheet: Sheet, model_unit: str) -> np.ndarray:
+    """(N, 2) the depths of the samples, in the unit of the tables: the file says its own."""
+    of_tables = tables.given.units
+    of_tables = (of_tables.get("z") if isinstance(of_tables, Mapping) else of_tables) or model_unit
+    text = sheet.units[1] if len(sheet.units) > 1 else ""
+    unit = unit_of(text)
+    if unit is None and text:
+        advice = "write the unit of the depths into the file, such as M or FT"
+        raise InputRefused(f"'{text}' is not a unit of length", file=file, line=sheet.line, advice=advice)
+    if unit not in (None, of_tables):
+        tables.warnings.append(f"{file}: its depths are in {unit}, as it says: converted to {of_tables}")
+    bounds = np.array([[float(entry) for entry in entries[1:3]] for _, entries in sheet.rows])
+    return bounds * (1.0 if unit is None else factor(unit, of_tables))
+
+
+def _columns(sheet: Sheet) -> dict[str, np.ndarray]:
+    read = [("", entries, ".") for _, entries in sheet.rows]
+    columns: dict[str, np.ndarray] = {}
+    for at, name in enumerate(sheet.names):
+        if at < 3:  # hole, from, to
+            continue
+        unit = sheet.units[at] if at < len(sheet.units) else ""
+        names = (f"{name} {n}" if n > 1 else name for n in count(1))
+        names_with_units = (f"{name} ({unit})" if unit else name for name in names)
+        columns[next(name for name in names_with_units if name not in columns)] = column_values(read, at)
+    return columns
