@@ -128,7 +128,7 @@ def _intervals(tables: HoleTables, height: float) -> Table:
 
 
 def _logs(tables: HoleTables, unit: str) -> Table:
-    logs = read_logs(tables, Holes(tables), unit) if tables.given.logs else []
+    logs = read_logs(tables, Holes(tables), unit) if tables.boreholes.logs else []
     values = IntervalValues.joined(logs) if logs else None
     if values is None:
         return Table({"hole": np.array([], str), "from": np.zeros(0), "to": np.zeros(0)})
