@@ -12,7 +12,7 @@ from realmodel.bl.field import boreholes
 from realmodel.bl.project import interval_values, project_settings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "core"))
-from las_files import las_text  # noqa: E402
+from las_files import las_text
 
 COLLARS = "hole,x,y,z,eoh\nB-0,20,50,60,40\nB-1,80,51,60,40\n"
 LOGS = "hole,from,to,lith\nB-0,0,10,Sand\nB-0,10,30,Clay\nB-1,0,12,Sand\nB-1,12,30,Clay\n"
