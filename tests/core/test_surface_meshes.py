@@ -128,7 +128,7 @@ def test_stl_shares_vertices(write, content):
             "m.ts",
             "GOCAD PLine 1\nVRTX 1 0 0 0\nVRTX 2 1 0 0\nSEG 1 2\nEND\n",
             "has no faces; if it holds points",
-        ),  # noqa: E501
+        ),
         ("m.ply", PLY.replace("4 0 1 2 3", "4 0 1 2 9"), "face 1 has a corner"),
         ("m.ply", PLY.replace("4 0 1 2 3", "4 0 1 2 0.5"), "face 1 has a corner"),
         ("m.ply", PLY.replace("vertex 4", "vertex 400000000000"), "not a PLY file"),
