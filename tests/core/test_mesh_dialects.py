@@ -241,11 +241,11 @@ def facets(count):
         (b"made".ljust(80, b"\0") + struct.pack("<I", 0) + facets(3), 3),
         (b"solid".ljust(80, b"\0") + struct.pack("<I", 0xFFFFFFFF) + facets(3), 3),
         (
-            b"SOLID a\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\n",
+            b"SOLID a\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\n",  # noqa: E501
             1,
         ),
         (
-            b"solid\nfacet normal 0 0 1\r\nouter loop\rvertex 0 0 0 vertex 1e0 0 0 vertex 0 1 0 endloop endfacet",
+            b"solid\nfacet normal 0 0 1\r\nouter loop\rvertex 0 0 0 vertex 1e0 0 0 vertex 0 1 0 endloop endfacet",  # noqa: E501
             1,
         ),
     ],
@@ -464,7 +464,7 @@ def test_strips_points_grids_and_blocks_of_vtk(put):
     with pytest.raises(InputRefused, match="the file is cut off"):
         read_mesh(put("c.vtk", f"{head}POLYDATA\nPOINTS 4 float\n0 0 0"))
     text = '<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>'
-    text += '<DataSet index="0" name="A" file="s.vtk"/><Block index="1"><DataSet index="0" name="B" file="g.vtk"/>'
+    text += '<DataSet index="0" name="A" file="s.vtk"/><Block index="1"><DataSet index="0" name="B" file="g.vtk"/>'  # noqa: E501
     path = put("m.vtm", text + "</Block></vtkMultiBlockDataSet></VTKFile>")
     assert layer_names(path) == ["A", "B"]
     assert read_mesh(path, layer="b").triangles.tolist() == [[0, 1, 3], [0, 3, 2]]

@@ -64,7 +64,7 @@ def dxf_meshes(parts):
     for name, (vertices, triangles) in parts.items():
         places = "".join(f"10\n{x!r}\n20\n{y!r}\n30\n{z!r}\n" for x, y, z in vertices.tolist())
         faces = "".join(f"90\n3\n90\n{a}\n90\n{b}\n90\n{c}\n" for a, b, c in triangles.tolist())
-        text += f"0\nMESH\n100\nAcDbEntity\n8\n{name}\n100\nAcDbSubDMesh\n71\n2\n72\n0\n91\n1\n92\n{len(vertices)}\n"
+        text += f"0\nMESH\n100\nAcDbEntity\n8\n{name}\n100\nAcDbSubDMesh\n71\n2\n72\n0\n91\n1\n92\n{len(vertices)}\n"  # noqa: E501
         text += f"{places}93\n{4 * len(triangles)}\n{faces}94\n1\n90\n0\n90\n1\n95\n1\n140\n0.0\n90\n0\n"
     return (text + "0\nENDSEC\n0\nEOF\n").encode()
 
@@ -164,7 +164,7 @@ def glb(parts):
 def gmsh(version):
     def written(parts):
         names = "".join(f'2 {k} "{name}"\n' for k, name in enumerate(parts, 1))
-        text = f"$MeshFormat\n{version} 0 8\n$EndMeshFormat\n$PhysicalNames\n{len(parts)}\n{names}$EndPhysicalNames\n"
+        text = f"$MeshFormat\n{version} 0 8\n$EndMeshFormat\n$PhysicalNames\n{len(parts)}\n{names}$EndPhysicalNames\n"  # noqa: E501
         nodes = [
             (10 * k + 3, place)
             for k, place in enumerate(np.concatenate([v for v, _ in parts.values()]).tolist())
@@ -193,7 +193,7 @@ def gmsh(version):
             text += f"$Elements\n{len(parts)} {count} 1 {count}\n"
         else:
             rows = "".join(f"{tag} {x!r} {y!r} {z!r} 0.5 0.25\n" for tag, (x, y, z) in nodes)
-            text += f"$Nodes\n1 {len(nodes)}\n21 2 1 {len(nodes)}\n{rows}$EndNodes\n$Elements\n{len(parts)} {count}\n"
+            text += f"$Nodes\n1 {len(nodes)}\n21 2 1 {len(nodes)}\n{rows}$EndNodes\n$Elements\n{len(parts)} {count}\n"  # noqa: E501
         for k, some in enumerate(faces, 1):
             text += (f"2 {k + 20}" if version == 4.1 else f"{k + 20} 2") + f" 2 {len(some)}\n"
             text += "".join(f"7 {a} {b} {c}\n" for a, b, c in some)

@@ -208,7 +208,7 @@ def _path(obj: _Object) -> tuple[np.ndarray, np.ndarray]:
         if depths[0] > 0.0:
             depths, places = np.append(0.0, depths), np.vstack([obj.collar, places])
     elif obj.vertices or obj.collar:
-        places = np.array(obj.vertices or [obj.collar])
+        places = np.array(obj.vertices) if obj.vertices else np.array([obj.collar])
         depths = np.append(0.0, np.cumsum(norm(np.diff(places, axis=0))))
     else:
         raise ValueError(f"the well '{obj.name}' has neither a place (WREF) nor a path")
