@@ -241,7 +241,7 @@ def grid_centers(box: np.ndarray, shape: Sequence[int]) -> np.ndarray:
     if counts.shape != (3,) or counts.dtype.kind not in "iu" or (counts < 1).any():
         raise UsageError(f"a grid has three numbers of cells, along x, y and z, not {shape!r}")
     steps = (box[1] - box[0]) / counts
-    index = np.indices(counts).reshape(3, -1).T
+    index = np.indices(tuple(counts.tolist())).reshape(3, -1).T
     return box[0] + (index + 0.5) * steps
 
 

@@ -309,7 +309,6 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
             advice="cut it open, or give the fault as a mesh",
             place=tuple(line[0, :2].tolist()),
         )
-    _refuse_unsorted(line[:, :2])
     if fault.elevation is None and (line[:, 2] == 0.0).all() and fault.trace_file is not None:
         text = "its line has elevation 0 everywhere; if that is no elevation, set elevation = ..."
         warnings.append(text)
@@ -364,6 +363,7 @@ def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, lis
     if ends is not None:
         line, top = (_continued(row, ends) for row in (line, top))
     _refuse_crossing(top)
+    _refuse_unsorted(fault.trace_line()[:, :2])
     rows = [
         np.column_stack([top, np.full(len(top), high)]),
         np.column_stack([top + down, np.full(len(top), low)]),
