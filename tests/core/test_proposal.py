@@ -254,6 +254,17 @@ def test_picks_alone_are_surfaces(tmp_path):
     assert build(project).volume > 0
 
 
+def test_logs_without_order_make_a_project_all_the_same(tmp_path):
+    draw = np.random.default_rng(5)
+    holes = [[(f"u{draw.integers(8)}", float(draw.uniform(1, 4))) for _ in range(12)] for _ in range(30)]
+    plan = [(100.0 * (n % 6), 100.0 * (n // 6)) for n in range(30)]
+    project = proposed(tmp_path, holes, plan=plan)
+    assert len(project.bodies) <= 30
+    assert project.proposal.conflicts
+    project.save(tmp_path / "out")
+    load_project(tmp_path / "out/project.toml")
+
+
 def test_one_unit_alone_is_a_model(tmp_path):
     project = proposed(tmp_path, [[("Sand", 10)]] * 3)
     project.save(tmp_path / "out")

@@ -13,6 +13,7 @@ from ..surfaces.planar_mesh import mesh_region
 from .logs import HoleLogs, Log, LoggedPart, merged
 from .order import UnitOrder
 
+_MOST = 30  # lenses that become bodies: logs with more are not in beds
 _ROUND = 16  # edges of a lens that one hole has, at least
 _REACH = 2.0  # times the distance of neighboring holes: so far apart holes may be in one lens
 _OFF = 1e-3  # of the thickness: nearer to none a lens has none
@@ -65,7 +66,7 @@ class Sorted:
 def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
     """Of each hole the parts in order whose thickness is the greatest stay. Others are lenses where their
     unit, or that around them, repeats in the hole; else, and where several units in a row repeat, they are in
-    conflict with their neighbors."""
+    conflict with their neighbors; so are the thinnest of very many lenses."""
     logs: list[Log] = []
     inside: dict[tuple[str, str], list[tuple[str, LoggedPart]]] = {}
     conflicts: list[Conflict] = []
@@ -89,7 +90,12 @@ def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
     lenses: list[Lens] = []
     for (unit, host), parts in sorted(inside.items()):
         lenses += [Lens("", unit, host, group) for group in _groups(parts, plan)]
-    return Sorted(logs, _named(lenses, data, logs), conflicts, repeats)
+    lenses.sort(key=lambda lens: -sum(part.thickness for _, part in lens.parts))
+    for lens in lenses[_MOST:]:
+        for hole, part in lens.parts:
+            height = float(part.top[2])
+            conflicts.append(Conflict(lens.host, lens.unit, hole, part.depth, height))
+    return Sorted(logs, _named(lenses[:_MOST], data, logs), conflicts, repeats)
 
 
 def _in_order(parts: Sequence[LoggedPart], order: UnitOrder) -> list[bool]:

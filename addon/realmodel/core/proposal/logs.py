@@ -14,6 +14,7 @@ from ..base.text import no_step
 from ..base.units import MODEL_UNIT
 from ..readers.borehole_input import read_boreholes, read_repaired
 from ..readers.tables.hole_tables import normalized_name
+from ..readers.tables.observations import Observations
 from ..readers.tables.unit_names import UnitNames
 from ..settings.data_files import Boreholes
 
@@ -120,7 +121,7 @@ def _unit_names(codes: Iterable[str]) -> list[str]:
     return sorted(names.values())
 
 
-def _parts(observations) -> list[LoggedPart]:
+def _parts(observations: Observations) -> list[LoggedPart]:
     """The parts of one hole, of the places of its intervals. Those of one unit that touch are one."""
     parts: list[LoggedPart] = []
     for number in np.unique(observations.intervals):

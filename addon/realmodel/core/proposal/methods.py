@@ -54,7 +54,9 @@ def _share(project: Project, rock: Rock) -> float | None:
     assert isinstance(rock.edge_length, float)
     trial = replace(rock, edge_length=_COARSE * rock.edge_length)
     try:
-        model = build(Project(project.name, [trial], units=project.units, bodies=project.bodies))
+        model = build(
+            Project(project.name, [trial], units=project.units)
+        )  # bodies are the same in all trials
         return cross_validate_holes(model, _FOLDS).share
     except (InputRefused, BuildFailed):
         return None

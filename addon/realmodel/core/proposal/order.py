@@ -137,7 +137,7 @@ def _linear_order(weights: np.ndarray) -> list[int]:
     decides = weights > weights.T
     reach = _closure(decides)
     same = (reach & reach.T) | np.eye(len(weights), dtype=bool)
-    groups = {tuple(np.flatnonzero(row)) for row in same}
+    groups = {tuple(np.flatnonzero(row).tolist()) for row in same}
     ordered: list[int] = []
     waiting = sorted(groups)
     while waiting:  # the first group that nothing left lies over
