@@ -86,8 +86,8 @@ def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]
             seen.add(name)
         if getattr(tables, kind) is not None:
             setattr(tables, kind, others)
-    for name, line in sorted((unrepaired | left_out) - seen):
-        what = f"there is no row '{name}:{line}', which 'unrepaired' or 'left_out' names"
+    for file, line in sorted((unrepaired | left_out) - seen):
+        what = f"there is no row '{file}:{line}', which 'unrepaired' or 'left_out' names"
         raise InputRefused(what, file=tables.given.files[0])
     return taken
 
