@@ -32,13 +32,13 @@ class CodeCount:
     length: float
 
 
-def count_codes(*given: FieldData, units: str = MODEL_UNIT) -> list[CodeCount]:
+def count_codes(*data: FieldData, units: str = MODEL_UNIT) -> list[CodeCount]:
     """The codes of surfaces and blocks in boreholes, observations, dips and maps, in the order in which they
     come first. units: of the model. Raises InputRefused naming file and line."""
     holes: dict[str, set[str]] = {}
     counted: dict[str, int] = {}
     lengths: dict[str, float] = {}
-    for source in given:
+    for source in data:
         for code, hole, length in _codes(source, units):
             if code:
                 holes.setdefault(code, set()).update([hole] if hole else [])
