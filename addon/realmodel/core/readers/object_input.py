@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +13,12 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import InputRefused, RealModelError, counted, number_list
 from ..base.text import Step, no_step
+from ..base.units import factors, unit_of
 from ..settings.data_files import Boreholes
-from .formats import OBJECTS, FileFormat, format_of
+from .formats import HOLES, OBJECTS, FileFormat, format_of
 from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values
 from .tables.boreholes import Pick, Picks
-from .tables.hole_tables import INTERVALS, PICKS
+from .tables.hole_tables import INTERVALS, PICKS, Sheet
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
 from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
@@ -29,7 +30,8 @@ _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE:
 
 def is_object_file(file: Path) -> bool:
     """Whether a file is one of objects. Raises InputRefused where it cannot be read."""
-    return format_of(file, OBJECTS) is not None
+    file_format = format_of(file, HOLES, OBJECTS)
+    return file_format is not None and file_format.holds == OBJECTS
 
 
 def objects_in(file: Path) -> list[ObjectName]:
@@ -116,20 +118,58 @@ def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterat
 _KINDS = (HOLE, LINES, POINTS)
 
 
-def read_hole_objects(
-    given: Boreholes, scale: np.ndarray, units: UnitNames, plan_step: float | None
-) -> Picks:
-    """What the boreholes of a file say, or the object `layer`. scale (3,): the factors to the model's unit.
-    units: what the names in it mean. plan_step: as of read_intervals.
+def _read_holes(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[list[GeoObject], str]:
+    """The boreholes of a file, or its object `layer`, and a sentence where they are converted from the unit
+    that the file says to that of the model. Raises InputRefused for a unit that is not known."""
+    objects = read_objects(file, boreholes.layer, (HOLE,) if boreholes.layer is None else _KINDS)
+    if boreholes.units is not None:
+        return objects, ""
+    converted = [obj if obj.unit is None else _converted(obj, file, model_unit) for obj in objects]
+    said = next((obj.unit for obj, other in zip(objects, converted, strict=True) if other is not obj), None)
+    text = (
+        ""
+        if said is None
+        else f"it says the unit {said}: converted to {model_unit}; set units if it is another"
+    )
+    return converted, text
+
+
+def _converted(obj: GeoObject, file: Path, model_unit: str) -> GeoObject:
+    parts = obj.unit if isinstance(obj.unit, Mapping) else {"xy": obj.unit, "z": obj.unit}
+    units = {part: None if text is None else unit_of(text) for part, text in parts.items()}
+    for part, text in parts.items():
+        if text is not None and units[part] is None:
+            raise InputRefused(f"unknown unit '{text}'", file=file, advice="say it: units = ...")
+    plan, height = factors(units, model_unit)
+    scale = np.array([plan, plan, height])
+    if plan == height == 1.0:
+        return obj
+    values = [
+        replace(
+            part,
+            places=part.places * scale,
+            ends=None if part.ends is None else part.ends * scale,
+            depths=None if part.depths is None else part.depths * height,
+        )
+        for part in obj.values
+    ]
+    return replace(obj, values=values, collar=None if obj.collar is None else obj.collar * scale)
+
+
+def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_step: float | None) -> Picks:
+    """What the boreholes of a file say, or the object `layer`, in the model's unit. units: what the names in
+    it mean. plan_step: as of read_intervals.
 
     Picks are points whose data name a surface, and tops of intervals that name one where the interval above
     has another name. `hole` among the data names the hole, else the object's name does.
     Raises InputRefused naming the file and the object.
     """
     picks = Picks()
+    plan, height = factors(given.units, model_unit)
+    scale = np.array([plan, plan, height])
     for file in dict.fromkeys(given.files):
-        kinds = (HOLE,) if given.layer is None else _KINDS
-        objects = read_objects(file, given.layer, kinds)
+        objects, warning = _read_holes(given, file, model_unit)
+        picks.warnings += [f"{file}: {warning}"] if warning else []
         if given.picks is not None and Path(given.picks) == file:
             _add_picks(picks, objects, given, scale, units)
         if given.intervals is not None and Path(given.intervals) == file:
@@ -137,6 +177,42 @@ def read_hole_objects(
     for _, places in picks.holes.values():
         places.sort(key=lambda pick: -pick[1][2])
     return picks
+
+
+def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> dict[str, Sheet]:
+    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
+    those that it has, in units as of a table. Raises as read_object."""
+    rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
+    objects, warning = _read_holes(boreholes, file, model_unit)
+    for obj in objects:
+        collar = np.full(3, np.nan) if obj.collar is None else obj.collar
+        if np.isfinite(collar).all():
+            rows["collars"].append((0, [obj.name, *map(repr, collar.tolist())]))
+        for values in obj.values:
+            meaning, aliases = ("surface", (*PICKS["surface"], *INTERVALS["block"]))
+            if values.ends is not None:
+                meaning, aliases = ("block", INTERVALS["block"])
+            column = _column(values, boreholes.columns.get(meaning), aliases)
+            if column is None:
+                continue
+            names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
+            numbers = values.places
+            if values.ends is not None:
+                along = values.depths
+                numbers = _depths(values.places, values.ends, holes) if along is None else along
+            kind = "picks" if values.ends is None else "intervals"
+            rows[kind] += [
+                (0, [hole, *map(repr, row), name])
+                for hole, row, name in zip(holes, numbers.tolist(), names, strict=True)
+            ]
+    columns = {
+        "collars": ("hole", "x", "y", "z"),
+        "intervals": ("hole", "from", "to", "block"),
+        "picks": ("hole", "x", "y", "z", "surface"),
+    }
+    sheets = {kind: Sheet(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
+    first = next(iter(sheets), None)
+    return sheets if first is None else sheets | {first: replace(sheets[first], choice=warning)}
 
 
 def _add_picks(
