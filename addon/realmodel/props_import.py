@@ -32,6 +32,7 @@ class RealModelHeading(bpy.types.PropertyGroup):
     meaning: EnumProperty(
         name="Meaning",
         description="What the column of the table is",
+        options=set(),
         items=lambda heading, _context: _ITEMS.get(heading.of, _ITEMS[OF_POINTS]),
     )
 
@@ -47,5 +48,5 @@ class RealModelFileObject(bpy.types.PropertyGroup):
     file: StringProperty()
     name: StringProperty()
     kind: StringProperty()
-    size: IntProperty()
-    chosen: BoolProperty(name="Import", description="Import this object", default=True)
+    size: IntProperty(options=set())
+    chosen: BoolProperty(name="Import", description="Import this object", default=True, options=set())

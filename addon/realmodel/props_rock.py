@@ -336,13 +336,17 @@ _SETTINGS = properties_of(
 class RealModelCode(bpy.types.PropertyGroup):
     """A code of units in the field data of a rock mass, and what it means: a unit; "" for nothing."""
 
-    name: StringProperty(name="Code")
+    name: StringProperty(name="Code", description="As the data have it")
     unit: StringProperty(
         name="Unit", description="The surface over the block that the code means, or a body; empty: nothing"
     )
-    holes: IntProperty(name="Holes", description="Boreholes in which the code is")
-    rows: IntProperty(name="Rows", description="Rows of tables, and polygons of maps, with the code")
-    length: FloatProperty(name="Length", description="Length of its intervals in all boreholes")
+    holes: IntProperty(name="Holes", description="Boreholes in which the code is", options=set())
+    rows: IntProperty(
+        name="Rows", description="Rows of tables, and polygons of maps, with the code", options=set()
+    )
+    length: FloatProperty(
+        name="Length", description="Length of its intervals in all boreholes", options=set()
+    )
     chosen: BoolProperty(
         name="Choose", description="Choose the code for the buttons below the list", options=set()
     )
@@ -351,12 +355,12 @@ class RealModelCode(bpy.types.PropertyGroup):
 class RealModelHoleProblem(bpy.types.PropertyGroup):
     """Something wrong with a row of a table of boreholes, and what was done about it."""
 
-    kind: StringProperty(name="Kind")
-    file: StringProperty(name="File")
-    line: IntProperty(name="Line")
-    hole: StringProperty(name="Hole")
+    kind: StringProperty(name="Kind", description="What is wrong with the row, in a word")
+    file: StringProperty(name="File", description="Name of the file of the table")
+    line: IntProperty(name="Line", description="Line of the row in the file", options=set())
+    hole: StringProperty(name="Hole", description="Name of the hole")
     depth: StringProperty(name="Depth", description="Along the hole, as in the table")
-    text: StringProperty(name="Problem")
+    text: StringProperty(name="Problem", description="What is wrong with the row")
     action: StringProperty(name="Action", description="Used as it is, repaired, or left out")
 
 

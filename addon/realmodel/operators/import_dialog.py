@@ -87,14 +87,15 @@ class TableDialog:
         self._before = self._meanings()
 
     def remember(self, reading):
-        """Keeps what was chosen as profiles, for tables that are understood otherwise without one. reading:
-        the other import options."""
+        """Keeps what was chosen as profiles, for tables that have one or are understood otherwise without
+        one. reading: the other import options."""
         new = []
         for preview in self._previews if self.options.is_invoke else ():
-            columns = self.columns_of(preview.file)
-            if preview.has_header and (reading or columns != self.understood(preview)):
-                header = tuple(preview.names)
-                new.append(profiles.Profile(preview.file.stem, self.of, header, columns, dict(reading)))
+            columns, header = self.columns_of(preview.file), tuple(preview.names)
+            known = profiles.of_header(self.of, header)
+            if preview.has_header and (known or reading or columns != self.understood(preview)):
+                name = preview.file.stem if known is None else known.name
+                new.append(profiles.Profile(name, self.of, header, columns, dict(reading)))
         if new:
             try:
                 profiles.add(*new)
@@ -155,10 +156,10 @@ class ObjectDialog:
 
     _were_all = True
 
-    def begin_objects(self, found):
-        """found: (path, name, kind, size) of each object."""
+    def begin_objects(self, rows):
+        """rows: (path, name, kind, size) of each object."""
         self.objects.clear()
-        for path, name, kind, size in found:
+        for path, name, kind, size in rows:
             row = self.objects.add()
             row.file, row.name, row.kind, row.size = str(path), name, kind, size
 

@@ -201,13 +201,13 @@ def read(scene, rock, tables, names, add_surfaces):
     return result
 
 
-def forget(rock, found):
+def forget(rock, data):
     """Removes what a rock mass has of the holes and of the places of dips that are imported again."""
-    holes = found.picks.holes.keys()
+    holes = data.picks.holes.keys()
     borehole_points.forget(rock, holes)
     observed_blocks.forget(rock, holes)
-    if found.rock_dips is not None:
-        surface_dips.forget(rock, found.rock_dips)
+    if data.rock_dips is not None:
+        surface_dips.forget(rock, data.rock_dips)
 
 
 def _read(scene, rock, tables, units):

@@ -120,8 +120,8 @@ def named_texts(given):
     return {_unquoted(name): _unquoted(text) for name, text in _pairs(given)}
 
 
-def _pairs(given):
-    return [(name.strip(), text.strip()) for name, text in _PAIR.findall(given) if name.strip()]
+def _pairs(line):
+    return [(name.strip(), text.strip()) for name, text in _PAIR.findall(line) if name.strip()]
 
 
 def _unquoted(text):

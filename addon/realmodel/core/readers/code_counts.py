@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..base.text import no_step
-from ..base.units import MODEL_UNIT, factors
+from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes, MapFile, ObservationFile
 from ..settings.dips import DipFile
 from .borehole_input import read_repaired
-from .object_input import interval_codes, is_object_file
+from .object_input import is_object_file
 from .tables.dips import DIPS, NAMED
 from .tables.hole_tables import OBSERVED, Row, rows
 from .tables.table_layout import is_number
@@ -32,13 +32,13 @@ class CodeCount:
     length: float
 
 
-def count_codes(*given: FieldData, units: str = MODEL_UNIT) -> list[CodeCount]:
+def count_codes(*data: FieldData, units: str = MODEL_UNIT) -> list[CodeCount]:
     """The codes of surfaces and blocks in boreholes, observations, dips and maps, in the order in which they
     come first. units: of the model. Raises InputRefused naming file and line."""
     holes: dict[str, set[str]] = {}
     counted: dict[str, int] = {}
     lengths: dict[str, float] = {}
-    for source in given:
+    for source in data:
         for code, hole, length in _codes(source, units):
             if code:
                 holes.setdefault(code, set()).update([hole] if hole else [])
@@ -58,16 +58,13 @@ def _codes(source: FieldData, units: str) -> Iterator[tuple[str, str, float]]:
     elif isinstance(source, DipFile):
         for row in rows(source, Path(source.file), {**DIPS, **NAMED}, (), no_step):
             yield next((_text(row, key) for key in NAMED if row.has(key)), ""), "", 0.0
-    elif any(is_object_file(file) for file in source.files):
-        _, height = factors(source.units, units)
-        for code, hole, length in interval_codes(source):
-            yield code, hole, length * height
     else:
         tables = read_repaired(source, units)
         height = float(tables.scale(units)[2])
         for row in tables.intervals or ():
             yield _text(row, "block"), _text(row, "hole"), _length(row) * height
-        for row in tables.picks or ():
+        of_objects = any(is_object_file(file) for file in source.files)  # whose picks are of intervals
+        for row in () if of_objects and tables.intervals else tables.picks or ():
             yield _text(row, "surface"), _text(row, "hole"), 0.0
 
 

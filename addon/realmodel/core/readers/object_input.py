@@ -292,21 +292,6 @@ def _read_log(
             log.intervals += [] if interval is None else [interval]
 
 
-def interval_codes(given: Boreholes) -> Iterator[tuple[str, str, float]]:
-    """(code, hole, length in the file's unit) of the intervals, or of the picks, of the boreholes of a file,
-    as read_hole_objects reads them. Raises as that does."""
-    for file in dict.fromkeys(given.files):
-        for obj in read_objects(Path(file), given.layer, (HOLE,) if given.layer is None else _KINDS):
-            if given.intervals is None:
-                yield from ((code, hole, 0.0) for code, hole, _ in _picks_of(obj, given))
-                continue
-            tables = [values for values in obj.values if values.ends is not None]
-            values, column = _table(obj, tables, given, "block", INTERVALS["block"])
-            assert values.ends is not None
-            lengths = norm(values.ends - values.places).tolist()
-            yield from zip(_texts(values.columns[column]), _holes(obj, values, given), lengths, strict=True)
-
-
 def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarray:
     """(N, 2) the depths of the ends of intervals that follow one another along each hole, from 0."""
     last: dict[str, tuple[float, np.ndarray]] = {}
