@@ -11,7 +11,7 @@ from panel_case import PanelCase, ops, outline
 from realmodel.bl.field import boreholes
 from realmodel.bl.project import interval_values, project_settings
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "core"))
+sys.path.append(str(Path(__file__).parents[1] / "core"))  # behind the tests of this folder
 from las_files import las_text  # noqa: E402
 
 COLLARS = "hole,x,y,z,eoh\nB-0,20,50,60,40\nB-1,80,51,60,40\n"
