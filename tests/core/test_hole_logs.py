@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from las_files import las_text
 from realmodel import core
-from realmodel.core import Boreholes, InputRefused, UsageError, Model, build, load_project
+from realmodel.core import Boreholes, InputRefused, Model, UsageError, build, load_project
 from realmodel.core.drawing.drawing import FilledRings, Text
 from realmodel.core.readers.borehole_input import read_boreholes
 from realmodel.core.readers.tables.interval_values import IntervalValues

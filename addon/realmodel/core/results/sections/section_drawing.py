@@ -15,8 +15,8 @@ from ...base.errors import UsageError
 from ...base.units import METERS
 from ...drawing.charts import Axes, legend, legend_size, tick_texts
 from ...drawing.drawing import BLACK, WHITE, Drawing, text_width
-from .section_data import FenceData, SectionData
 from .section_curves import HoleCurves, Panel
+from .section_data import FenceData, SectionData
 from .section_holes import UNKNOWN, HoleLine, parts_near
 
 MOST_EXAGGERATION = 1000.0
