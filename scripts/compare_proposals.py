@@ -137,8 +137,8 @@ def main():
             print(f"random {seed}: {refusal}")
             continue
         last = compared[-1]
-        if last.right < last.pairs or last.proposed < last.given - 0.05:
-            print(f"random {seed} ({history.name}): {last}", flush=True)
+        what = f"{last.right} of {last.pairs}, {last.given:.3f}, {last.proposed:.3f}"
+        print(f"random {seed} ({history.name}): {what}", flush=True)
     if compared:
         rows.append(row(f"{len(compared)} random", compared))
         print(rows[-1])

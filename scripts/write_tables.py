@@ -132,10 +132,14 @@ def _strings(node):
     return found
 
 
-def _arguments(node):
-    """The names of an operator's properties that a script gives."""
-    names = [part.target.id for part in node.body if isinstance(part, ast.AnnAssign)]
+def _arguments(node, shared):
+    """The names of an operator's properties that a script gives. shared: by name, the classes that several
+    operators of a module are made from."""
     bases = [base.attr if isinstance(base, ast.Attribute) else base.id for base in node.bases]
+    bodies = [
+        part for base in (node, *(shared[name] for name in bases if name in shared)) for part in base.body
+    ]
+    names = [part.target.id for part in bodies if isinstance(part, ast.AnnAssign)]
     file = (
         ["filepath"]
         if any(base.endswith(("ImportHelper", "ExportHelper", "Exporting")) for base in bases)
@@ -146,12 +150,13 @@ def _arguments(node):
 
 def _operators():
     rows = []
+    shared = {node.name: node for _, node in _classes("operators/*.py") if node.name.startswith("_")}
     for _, node in _classes("operators/*.py"):
         said = _strings(node)
         if node.name.startswith("REALMODEL_OT_"):
             name = node.name.removeprefix("REALMODEL_OT_")
             tip = " ".join((ast.get_docstring(node) or "").split())
-            rows.append([f"`{name}({', '.join(_arguments(node))})`", said["bl_label"], tip])
+            rows.append([f"`{name}({', '.join(_arguments(node, shared))})`", said["bl_label"], tip])
     return _table(["`bpy.ops.realmodel.`", "label", ""], sorted(rows))
 
 

@@ -73,6 +73,22 @@ class RealModelPreferences(bpy.types.AddonPreferences):
             for name in names:
                 column.prop(self, name)
         layout.operator("realmodel.install_looks", icon="ASSET_MANAGER")
+        _draw_profiles(layout)
+
+
+def _draw_profiles(layout):
+    """The profiles of imports, with buttons."""
+    from .bl.project import profiles  # its module needs this one
+
+    column = layout.column(heading="Import Profiles", align=True)
+    for profile in profiles.all_of_user():
+        row = column.row(align=True)
+        row.label(text=f"{profile.name}: {', '.join(profile.header)}")
+        row.operator("realmodel.profile_rename", text="", icon="GREASEPENCIL").name = profile.name
+        row.operator("realmodel.profile_remove", text="", icon="X").name = profile.name
+    row = layout.row(align=True)
+    row.operator("realmodel.profiles_import", icon="IMPORT")
+    row.operator("realmodel.profiles_export", icon="EXPORT")
 
 
 def current():

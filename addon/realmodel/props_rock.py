@@ -184,6 +184,11 @@ _POINTS_SOURCE = (
     "Points File",
     "File with fault sticks or scattered points; a surface is fitted through them",
 )
+_INTERVALS_SOURCE = (
+    "INTERVALS",
+    "Boreholes",
+    "Between its contacts in the intervals of boreholes that bear its name: a vein, a sill, a lens",
+)
 _LINE_SOURCES = (
     (
         "STICKS_OBJECT",
@@ -271,7 +276,7 @@ class RealModelFault(
 class RealModelBody(
     properties_of(_BODY, name=changes.name),
     properties_of(_MESH_READING, changes.reading),
-    _shape_properties(_MESH_SOURCES),
+    _shape_properties((*_MESH_SOURCES, _INTERVALS_SOURCE)),
     bpy.types.PropertyGroup,
 ):
     """A body: where its closed surface comes from, and what is in it."""

@@ -25,8 +25,8 @@ size = [{ at = "outline", length = 4.1, distance = 2.3 },
   { at = [[60, 20], [70, 25.5]], length = 2.5, distance = 0 },
   { at = "constraints", length = 3, distance = 1 }]
 constraints = ["river.geojson", [[5, 5], [30.3, 60]], [80, 60]]
-boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft", columns={hole="BHID"},\
-  logs=["b.las"]}
+boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft",\
+  columns={hole="BHID"}, logs=["b.las"]}
 observations = "seen.csv"
 names = { B = "Bottom", D = "distance" }
 
@@ -217,6 +217,11 @@ property = 4
 rock = "first"
 
 [[body]]
+name = "lens"
+reach = 3.75
+rock = "first"
+
+[[body]]
 name = "tunnel"
 mesh = "salt.off"
 void = true
@@ -272,7 +277,7 @@ def write_files(folder: Path):
     (folder / "mesh.off").write_text("OFF\n4 2 0\n118 -2 1\n156 -2 1\n156 28 2\n118 28 2\n3 0 1 2\n3 0 2 3\n")
 
 
-LOG = ((0, 8, "in holes only"), (9, 30, "smooth"), (30, 34, "D"), (35, 36, "B"))
+LOG = ((0, 8, "in holes only"), (9, 30, "smooth"), (30, 34, "D"), (34, 34.5, "lens"), (35, 36, "B"))
 
 
 def write_contours(path):

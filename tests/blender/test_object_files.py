@@ -81,3 +81,30 @@ class ObjectFiles(PanelCase):
         ops.build()
         ops.export(filepath=str(self.folder / "m.omf"))
         self.assertEqual((self.folder / "m.omf").read_bytes()[:4], b"\x84\x83\x82\x81")
+
+    def rows(self, path, **sizes):
+        kinds = {"file": str(path), "kind": "surface", "chosen": True}
+        return [{**kinds, "name": name, "size": size} for name, size in sizes.items()]
+
+    def test_chosen_ones_are_matched_by_name(self):
+        """Whatever the capitals and the signs between words; what is not ticked is not imported."""
+        path = self.written()
+        for name in ("s_1", "other"):
+            ops.surface_add(name=name, empty=True)
+        chosen = self.rows(path, S0=2, S1=2)
+        chosen[0]["chosen"] = False
+        ops.surface_add(filepath=str(path), objects=chosen)
+        rows = self.model.rocks[0].surfaces
+        self.assertEqual([(row.name, row.layer) for row in rows], [("s_1", "S1"), ("other", "")])
+        chosen[0]["chosen"] = True
+        ops.surface_add(filepath=str(path), objects=chosen)
+        self.assertEqual([row.name for row in rows], ["s_1", "other", "S0"])
+
+    def test_filters(self):
+        path = self.written()
+        chosen = self.rows(path, S0=2, S1=900)
+        ops.surface_add(filepath=str(path), objects=chosen, object_size=10)
+        self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["S1"])
+        ops.surface_add(filepath=str(path), objects=chosen, object_name="*0")
+        self.assertEqual({row.name for row in self.model.rocks[0].surfaces}, {"S0", "S1"})
+        self.refused(ops.surface_add, "no object", filepath=str(path), objects=chosen, object_kind="points")

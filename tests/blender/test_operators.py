@@ -16,6 +16,7 @@ ALWAYS = {  # operators that can be used in every scene of one's own, and why
     "capture": "any viewport can be captured, in background mode the scene",
     "documentation": "has a poll of its own",
     "install_looks": "writes an asset library, of no scene",
+    "profiles_import": "profiles are of the user, of no scene",
 }
 CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a viewport, the clipboard, jobs
     *(
@@ -30,6 +31,7 @@ CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a vi
         "capture",
     ),
     *("view", "view_all", "view_previous", "view_next", "cancel", "stop_check", "check_quality"),
+    *("profile_rename", "profile_remove", "profiles_export", "profiles_import"),
     *("dismiss", "documentation", "copy_table", "export_scene", "install_looks"),
 }
 

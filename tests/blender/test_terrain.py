@@ -58,7 +58,9 @@ class Terrain(PanelCase):
         rock.active_surface = 2
         ops.surface_remove()
         volumes = self.built()
-        self.assertAlmostEqual(volumes["later block"], 2.0 * volumes["base block"], delta=1e-3 * volumes["base block"])
+        self.assertAlmostEqual(
+            volumes["later block"], 2.0 * volumes["base block"], delta=1e-3 * volumes["base block"]
+        )
         self.assertEqual(self.composed().rocks[0].terrain, "terrain")
 
     def test_another_one_takes_its_place_and_it_can_be_removed(self):
@@ -99,3 +101,31 @@ class Terrain(PanelCase):
         self.assertTrue(self.rock.surfaces[-1].is_terrain)
         ops.build()
         self.assertAlmostEqual(sum(row.volume for row in self.model.results) / volume, 1.0, places=6)
+
+
+class Vein(PanelCase):
+    def test_a_body_may_be_made_of_intervals(self):
+        """It is in the panel what it is in the project file, and is stored with its holes."""
+        collars, rows = "hole,x,y,z\n", "hole,from,to,block\n"
+        for number, (x, y) in enumerate((x, y) for x in (20, 50, 80) for y in (20, 50, 80)):
+            collars += f"H{number},{x},{y},0\n"
+            rows += f"H{number},0,10,Host\nH{number},10,14,Vein\nH{number},14,40,Host\n"
+        (self.folder / "collars.csv").write_text(collars)
+        (self.folder / "intervals.csv").write_text(rows)
+        (self.folder / "project.toml").write_text(
+            'format = 1\nname = "p"\n[[rock]]\nname = "r"\n'
+            "region = [[0, 0], [100, 0], [100, 100], [0, 100]]\n"
+            "edge_length = 10\nbase_elevation = -50\n"
+            'boreholes = { collars = "collars.csv", intervals = "intervals.csv" }\n'
+            '[[rock.surface]]\nname = "top"\nblock = "Host"\nmethod = "constant"\nvalue = 0\n'
+            '[[body]]\nname = "Vein"\nreach = 12\n'
+        )
+        volume = {b.name: b.volume for b in build(load_project(self.folder / "project.toml")).blocks}["Vein"]
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        (body,) = self.model.bodies
+        self.assertEqual((body.source, body.reach), ("INTERVALS", 12.0))
+        ops.build()
+        self.assertAlmostEqual(self.volumes()["Vein"] / volume, 1.0, places=9)
+        body.reach = 6.0
+        ops.build()
+        self.assertLess(self.volumes()["Vein"], 0.95 * volume)

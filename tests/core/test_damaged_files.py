@@ -24,6 +24,7 @@ from realmodel.core.readers import read_boreholes, read_mesh, read_point_file, r
 from realmodel.core.readers.fault_input import read_fault_points
 from test_mesh_dialects import GOCAD, STRINGS, WELL, datamine, legacy
 from test_named_objects import binary_dxf, dxf_blocks, dxf_meshes, glb, gmsh
+from test_point_formats import CPS3_LINES, EARTHVISION, OPENWORKS, PETREL
 
 PROJECT = b"""format = 1
 name = "x"
@@ -130,6 +131,10 @@ READERS = {
     "g.asc": (GRID, read_points_of),
     **{path.name: (path.read_bytes(), read_points_of) for path in sorted(GRIDS.iterdir())},
     "c.cps3": (CPS3, read_points_of),
+    "p.petrel": (PETREL.format(plan="m", height="ft").encode(), read_points_of),
+    "h.ijxyz": (OPENWORKS.encode(), read_points_of),
+    "s.dat": (EARTHVISION.format(unit="feet").encode(), read_points_of),
+    "f.cps": (CPS3_LINES.encode(), read_points_of),
     "a.npy": (array_file(np.arange(12.0).reshape(4, 3)), read_points_of),
     "f.pol": (STICKS, lambda file: read_fault_points(PointFile(file))),
     "m.off": (OFF, read_mesh),
@@ -208,8 +213,8 @@ def test_read_or_refused(folder, name):
         else:
             outcomes["read"] += 1
             if read is read_points_of:
-                assert np.isfinite(result).all()
-                assert result.shape[1] == 3
+                assert np.isfinite(result[0]).all()
+                assert result[0].shape[1] == 3
             if read is read_mesh:
                 assert np.isfinite(result.vertices).all()
                 assert result.triangles.min() >= 0

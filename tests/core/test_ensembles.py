@@ -303,9 +303,7 @@ def test_an_ensemble_says_what_its_realizations_say():
     z = np.array([heights(model) for model in every])
     assert found.surface_mean[0] == pytest.approx(z.mean(axis=0))
     assert found.surface_deviation[0] == pytest.approx(z.std(axis=0, ddof=1), abs=1e-9)
-    assert found.probability[:, 0] == pytest.approx(
-        np.mean([m.block_at(places) == 0 for m in every], axis=0)
-    )
+    assert found.probability[:, 0] == pytest.approx(np.mean([m.block_at(places) == 0 for m in every], axis=0))
     assert found.probability[0, 0] == 1 and found.probability[2, 0] == 0
     assert found.entropy()[[0, 2]].tolist() == [0, 0]
     low, middle, high = found.percentiles()[:, 0]

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused, build, load_project, read_boreholes
+from realmodel.core.readers import read_boreholes as read_picks
 from realmodel.core.readers import table_contents, table_kind
 from realmodel.core.readers.tables.intervals import read_interval_values
 from test_reported_boreholes import LOG, PLACES, assert_layers
@@ -261,9 +262,18 @@ def test_wells_of_gocad(write, sense, top, path, wanted):
     found = read_boreholes(write("wells.wl", text + text.replace("W 1", "W2")))
     assert found.picks["hole"].tolist() == ["W 1", "W 1", "W2", "W2"]
     assert found.picks["surface"].tolist() == ["sand", "clay"] * 2
-    places = np.column_stack([found.collars[axis] for axis in "xy"])
-    assert places.tolist()[0] == wanted[0][:2]
+    assert found.collars["x"].tolist() == [100, 100]
     np.testing.assert_allclose(found.picks["elevation"], [z for *_, z in wanted] * 2)
+
+
+def test_units_of_wells_of_gocad_are_obeyed(write):
+    text = WELL.format(name="W", unit="ft", sense="Depth", top="-10", path="").replace('"m" "m"', '"ft" "ft"')
+    path = write("w.wl", text)
+    assert read_boreholes(path).picks["elevation"].tolist() == pytest.approx([-40 * 0.3048, -140 * 0.3048])
+    assert read_picks(Boreholes(picks=path)).points["clay"].tolist()[0] == pytest.approx(
+        [30.48, 60.96, -140 * 0.3048]
+    )
+    assert read_boreholes(path, file_units="m").picks["elevation"].tolist() == pytest.approx([-40, -140])
 
 
 LAS = """~VERSION INFORMATION

@@ -168,7 +168,7 @@ def by_place(table, *columns):
 
 def assert_right(found, right, dropped):
     """What is read is what the right tables say, but for rows that are dropped: {kind: holes and numbers}."""
-    close = dict(rtol=0, atol=0.0051)
+    close = {"rtol": 0, "atol": 0.0051}
     for kind, keys, values in (
         ("collars", ("hole",), ("x", "y", "z")),
         ("survey", ("hole", "depth"), ("azimuth", "dip")),
@@ -240,3 +240,86 @@ def test_all_faults_together(write, seed):
         assert set(untouched) <= set(by_place(getattr(found, kind), *keys))
     problems = {problem.hole.lower().replace("-", " ") for problem in found.problems}
     assert problems <= touched | {""} | {"total", "x7", "hole"}
+
+
+SURVEY = "hole,depth,azimuth,{angle}\n"
+
+
+def stations(write, rows, angle="dip", **keys):
+    """The survey of one hole, and its problems. rows: depth, azimuth and angle."""
+    table = SURVEY.format(angle=angle) + "".join(f"A,{row}\n" for row in rows)
+    found = read_boreholes(
+        collars=write("c.csv", "hole,x,y,z,end\nA,0,0,0,100\n"),
+        survey=write("s.csv", table),
+        picks=write("p.csv", "hole,surface,depth\nA,clay,3\n"),
+        **keys,
+    )
+    rows = zip(*(found.survey[name].tolist() for name in ("depth", "azimuth", angle)), strict=True)
+    return [",".join(f"{value:g}" for value in row) for row in rows], found.problems
+
+
+@pytest.mark.parametrize(
+    ("rows", "angle", "wanted", "kind"),
+    [
+        (["0,9,-60", "9,9,-61", "9,9,10", "20,9,-62", "30,9,-62"], "dip", [0, 1, 3, 4], "two_directions"),
+        (["0,9,-60", "9,9,-10", "9,9,-61", "20,9,-62"], "dip", [0, 2, 3], "two_directions"),
+        (["0,9,-60", "9,9,-60", "9,9,-60"], "dip", [0, 1], "double"),
+        (["0,9,90", "9,189,90", "20,9,90"], "inclination", [0, 2], "station"),
+        (["0,189,90", "9,9,90", "20,9,90"], "inclination", [1, 2], "station"),
+        (["0,9,5", "9,9,6", "20,9,200"], "inclination", [0, 1], "station"),
+        (["0,9,5", "-9,9,6", "20,9,9"], "inclination", [0, 2], "station"),
+        (["0,9,5", "9,,6", "20,9,9"], "inclination", [0, 2], "station"),
+        (["0,9,5", "9,9,-999", "20,9,9"], "inclination", [0, 2], "station"),
+        (["0,9,5", "9,9,6", "120,9,9"], "inclination", [0, 1, 2], "below_end"),
+    ],
+)
+def test_stations_that_make_no_sense(write, rows, angle, wanted, kind):
+    found, problems = stations(write, rows, angle)
+    assert found == [rows[n] for n in wanted]
+    assert [problem.kind for problem in problems] == [kind]
+
+
+def test_stations_that_are_mended(write):
+    found, problems = stations(write, ["30,-5,-60", "0,365,-61", "10,5,62", "20,5,-60", "40,5,-60"])
+    assert found == ["0,5,-61", "10,5,-62", "20,5,-60", "30,355,-60", "40,5,-60"]
+    assert sorted(problem.kind for problem in problems) == ["azimuth", "azimuth", "dip_sign", "order"]
+    found, problems = stations(write, ["0,5,5", "10,5,-6", "20,5,7", "30,5,8"], "inclination")
+    assert found == ["0,5,5", "10,5,6", "20,5,7", "30,5,8"]
+    # from below upward is an order, and holes that go up are right
+    assert not stations(write, ["30,5,-60", "20,5,-60", "0,5,-61"])[1]
+    assert not stations(write, ["0,5,60", "20,5,61"], downward_dip="negative")[1]
+
+
+def test_the_collar_that_fits_is_used(write):
+    table = "hole,x,y,z,end\nA,900,2,3,50\nB,1,2,3,20\nB,1,2,4,50\nC,0,0,0,50\nA,3,2,3,50\nD,9,9,9,50\n"
+    found = read_boreholes(
+        collars=write("c.csv", table), intervals=write("i.csv", "hole,from,to,block\nB,0,40,x\n")
+    )
+    assert found.collars["x"].tolist() == [3, 1, 0, 9] and found.collars["z"].tolist() == [3, 4, 0, 9]
+    assert [(problem.line, problem.action) for problem in found.problems] == [
+        (2, "left out"),
+        (3, "left out"),
+    ]
+
+
+def test_heights_that_others_surround_are_heights(write):
+    """-999 is a height in a field whose tops are there, -999.25 and 1e30 are none."""
+    rows = [f"B{n},{n},{n},{-900 - 20 * n},top" for n in range(8)]
+    rows += ["B8,8,8,-999,top", "B9,9,9,-999.25,top", "C0,9,9,1e30,top"]
+    found = read_boreholes(picks=write("p.csv", "hole,x,y,z,surface\n" + "\n".join(rows) + "\n"))
+    assert len(found.picks) == 9 and -999 in found.picks["elevation"]
+    assert [problem.hole for problem in found.problems] == ["B9", "C0"]
+
+
+def test_picks_in_an_order_that_no_other_hole_has(write):
+    rows = [f"H{n},{name},{depth}" for n in range(5) for name, depth in (("sand", 5), ("clay", 9))]
+    rows += ["X,clay,4", "X,sand,8"]
+    places = "hole,x,y,z\n" + "".join(
+        f"{hole},{n},0,0\n" for n, hole in enumerate(("H0", "H1", "H2", "H3", "H4", "X"))
+    )
+    found = read_boreholes(
+        collars=write("c.csv", places), picks=write("p.csv", "hole,surface,depth\n" + "\n".join(rows) + "\n")
+    )
+    (problem,) = found.problems
+    assert (problem.kind, problem.hole, problem.line, problem.action) == ("order", "X", 12, "used")
+    assert len(found.picks) == 12

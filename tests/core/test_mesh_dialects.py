@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from realmodel.core import Boreholes, InputRefused, read_mesh, read_points
+from realmodel.core import Boreholes, InputRefused, PointFile, read_mesh, read_points
 from realmodel.core.readers import UnitNames, is_mesh_file, read_boreholes
 from realmodel.core.readers.contents import layer_names
+from realmodel.core.readers.fault_input import read_fault_points
 from realmodel.core.readers.meshes.triangle_mesh import mesh_of_faces
 
 
@@ -358,6 +359,8 @@ def test_objects_of_gocad(put):
     assert points.columns["age"].tolist()[:1] == [5] and np.isnan(points.columns["age"][1])
     assert any("ft" in text and "units" in text for text in points.warnings)
     assert read_points(path, layer="a fault").xyz.tolist() == [[0, 0, 1], [1, 0, 2], [5, 0, 1]]
+    sticks, _ = read_fault_points(PointFile(path, layer="a fault"))
+    assert [stick.tolist() for stick in sticks] == [[[0, 0, 1], [1, 0, 2]], [[5, 0, 1]]]
     assert len(read_mesh(path).triangles) == 1  # the only surface
     with pytest.raises(InputRefused, match="it has tops, a fault, top"):
         read_points(path)
@@ -391,6 +394,10 @@ def test_wells_of_gocad(put):
         ("Top A", pytest.approx([115, 200, 30])),
         ("B", pytest.approx([160, 200, -30])),
     ]
+    feet = WELL.replace("ZPOSITIVE", 'AXIS_UNIT "ft" "ft" "ft"\nZPOSITIVE')
+    in_feet = read_boreholes(Boreholes(picks=put("f.wl", feet)))
+    assert np.allclose(in_feet.holes["W1"][0], np.array([100, 200, 50]) * 0.3048)
+    assert any("ft" in text and "units" in text for text in in_feet.warnings)
     units = UnitNames(["sand", "clay"], ["sand", "clay"])
     logged = read_boreholes(Boreholes(intervals=path), units=units, plan_step=1000.0)
     assert [(name, place.tolist()) for name, place in logged.holes["W1"][1]] == [
@@ -491,6 +498,8 @@ def test_surfaces_of_surpac(put):
     with pytest.raises(InputRefused, match=r"'top\.str', which is not beside it"):
         read_mesh(path)
     strings = put("top.str", STRINGS)
+    table = put("t.csv", "id,x,y,z,a,b,c\n0,1,2,3,4,5,6\n1,2,3,4,5,6,7\n")
+    assert read_points(table).xyz.tolist() == [[1, 2, 3], [2, 3, 4]]  # a table alike
     mesh = read_mesh(path)
     assert mesh.vertices.tolist() == [[10, 100, 5], [20, 100, 6], [10, 110, 7], [20, 110, 8]]
     assert mesh.triangles.tolist() == [[0, 1, 2], [1, 3, 2]]
@@ -613,3 +622,8 @@ def test_drawings_of_ezdxf_with_blocks_anyhow(tmp_path, release, seed):
         else:
             read = read_points(path, layer=layer).xyz
         assert np.allclose(np.sort(read, axis=0), np.sort(places, axis=0), atol=1e-8)
+
+
+def test_formats_that_are_not_public_say_what_to_export(put):
+    with pytest.raises(InputRefused, match="export it from Vulcan as DXF or OBJ"):
+        read_mesh(put("top.00t", b"\1\2\3\0"))

@@ -134,12 +134,13 @@ def test_landxml_and_its_unit(write):
     assert facets(mesh) == expected()
     vertices, warnings = mesh.in_model(MeshFile(path), "m")
     assert vertices == pytest.approx(VERTICES * 0.3048)
-    assert warnings == [f"{path}: its lengths are in ft, according to the file"]
+    said = f"{path}: the header says ft for 'x and y' and 'z', "
+    assert warnings == [f"{said}converted to m: if that is wrong, set units"]
     vertices, warnings = mesh.in_model(MeshFile(path, units="m"), "m")
     assert vertices == pytest.approx(VERTICES)
-    assert warnings == [f"{path}: it says that its lengths are in ft; it is read in m, as 'units' says"]
+    assert warnings == [f"{said}but the unit is m by 'units': correct one of them if it is wrong"]
     model = build(Project("x", [Rock("r", [Surface("S", mesh=path)])]))
-    assert any("its lengths are in ft" in str(warning) for warning in model.warnings)
+    assert any("the header says ft" in str(warning) for warning in model.warnings)
 
 
 PLY = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -177,9 +178,9 @@ def test_a_unit_in_the_header_of_dxf_is_a_warning_and_converts_nothing(write):
 @pytest.mark.parametrize(
     ("axes", "top", "said"),
     [
-        ('"ft" "ft" "ft"', (0.3048, 0.3048), ["its lengths are in ft, according to the file"]),
+        ('"ft" "ft" "ft"', (0.3048, 0.3048), ["'x and y' and 'z'"]),
         ('" m " " m " " m "', (1.0, 1.0), []),
-        ('"Metres" "METERS" "Feet"', (1.0, 0.3048), ["its lengths are in m (x, y) and ft (z), according to the file"]),
+        ('"Metres" "METERS" "Feet"', (1.0, 0.3048), ["'z'"]),
         ('"none" "none" "none"', (1.0, 1.0), []),
         ("m m m", (1.0, 1.0), []),
     ],
@@ -188,16 +189,16 @@ def test_each_unit_of_an_axis_of_gocad_is_obeyed(write, axes, top, said):
     path = write("m.ts", TSURF_AXES.replace("AXES", axes))
     vertices, warnings = read_mesh(path).in_model(MeshFile(path), "m")
     assert (vertices[:, 0].max(), vertices[:, 2].max()) == top
-    assert warnings == [f"{path}: {text}" for text in said]
+    what = "converted to m: if that is wrong, set units"
+    assert warnings == [f"{path}: the header says ft for {axes}, {what}" for axes in said]
 
 
 def test_an_unknown_unit_is_refused_and_one_that_is_said_is_used(write):
     path = write("m.ts", TSURF_AXES.replace("AXES", '"furlongs" "furlongs" "furlongs"'))
-    with pytest.raises(InputRefused, match=r"'furlongs', is not known; say it in 'units'"):
+    with pytest.raises(InputRefused, match="unit 'furlongs' of 'x and y' is not known; set units"):
         read_mesh(path).in_model(MeshFile(path), "m")
-    vertices, warnings = read_mesh(path).in_model(MeshFile(path, units="km"), "m")
+    vertices, _ = read_mesh(path).in_model(MeshFile(path, units="km"), "m")
     assert vertices[:, 2].max() == 1000.0
-    assert warnings == [f"{path}: it says that its lengths are in furlongs; it is read in km, as 'units' says"]
 
 
 TSURF_AXES = """GOCAD TSurf 1

@@ -292,3 +292,16 @@ def test_damaged_files_are_read_or_refused(tmp_path, ending):
             outcomes["refused"] += 1
     assert outcomes["read"] >= 1, outcomes
     assert outcomes["refused"] >= 20, outcomes
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_feet_of_a_file_of_objects_are_obeyed(write, tmp_path, ending):
+    model = crossing_model(write)
+    model.project.units = "ft"
+    model.save(path := tmp_path / f"m{ending}")
+    vertices, _ = model.surface(0)
+    mesh = read_mesh(MeshFile(path, layer="S0"))
+    for units, factor in (("ft", 1.0), ("m", 0.3048)):
+        places, warnings = mesh.in_model(MeshFile(path), units)
+        assert np.allclose(places, vertices * factor, rtol=1e-12)
+        assert len(warnings) == (units == "m") and all("set units" in text for text in warnings)

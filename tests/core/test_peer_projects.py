@@ -430,6 +430,19 @@ def test_points_of_a_fault_in_any_order_give_the_same_valid_model(seed, is_stick
     assert len(one.compartment_names) == 2
 
 
+@given(order=st.permutations(range(7)))
+@settings(max_examples=12, derandomize=True, deadline=None)
+def test_points_of_a_trace_in_another_order_are_refused(order):
+    x = np.array([-100.0, 100, 300, 500, 700, 900, 1100])
+    trace = np.column_stack([x, 400 + 0.0004 * (x - 500) ** 2])
+    fault = Fault("f", trace=trace[list(order)], dip=70.0, dip_direction="S", elevation=300.0)
+    if list(order) in (sorted(order), sorted(order, reverse=True)):
+        with_fault(fault)
+    else:
+        with pytest.raises(InputRefused, match=r"not in order along it|crosses itself"):
+            with_fault(fault)
+
+
 def test_one_point_and_a_dip_make_a_plane():
     dips = SpaceDips(np.array([[500.0, 400.0, 150.0]]), np.array([[-1.0, 0.0, 1.0]]))
     model = with_fault(Fault("f", points=np.array([[500.0, 400.0, 150.0]]), dips=dips, extend=2000.0))

@@ -6,10 +6,11 @@ import random
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, UsageError, read_points
+from realmodel.core import InputRefused, PointFile, UsageError, read_points
 from realmodel.core.base.packages import vendored
 from realmodel.core.base.units import METERS
 from realmodel.core.readers.contents import column_names, column_values, layer_names
+from realmodel.core.readers.point_input import read_raster_heights
 
 PETREL = """# Petrel Points with attributes
 # Unit in X and Y direction: {plan}
@@ -71,7 +72,7 @@ def test_petrel_points(write):
     read = read_points(write("p.txt", PETREL.format(plan="US ft", height="ft")), file_units="m")
     assert read.xyz[0].tolist() == [451234.5, 6782345, -2345.6]
     assert len(read.warnings) == 2 and all("'units'" in text for text in read.warnings)
-    with pytest.raises(InputRefused, match="unit 'parsec' .*set units"):
+    with pytest.raises(InputRefused, match=r"unit 'parsec' .*set units"):
         read_points(write("p.txt", PETREL.format(plan="m", height="parsec")))
 
 
@@ -138,7 +139,7 @@ def test_sheets_of_workbooks(tmp_path):
     assert layer_names(file) == ["Tops", "Notes"] and column_names(file, "Tops")[1] == "Rechtswert"
     assert column_values(file, "Id") == ["a", "#b"]
     two = workbook(tmp_path / "two.xlsx", A=SHEET, B=[["X", "Y", "Z"], [7, 8, 9]], Empty=[])
-    with pytest.raises(InputRefused, match='layer = "..."; it has A, B, Empty'):
+    with pytest.raises(InputRefused, match=r'layer = "..."; it has A, B, Empty'):
         read_points(two)
     assert read_points(two, layer="b").xyz.tolist() == [[7, 8, 9]]
     with pytest.raises(InputRefused, match="no sheet 'C'; it has A, B"):
@@ -147,11 +148,30 @@ def test_sheets_of_workbooks(tmp_path):
     with pytest.raises(InputRefused, match=r"bad.xlsx:3: z is not a number: 'bad'"):
         read_points(bad)
     (tmp_path / "old.xls").write_bytes(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600))
-    with pytest.raises(InputRefused, match="save it as .xlsx"):
+    with pytest.raises(InputRefused, match=r"save it as .xlsx"):
         read_points(tmp_path / "old.xls")
     (tmp_path / "cut.xlsx").write_bytes(file.read_bytes()[:900])
     with pytest.raises(InputRefused, match="not a workbook that can be read"):
         read_points(tmp_path / "cut.xlsx")
+
+
+def test_a_raster_that_does_not_say_its_null(write):
+    file = write("g.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 2\n101 102\n103 -9999\n")
+    read = read_points(file)
+    assert read.xyz[:, 2].tolist() == [101, 102, 103] and "nodata" in read.warnings[0]
+    z = read_raster_heights(PointFile(file), np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 3.0]]))
+    np.testing.assert_array_equal(z, [103, np.nan, 101.5])
+
+
+def test_vertices_of_meshes_are_points(write):
+    file = write("m.off", "OFF\n3 1 0\n0 0 5\n1 0 6\n0 1 7\n3 0 1 2\n")
+    assert read_points(file).xyz.tolist() == [[0, 0, 5], [1, 0, 6], [0, 1, 7]]
+
+
+def test_ends_of_lines_behind_a_long_line(write):
+    rows = [f"{451000 + n}.5 6782345.0 {999 if n == 7 else -n}.0" for n in range(400)]
+    file = write("f.txt", "\n".join([*rows, "999.0 999.0 999.0", *rows[:2], "999.0 999.0 999.0"]))
+    assert len(read_points(file).xyz) == 402
 
 
 def test_keys_of_read_points(write):

@@ -254,6 +254,20 @@ def test_picks_alone_are_surfaces(tmp_path):
     assert build(project).volume > 0
 
 
+def test_one_unit_alone_is_a_model(tmp_path):
+    project = proposed(tmp_path, [[("Sand", 10)]] * 3)
+    project.save(tmp_path / "out")
+    assert [block.name for block in build(load_project(tmp_path / "out/project.toml")).blocks] == ["Sand"]
+
+
+def test_a_lens_in_a_unit_whose_surface_is_called_otherwise(tmp_path):
+    plain = [("Clay", 18), ("Clay top", 5), ("Rock", 20)]
+    lens = [("Clay", 18), ("Clay top", 2), ("Sand", 1), ("Clay top", 2), ("Rock", 20)]
+    project = proposed(tmp_path, [*[plain] * 4, lens, *[plain] * 4])
+    assert {lens.host for lens in project.proposal.lenses} == {"Clay top"}
+    assert build(project).observed().share == 1.0
+
+
 def test_nothing_to_propose_from_is_refused(tmp_path):
     with pytest.raises(UsageError, match="boreholes or a map"):
         propose_project()

@@ -3,9 +3,8 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Cancelled, InputRefused
-from realmodel.core import PointFile
-from realmodel.core.readers import read_off, read_point_file, read_points, read_region
+from realmodel.core import Cancelled, InputRefused, PointFile
+from realmodel.core.readers import read_off, read_points, read_region
 from realmodel.core.readers.tables.points import read_point_rows
 
 POINTS = [[1.0, 2.0, 3.0], [-4.5, 5e3, 0.25]]

@@ -6,12 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from object_models import assert_closed, crossing_surfaces, volume
-from realmodel.core import Library, Project, Property, Rock, build, build_surfaces
+from realmodel.core import Library, MeshFile, Project, Property, Rock, build, build_surfaces
 from realmodel.core.exporters.shapes.shape_parts import model_parts
 from realmodel.core.readers import read_mesh
+from realmodel.core.readers.contents import layer_names
 
 WHY = "not installed: scripts/test.sh installs it"
 NAMES = ["base block", "Grès à Voltzia", "Clay", "Clay (2)"]
+
+
+def read_all(path):
+    """The mesh of each object of a file, or the only one."""
+    return [read_mesh(MeshFile(path, layer=name)) for name in layer_names(path) or [None]]
 
 
 def rocks(shift):
@@ -124,9 +130,11 @@ def test_tsurf_has_an_object_for_each_block(model, folder):
     assert names == NAMES
     assert text.count("GOCAD TSurf 1\n") == text.count("\nEND\n") == 4
     assert 'AXIS_UNIT "m" "m" "m"' in text
-    read = read_mesh(folder / "m.ts")
-    assert_closed(read.triangles)
-    assert volume(read.vertices, read.triangles) == pytest.approx(model.volume, rel=1e-7)
+    read = read_all(folder / "m.ts")
+    for mesh in read:
+        assert_closed(mesh.triangles)
+    total = sum(volume(mesh.vertices, mesh.triangles) for mesh in read)
+    assert total == pytest.approx(model.volume, rel=1e-7)
 
 
 def test_every_triangle_of_a_block_has_an_area(model):
@@ -144,13 +152,13 @@ def test_every_triangle_of_a_block_has_an_area(model):
 def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
     surfaces = build_surfaces(model.project)
     surfaces.save(tmp_path / f"s{ending}")
-    read = read_mesh(tmp_path / f"s{ending}")
-    assert len(read.triangles) == sum(len(surfaces.surface(k)[1]) for k in range(4))
+    read = read_all(tmp_path / f"s{ending}")
+    assert sum(len(mesh.triangles) for mesh in read) == sum(len(surfaces.surface(k)[1]) for k in range(4))
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     section = model.section((low + high) / 2, (1.0, 0.3, 0.1))
     section.save(tmp_path / f"c{ending}")
-    read = read_mesh(tmp_path / f"c{ending}")
-    a, b, c = (read.vertices[read.triangles] - low).transpose(1, 0, 2)
+    corners = [mesh.vertices[mesh.triangles] for mesh in read_all(tmp_path / f"c{ending}")]
+    a, b, c = (np.concatenate(corners) - low).transpose(1, 0, 2)
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(section.area, rel=1e-6)
 
 
@@ -181,7 +189,7 @@ def test_tsurf_says_the_unit(model, tmp_path):
     built.save(tmp_path / "m.ts")
     built.section(built.vertices.mean(axis=0), (1.0, 0.0, 0.0)).save(tmp_path / "c.ts")
     for name in ("s", "m", "c"):
-        assert read_mesh(tmp_path / f"{name}.ts").unit == "ft"
+        assert {mesh.unit for mesh in read_all(tmp_path / f"{name}.ts")} == {"ft"}
 
 
 def test_surfaces_have_groups_in_obj(model, tmp_path):

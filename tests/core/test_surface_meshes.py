@@ -124,7 +124,11 @@ def test_stl_shares_vertices(write, content):
         ("m.obj", OBJ, "has no faces; if it holds points"),
         ("m.ts", TSURF.replace("TRGL 1 2 8", "TRGL 1 2 6"), r"m\.ts:14: 'TRGL 1 2 6' cannot be read"),
         ("m.ts", "GOCAD Voxet 1\nHEADER {\nname: a\n}\nEND\n", "a GOCAD Voxet, which is not read"),
-        ("m.ts", "GOCAD PLine 1\nVRTX 1 0 0 0\nVRTX 2 1 0 0\nSEG 1 2\nEND\n", "has no faces; if it holds points"),
+        (
+            "m.ts",
+            "GOCAD PLine 1\nVRTX 1 0 0 0\nVRTX 2 1 0 0\nSEG 1 2\nEND\n",
+            "has no faces; if it holds points",
+        ),
         ("m.ply", PLY.replace("4 0 1 2 3", "4 0 1 2 9"), "face 1 has a corner"),
         ("m.ply", PLY.replace("4 0 1 2 3", "4 0 1 2 0.5"), "face 1 has a corner"),
         ("m.ply", PLY.replace("vertex 4", "vertex 400000000000"), "not a PLY file"),

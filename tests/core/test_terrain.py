@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The terrain of a rock mass: a boundary above all surfaces, from a raster, a mesh, points or a surface."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -126,7 +128,7 @@ def test_what_is_no_terrain_is_refused_with_its_line(tmp_path, written, said):
     raster(tmp_path / "dem.asc", [[6] * 4] * 4)
     (tmp_path / "project.toml").write_text(
         'format = 1\nname = "p"\n[[rock]]\nname = "r"\nregion = [[0, 0], [40, 0], [40, 40], [0, 40]]\n'
-        f'edge_length = 5\nbase_elevation = 0\nterrain = {written}\n'
+        f"edge_length = 5\nbase_elevation = 0\nterrain = {written}\n"
         '[[rock.surface]]\nname = "A"\nmethod = "constant"\nvalue = 2\n'
     )
     with pytest.raises(InputRefused, match=said):
@@ -213,13 +215,12 @@ def test_picks_of_the_surface_that_is_taken_for_it_are_named(tmp_path):
 
 def test_it_is_the_ground_of_a_map(tmp_path):
     raster(tmp_path / "dem.asc", [[2, 4, 6, 8]] * 4)
-    ring = "[[[{0},0],[{1},0],[{1},40],[{0},40],[{0},0]]]"
-    features = ",".join(
-        '{"type":"Feature","properties":{"unit":"%s"},"geometry":{"type":"Polygon","coordinates":%s}}'
-        % (unit, ring.format(*ends))
-        for unit, ends in (("old", (0, 20)), ("young", (20, 40)))
-    )
-    (tmp_path / "map.geojson").write_text('{"type":"FeatureCollection","features":[%s]}' % features)
+    features = []
+    for unit, west, east in (("old", 0, 20), ("young", 20, 40)):
+        ring = [[west, 0], [east, 0], [east, 40], [west, 40], [west, 0]]
+        shape = {"type": "Polygon", "coordinates": [ring]}
+        features.append({"type": "Feature", "properties": {"unit": unit}, "geometry": shape})
+    (tmp_path / "map.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
     bed = Surface("bed", block="old", method="plane", options={"dip": 0.0})
     rock = rock_of(
         bed,

@@ -111,8 +111,16 @@ def test_boreholes(tmp_path):
 
 
 def whole_blocks(model, places):
-
     return model.block_at(places).tolist()
+
+
+def test_blocks_at_points_and_on_a_grid_are_those_of_the_whole(tmp_path):
+    project = sample("two_layers")
+    whole, tiled = build(project), build_tiles(project, tmp_path / "t", (30, 25))
+    assert len(tiled.tiles) > 3
+    np.testing.assert_array_equal(tiled.grid((13, 11, 7)), whole.grid((13, 11, 7)))
+    points = np.random.default_rng(3).uniform((-5, -5, -1), (90, 60, 40), (500, 3))
+    assert tiled.block_at(points).tolist() == whole_blocks(whole, points)
 
 
 usual = settings(

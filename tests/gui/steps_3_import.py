@@ -23,6 +23,26 @@ def invoked(walk, operator, **arguments):
         return operator("INVOKE_DEFAULT", **arguments)
 
 
+def import_objects(walk):
+    """The surfaces of a DXF are listed with ticks, and all are imported, the oldest first."""
+    path = walk.folder / "stack.dxf"
+    codes = ["0", "SECTION", "2", "ENTITIES"]
+    for k in range(3):
+        codes += ["0", "3DFACE", "8", f"TOP_{k}"]
+        for corner, (x, y) in enumerate([(0, 0), (100, 0), (100, 100), (0, 100)]):
+            codes += [f"1{corner}", str(x), f"2{corner}", str(y), f"3{corner}", str(10 * k)]
+    path.write_text("\n".join([*codes, "0", "ENDSEC", "0", "EOF"]) + "\n")
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.surface_add, filepath=str(path))
+    yield walk.redrawn(3)
+    walk.shot("objects_dialog")
+    walk.key("RET")
+    yield lambda: len(model().rocks) == 1 and len(model().rocks[0].surfaces) == 3
+    yield walk.redrawn(2)
+    assert [s.name for s in model().rocks[0].surfaces] == ["TOP_0", "TOP_1", "TOP_2"]
+    path.unlink()
+
+
 def import_horizons(walk):
     """A file of semicolons and decimal commas is dropped: its columns are shown, it is split by horizon."""
     path = walk.folder / "boundaries.csv"
@@ -85,4 +105,4 @@ def replacing_asks(walk):
     walk.shot("replaced")
 
 
-STEPS = (begin_again, import_horizons, region_and_build, replacing_asks)
+STEPS = (begin_again, import_objects, begin_again, import_horizons, region_and_build, replacing_asks)

@@ -39,6 +39,7 @@ from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBo
 from .proof.validation import ValidationReport
 from .proposal import ProposedProject, propose_project
 from .readers.borehole_tables import BoreholeTables, read_boreholes
+from .readers.code_counts import CodeCount, count_codes
 from .readers.mesh_data import MeshData, read_mesh
 from .readers.point_input import PointData, read_points
 from .readers.tables.hole_problems import HoleProblem
@@ -66,6 +67,7 @@ __all__ = [
     "BuildWarning",
     "Cancelled",
     "CleanedCells",
+    "CodeCount",
     "Contour",
     "CrossValidation",
     "Cut",
@@ -134,6 +136,7 @@ __all__ = [
     "ViolatedBound",
     "build",
     "build_surfaces",
+    "count_codes",
     "cross_validate",
     "estimate",
     "estimate_mesh",

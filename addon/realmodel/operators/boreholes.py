@@ -90,9 +90,8 @@ def _rasters(properties):
 
 class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, FilesImportHelper):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
-    the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of an
-    OMF or geoh5 file; tables of
-    places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
+    the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of
+    an OMF or geoh5 file; tables of places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
     name, or for the active surface or its series where none names any; and geological maps. Choose all of
     them at once: each is told by its columns. Surfaces get these data beside their own, and are added where
     they are not there yet"""
@@ -396,7 +395,8 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
         has_maps = any(field_tables.is_map(path) for path in shown)
         of_series = ("series",) if _series(context) else ()
         for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
-            layout.prop(self, name)
+            if name != "columns" or not self._previews:  # else the menus say it
+                layout.prop(self, name)
 
     def check(self, _context):
         self.settle_columns()

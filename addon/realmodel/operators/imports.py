@@ -37,10 +37,11 @@ from ..core.readers import (
     read_mesh,
     read_point_file,
 )
-from ..core.readers.contents import column_values
+from ..core.readers.contents import column_values, layer_names
 from ..core.readers.formats import ARRAY, MESH, OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.object_input import read_objects
 from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
+from ..core.readers.tables.hole_tables import normalized_name
 from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
@@ -54,6 +55,7 @@ from .rocks import add_rock
 from .start import invoke
 
 _OTHERS = {key: READING[key] for key in ("units", "z_axis", "decimal", "nodata")}  # in the dialog
+_Options = properties_of(_OTHERS, None)
 _LARGEST = 1 << 26  # bytes of a file that is read for what the dialog says of it
 _ENDINGS = endings(MESH, TABLE, RASTER, ARRAY, SHAPES, OBJECTS)
 _said = caches.new(most=32)  # by file and import options: what the dialog says of them
@@ -106,7 +108,7 @@ class REALMODEL_OT_surface_add(
     Reporting,
     TableDialog,
     ObjectDialog,
-    properties_of(_OTHERS, None),
+    _Options,
     bpy.types.Operator,
     FilesImportHelper,
 ):
@@ -290,12 +292,23 @@ class REALMODEL_OT_surface_add(
         objects = [obj for obj in objects_in(path) if not obj.is_part]
         if len(objects) > 1:
             return self._of_objects(path, objects)
+        if not objects and (layers := [row.name for row in self.objects if row.file == str(path)]):
+            return self._of_layers(path, layers)
         if is_mesh_file(path):
             return [_NewSurface(path.stem, "MESH_FILE", path, reading=self._other_reading(*MESH_READING))]
         if path.suffix.lower() in endings(TABLE):
             return self._of_table(path)
         reading = self._other_reading("units", "z_axis", "nodata")
         return [_NewSurface(path.stem, "POINTS_FILE", path, reading=reading)]
+
+    def _of_layers(self, path, layers):
+        """The chosen layers of a GeoPackage, or sheets of a workbook."""
+        reading = self._other_reading("units", "z_axis", "nodata")
+        return [
+            _NewSurface(name, "POINTS_FILE", path, reading={**reading, "layer": name}, is_named=True)
+            for name in layers
+            if self.wants(path, name)
+        ]
 
     def _of_table(self, path):
         """The surfaces of a table: one, or one for each value of a column."""
@@ -363,12 +376,16 @@ def _is_open(mesh):
 
 
 def _objects_of(paths):
-    """(path, name, kind, size) of the objects of files that can be surfaces. Raises InputRefused."""
+    """(path, name, kind, size) of the objects, layers and sheets of files that can be surfaces; the size of
+    the latter is not known, 0. Raises InputRefused."""
     kinds = (SURFACE, POINTS, LINES)
     for path in paths:
-        if not any(obj.kind in kinds for obj in objects_in(path)):
-            continue
-        for obj in read_objects(path, None, kinds):
+        if not objects_in(path) and len(layers := layer_names(path)) > 1:
+            yield from ((path, name, POINTS, 0) for name in layers)
+        whole = [obj.name for obj in objects_in(path) if obj.kind in kinds and not obj.is_part]
+        for obj in read_objects(path, None, kinds) if whole else ():
+            if obj.name not in whole:
+                continue
             if obj.triangles is None:
                 yield path, obj.name, obj.kind, len(obj.vertices)
             elif _is_open(obj):
@@ -378,7 +395,8 @@ def _objects_of(paths):
 def _row_of(scene, rock, surface, units, warnings):
     """The row that takes a new surface: that of its name, where it has no data yet, or is named in a file;
     else another one."""
-    row = rock.surfaces.get(units.surface(surface.name))
+    alike = [row for row in rock.surfaces if _letters(row.name) == _letters(surface.name)]
+    row = rock.surfaces.get(units.surface(surface.name)) or (alike[0] if len(alike) == 1 else None)
     has_data = row is not None and (row.object or row.filepath or row.stored or row.stored_mesh)
     if row is not None and (surface.is_named or not has_data) and surface.path is not None:
         if has_data:
@@ -403,6 +421,10 @@ def _terrain_row(rock):
         project_settings.forget_shape(row)
         row.is_terrain = True
     return row
+
+
+def _letters(name):
+    return normalized_name(name).replace("_", "")
 
 
 def _read(surface, unit):

@@ -14,21 +14,21 @@ from .panel import FoldedPanel, hint, message, right_label
 
 def _columns(layout):
     """Of the table: a tick and the code, holes, length, unit."""
-    split = layout.split(factor=0.38)
-    code, rest = split.row(align=True), split.split(factor=0.18)
-    holes, rest = rest.row(), rest.split(factor=0.4)
+    split = layout.split(factor=0.34)
+    code, rest = split.row(), split.split(factor=0.22)
+    holes, rest = rest.row(), rest.split(factor=0.42)
     return code, holes, rest.row(), rest.row()
 
 
 class REALMODEL_UL_codes(OfRows, bpy.types.UIList):
     """Codes of field data."""
 
-    def draw_row(self, context, row, item):
+    def draw_row(self, _context, row, item):
         code, holes, length, unit = _columns(row)
-        code.prop(item, "chosen", text="")
-        code.label(text=item.name)
+        code.use_property_split = False
+        code.prop(item, "chosen", text=item.name)
         right_label(holes, str(item.holes))
-        right_label(length, units.length_text(context.scene, item.length) if item.length else "")
+        right_label(length, f"{item.length:,.0f}" if item.length else "")
         unit.active = bool(item.unit)
         unit.label(text=item.unit or "nothing")
 
@@ -46,7 +46,8 @@ class REALMODEL_PT_codes(FoldedPanel, bpy.types.Panel):
         rock = settings.active_rock(context.scene)
         means = {row.unit for row in rock.codes if row.unit}
         message(layout.column(align=True), f"{len(rock.codes)} codes mean {len(means)} units.")
-        for part, text in zip(_columns(layout), ("Code", "Holes", "Length", "Unit"), strict=True):
+        unit = units.unit_text(context.scene, 1)
+        for part, text in zip(_columns(layout), ("Code", "In", unit, "Unit"), strict=True):
             part.label(text=text) if text in ("Code", "Unit") else right_label(part, text)
         layout.template_list("REALMODEL_UL_codes", "", rock, "codes", rock, "active_code", rows=6)
         chosen = sum(row.chosen for row in rock.codes)
@@ -58,8 +59,9 @@ class REALMODEL_PT_codes(FoldedPanel, bpy.types.Panel):
         layout.operator("realmodel.codes_assign", text=text, icon="FORWARD")
         if 0 <= rock.active_code < len(rock.codes):
             active = rock.codes[rock.active_code]
-            rows = f"{active.rows} rows in {active.holes} holes"
-            hint(layout, f"{active.name}: {rows}; means {active.unit or 'nothing'}")
+            length = units.length_text(context.scene, active.length)
+            said = f"{active.name}: {active.rows} rows in {active.holes} holes, {length}"
+            hint(layout, f"{said}; means {active.unit or 'nothing'}")
 
 
 class REALMODEL_UL_hole_problems(OfRows, bpy.types.UIList):

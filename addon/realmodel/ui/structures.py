@@ -51,6 +51,8 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
         layout.prop(entry, "source")
         if entry.source in settings.OF_OBJECTS:
             layout.prop(entry, "object")
+        elif entry.source == "INTERVALS":
+            panel.draw(layout, entry, "reach", BODY)
         else:
             file_field(layout, entry, "filepath")
             if project_settings.stored_shape(entry) and not entry.filepath:

@@ -14,8 +14,11 @@ import bpy
 from ...core import InputRefused
 from ...core.base.atomic import Outputs
 from ...core.readers.tables.hole_tables import normalized_name
+from ..host import caches
+from ..objects.stored_arrays import file_stamp
 
 _FORMAT = "realmodel import profiles 1"
+_read = caches.new(most=4)  # by the stamp of their file
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,10 @@ def file():
 def all_of_user():
     """Those of the user, by name; none where they cannot be read."""
     try:
-        return read(file())
+        stamp = file_stamp(file())
+        if stamp and stamp not in _read:
+            _read[stamp] = read(file())
+        return list(_read[stamp]) if stamp else []
     except InputRefused:
         return []
 

@@ -294,6 +294,8 @@ def _shape(source, composed, place, surface, row):
             _take_mesh(composed, surface, row.interface, vertices, triangles, base)
             structure_settings.clear_extension(surface)
             return
+    if row.source == "INTERVALS":
+        return
     if of_ground:
         _take_ground(source, composed, place, surface, row)
         return

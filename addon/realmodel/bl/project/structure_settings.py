@@ -13,7 +13,7 @@ from . import method_settings, settings
 def entry_of(place, row):
     """A realmodel.core.Fault or Body with everything but its shape."""
     if place[0] == "body":
-        body = Body(**method_settings.values(row, Body))
+        body = Body(**method_settings.values(row, Body, "intervals" if row.source == "INTERVALS" else "mesh"))
         if body.void:
             body.property = 0
         return body
@@ -84,6 +84,9 @@ def _fill_shape(row, entry, units):
         row.source = "POINTS_FILE" if points else "TRACE_FILE" if trace else "MESH_FILE"
         row.filepath = str(entry.input_file)
         method_settings.fill_reading(row, points or trace or entry.mesh_file)
+        return
+    if isinstance(entry, Body) and not entry.has_shape:
+        row.source = "INTERVALS"
         return
     if entry.vertices is None:  # points or a trace from a script or a project file
         entry = work.run(lambda task: _read_fault(task, entry, units))

@@ -5,6 +5,7 @@ native module, with advice for the user's situation."""
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 import importlib.util
 import re
 import sys
@@ -53,15 +54,49 @@ def _vendor_on_path() -> Iterator[None]:
         sys.path.remove(folder)
 
 
+# The bounds of pyproject.toml for the packages of extras: from this version on, and below that one.
+VERSIONS = {
+    "geoh5py": ("0.12.2", None),
+    "ifcopenshell": ("0.9.0", None),
+    "omf": ("1.0.1", "2"),
+    "pandas": ("2", None),
+    "pyogrio": ("0.10", None),
+    "pyvista": ("0.45", None),
+    "rasterio": ("1.4", None),
+    "vtk": ("9.4", None),
+}
+
+
 def extra(module: str, purpose: str, name: str = "notebook") -> Any:
     """A module of an optional package. name: the extra that has it.
 
-    Raises UsageError where it cannot be imported.
+    Raises UsageError where it cannot be imported, or is of a version that is not used.
     """
+    package = module.partition(".")[0]
+    _require_version(package, purpose, name)
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise missing(module.partition(".")[0], purpose, name, f" ({error})") from error
+        raise missing(package, purpose, name, f"which cannot be imported ({error})") from error
+
+
+def _require_version(package: str, purpose: str, name: str) -> None:
+    if package not in VERSIONS:
+        return
+    try:
+        version = importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:  # importing it says whether it is there
+        return
+    first, beyond = VERSIONS[package]
+    if _numbers(version) < _numbers(first) or (beyond and _numbers(version) >= _numbers(beyond)):
+        wanted = f"{package}>={first}" + (f",<{beyond}" if beyond else "")
+        raise missing(wanted, purpose, name, f"and there is {version}")
+
+
+def _numbers(version: str) -> list[int]:
+    """The numbers at the beginning of a version: [0, 9, 0] of 0.9.0.post1."""
+    matched = re.match(r"\d+(\.\d+)*", version)
+    return [int(part) for part in matched[0].split(".")] if matched else []
 
 
 def omf_library(purpose: str) -> Any:
@@ -82,14 +117,16 @@ def require_extra(module: str, name: str, purpose: str) -> None:
     """Raises UsageError where a module of an optional package is not installed; it is not imported."""
     if importlib.util.find_spec(module) is None:
         raise missing(module, purpose, name)
+    _require_version(module, purpose, name)
 
 
-def missing(package: str, purpose: str, name: str, cause: str = "") -> UsageError:
-    """The error that says which extra has a package. cause: of what Python says."""
-    text = f"{purpose} needs {package}, which cannot be imported{cause}"
+def missing(package: str, purpose: str, name: str, cause: str = "which cannot be imported") -> UsageError:
+    """The error that says which extra has a package, whose versions may be with it. cause: what is wrong."""
+    text = f"{purpose} needs {package}, {cause}"
     if "bpy" in sys.modules:  # the add-on: it was not installed by pip
+        asked = package if package.isidentifier() else f'"{package}"'
         return UsageError(
-            f'{text}; install it for Blender\'s Python: "{sys.executable}" -m pip install {package}'
+            f'{text}; install it for Blender\'s Python: "{sys.executable}" -m pip install {asked}'
         )
     return UsageError(f'{text}; install it: pip install "realmodel[{name}]"')
 

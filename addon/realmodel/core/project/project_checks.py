@@ -237,8 +237,8 @@ def _check_body(project: Project, body: Body) -> None:
     refuse = body.refused
     if body.has_shape or body.triangles is not None:
         _check_structure_shape(body, refuse, ("mesh",))
-        if body.reach is not None:
-            raise refuse("'reach' has no effect, as its shape is a mesh", "reach")
+        for key in keys_without_effect(body, "mesh"):
+            raise refuse(f"'{key}' has no effect, as its shape is a mesh", key)
     elif not any(
         rock.boreholes is not None or rock.observations is not None
         for rock in map(project.rocks.__getitem__, body_times(project, body))

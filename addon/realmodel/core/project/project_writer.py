@@ -161,9 +161,9 @@ def _as_written(entry: Any) -> Any:
     """An entry with the arrays that it is made from: those of its mesh, if no others."""
     if isinstance(entry, Rock):
         return replace(entry, names={})  # what they mean is in the observations
-    if (isinstance(entry, Surface) and entry.has_points) or (
-        isinstance(entry, Fault) and entry.vertices is None
-    ):
+    is_not_read = isinstance(entry, Fault) and entry.vertices is None
+    is_of_intervals = isinstance(entry, Body) and not entry.has_shape  # which are in the observations
+    if (isinstance(entry, Surface) and entry.has_points) or is_not_read or is_of_intervals:
         return entry
     if isinstance(entry, Fault):
         entry = replace(entry, points=None, dips=None, stick=None, extend=0.0)

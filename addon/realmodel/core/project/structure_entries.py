@@ -22,6 +22,7 @@ from .entry import Entry
 POINTS = Setting(kind="points", of=PointFile)
 MESH = Setting(kind="mesh", of=MeshFile)
 OF_TRACES = ("trace",)
+OF_INTERVALS = ("intervals",)
 
 
 def library_id(of: str) -> Setting:
@@ -262,10 +263,10 @@ class Body(Shaped):
         above=0.0,
         zero_is_none=True,
         more="See [bodies from intervals](#bodies-from-intervals)",
+        shapes=OF_INTERVALS,
     )
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
-
 
 
 FAULT = settings_of(Fault)

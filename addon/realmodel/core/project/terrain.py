@@ -76,8 +76,8 @@ def needs_shape(rock: Rock, surface: Surface) -> bool:
 
 
 def file_shape(given: Any) -> dict:
-    """The value of a Surface that a file of heights is, or a PointFile or MeshFile of one, or points: its mesh
-    or its points."""
+    """The value of a Surface that a file of heights is, or a PointFile or MeshFile of one, or points: its
+    mesh or its points."""
     is_mesh = isinstance(given, MeshFile) or (isinstance(given, (str, Path)) and is_mesh_file(given))
     return {"mesh" if is_mesh else "points": given}
 

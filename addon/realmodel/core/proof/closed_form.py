@@ -200,15 +200,21 @@ def block_at(model: ModelData, points: ArrayLike, *, threads: int = 0) -> np.nda
     """
     if model.is_cut:
         raise UsageError("a cut model has no closed form: ask the whole model")
-    try:
-        points = np.ascontiguousarray(points, np.float64)
-    except (TypeError, ValueError) as error:
-        raise UsageError("points must be an array (N, 3) of numbers") from error
-    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
-        raise UsageError(f"points must be an array (N, 3) of finite numbers, not {points.shape}")
+    points = checked_places(points)
     threads = check_threads(threads)
     blocks = run(lambda work: blocks_of_all(work, closed_forms(model), points), threads=threads)
     return blocks.astype(np.int32)
+
+
+def checked_places(points: ArrayLike) -> np.ndarray:
+    """Points (N, 3) as float64. Raises UsageError."""
+    try:
+        places = np.ascontiguousarray(points, np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError("points must be an array (N, 3) of numbers") from error
+    if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
+        raise UsageError(f"points must be an array (N, 3) of finite numbers, not {places.shape}")
+    return places
 
 
 @keyword_only
@@ -221,16 +227,22 @@ def grid(model: ModelData, shape: Sequence[int], *, threads: int = 0) -> np.ndar
     >>> model.grid((2, 1, 3))[:, 0].tolist()
     [[0, 0, 2], [0, 0, 2]]
     """
+    if not len(model.vertices):
+        box = np.zeros((2, 3))
+    else:
+        box = np.stack([model.vertices.min(axis=0), model.vertices.max(axis=0)])
+    centers = grid_centers(box, shape)
+    return block_at(model, centers, threads=threads).reshape(shape)
+
+
+def grid_centers(box: np.ndarray, shape: Sequence[int]) -> np.ndarray:
+    """(N, 3) the centers of the cells of a regular grid of a box (2, 3), z fastest. Raises UsageError."""
     counts = np.asarray(shape)
     if counts.shape != (3,) or counts.dtype.kind not in "iu" or (counts < 1).any():
         raise UsageError(f"a grid has three numbers of cells, along x, y and z, not {shape!r}")
-    if not len(model.vertices):
-        return np.full(counts, AIR, np.int32)
-    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
-    centers = [a + (np.arange(n) + 0.5) * ((b - a) / n) for a, b, n in zip(low, high, counts, strict=True)]
-    x, y, z = np.meshgrid(*centers, indexing="ij")
-    points = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
-    return block_at(model, points, threads=threads).reshape(counts)
+    steps = (box[1] - box[0]) / counts
+    index = np.indices(counts).reshape(3, -1).T
+    return box[0] + (index + 0.5) * steps
 
 
 def blocks_of_all(work: Work, forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:

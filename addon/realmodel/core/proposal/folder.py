@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,29 +15,27 @@ from ..base.atomic import Outputs, explained
 from ..base.errors import OutputFailed
 from ..base.units import MODEL_UNIT
 from ..project.entry import changed_values
-from ..project.project import Rock, Surface
+from ..project.project import Project, Rock, Surface
 from ..project.project_file import load_project
 from ..project.project_writer import library_text, off_text, points_text, region_text, toml_value
 from ..readers.map_input import map_companions
 from ..readers.point_input import companions
 from ..settings.data_files import MapLayer, MeshFile, PointFile, is_wkt, list_of
-
-if TYPE_CHECKING:
-    from .proposal import Proposal, ProposedProject
+from .choices import Proposal
 
 _PROJECT, _LIBRARY, _PROPOSAL, _GROUND = "project.toml", "library.toml", "proposal.json", "ground.csv"
 _WIDTH = 110  # of comments
 
 
-def save_folder(project: ProposedProject, folder: str | Path) -> list[Path]:
+def save_folder(project: Project, proposal: Proposal, folder: str | Path) -> list[Path]:
     """Writes a proposed project to a new folder. Raises OutputFailed."""
     folder = Path(folder)
     require_new(folder)
     with Outputs() as outputs, outputs.folder(folder, _PROJECT) as waiting:
         files = _Files(waiting, folder)
-        text = "\n".join(_project_lines(project, files)) + "\n"
+        text = "\n".join(_project_lines(project, proposal, files)) + "\n"
         files.write(_LIBRARY, library_text(project.library).encode() if project.library else b"")
-        files.write(_PROPOSAL, json.dumps(_as_json(project.proposal), indent=1, ensure_ascii=False).encode())
+        files.write(_PROPOSAL, json.dumps(_as_json(proposal), indent=1, ensure_ascii=False).encode())
         files.write(_PROJECT, text.encode())
         load_project(waiting / _PROJECT)  # what it says is right
         names = sorted(files.taken)
@@ -87,8 +85,8 @@ class _Files:
         return self._copies[file.resolve()]
 
 
-def _project_lines(project: ProposedProject, files: _Files) -> list[str]:
-    rock, proposal = project.rocks[0], project.proposal
+def _project_lines(project: Project, proposal: Proposal, files: _Files) -> list[str]:
+    rock = project.rocks[0]
     lines = [
         *_comment(
             "Made by `realmodel new`. Change what you like: the comments say why each choice was made, and "
@@ -129,8 +127,6 @@ def _project_lines(project: ProposedProject, files: _Files) -> list[str]:
 
 def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:
     lines = [*_comment(f"The region is {why['region']}"), f"region = {_region_text(rock.region, files)}"]
-    if len(rock.holes):
-        lines.append(f"holes = {region_text(rock.holes)}")
     lines += [
         *_comment(f"Interpolation: {why['method']}"),
         *_comment(f"The edge length of the triangles: {why['edge_length']}"),

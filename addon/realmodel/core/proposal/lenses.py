@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..surfaces.planar_mesh import mesh_region
-from .logs import HoleLogs, Log, Part, merged
+from .logs import HoleLogs, Log, LoggedPart, merged
 from .order import UnitOrder
 
 _ROUND = 16  # edges of a lens that one hole has, at least
@@ -37,7 +37,7 @@ class Lens:
     name: str
     unit: str
     host: str
-    parts: Sequence[tuple[str, Part]]
+    parts: Sequence[tuple[str, LoggedPart]]
 
 
 @dataclass(frozen=True)
@@ -67,13 +67,13 @@ def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
     unit, or that around them, repeats in the hole; else, and where several units in a row repeat, they are in
     conflict with their neighbors."""
     logs: list[Log] = []
-    inside: dict[tuple[str, str], list[tuple[str, Part]]] = {}
+    inside: dict[tuple[str, str], list[tuple[str, LoggedPart]]] = {}
     conflicts: list[Conflict] = []
     repeats: list[Repeat] = []
     for log in data.logs:
         stays = _in_order(log.parts, order)
         in_runs = _runs_out_of_order(log, stays, order, repeats)
-        chain: list[Part] = []
+        chain: list[LoggedPart] = []
         for number, part in enumerate(log.parts):
             if stays[number]:
                 chain.append(part)
@@ -83,7 +83,7 @@ def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
                 conflicts += _conflicts(log, stays, number, order)
             else:
                 inside.setdefault((part.unit, host), []).append((log.hole, part))
-                chain.append(Part(host, part.top, part.bottom, part.depth, part.end))
+                chain.append(LoggedPart(host, part.top, part.bottom, part.depth, part.end))
         logs.append(Log(log.hole, merged(chain), log.collar))
     plan = {log.hole: log.plan for log in data.logs}
     lenses: list[Lens] = []
@@ -92,7 +92,7 @@ def sort_out(data: HoleLogs, order: UnitOrder) -> Sorted:
     return Sorted(logs, _named(lenses, data, logs), conflicts, repeats)
 
 
-def _in_order(parts: Sequence[Part], order: UnitOrder) -> list[bool]:
+def _in_order(parts: Sequence[LoggedPart], order: UnitOrder) -> list[bool]:
     """Which parts of a hole stay: the thickest chain that never rises to a younger unit."""
     ranks = [order.rank(part.unit) for part in parts]
     best, before = [0.0] * len(parts), [-1] * len(parts)
@@ -125,7 +125,7 @@ def _runs_out_of_order(log: Log, stays: Sequence[bool], order: UnitOrder, repeat
     return numbers
 
 
-def _host(parts: Sequence[Part], stays: Sequence[bool], number: int) -> str | None:
+def _host(parts: Sequence[LoggedPart], stays: Sequence[bool], number: int) -> str | None:
     """The unit around a part that is out of order, where it is a lens."""
     above = next((parts[at].unit for at in range(number - 1, -1, -1) if stays[at]), None)
     below = next((parts[at].unit for at in range(number + 1, len(parts)) if stays[at]), None)
@@ -149,10 +149,12 @@ def _conflicts(log: Log, stays: Sequence[bool], number: int, order: UnitOrder) -
     return conflicts
 
 
-def _groups(parts: list[tuple[str, Part]], plan: dict[str, np.ndarray]) -> list[list[tuple[str, Part]]]:
+def _groups(
+    parts: list[tuple[str, LoggedPart]], plan: dict[str, np.ndarray]
+) -> list[list[tuple[str, LoggedPart]]]:
     """Parts of neighboring holes at about the same height are one lens."""
     reach = _REACH * spacing(np.array(list(plan.values())))
-    groups: list[list[tuple[str, Part]]] = []
+    groups: list[list[tuple[str, LoggedPart]]] = []
     for hole, part in sorted(parts, key=lambda entry: (entry[0], entry[1].depth)):
         near = [
             group

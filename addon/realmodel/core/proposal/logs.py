@@ -19,7 +19,7 @@ from ..settings.data_files import Boreholes
 
 
 @dataclass(frozen=True)
-class Part:
+class LoggedPart:
     """A unit along a hole, from a place above to a place below (3,), model units, with the depths of these
     below the collar (NaN where they are not known)."""
 
@@ -43,7 +43,7 @@ class Log:
     """The parts of a hole, from above downward; no two in a row are of one unit. collar: (3,) or None."""
 
     hole: str
-    parts: list[Part]
+    parts: list[LoggedPart]
     collar: np.ndarray | None = None
 
     @property
@@ -120,25 +120,25 @@ def _unit_names(codes: Iterable[str]) -> list[str]:
     return sorted(names.values())
 
 
-def _parts(observations) -> list[Part]:
+def _parts(observations) -> list[LoggedPart]:
     """The parts of one hole, of the places of its intervals. Those of one unit that touch are one."""
-    parts: list[Part] = []
+    parts: list[LoggedPart] = []
     for number in np.unique(observations.intervals):
         at = np.flatnonzero(observations.intervals == number)
         first, last = at[np.argmin(observations.depths[at])], at[np.argmax(observations.depths[at])]
         places, depths = observations.places, observations.depths
         unit = str(observations.blocks[first])
-        parts.append(Part(unit, places[first], places[last], float(depths[first]), float(depths[last])))
+        parts.append(LoggedPart(unit, places[first], places[last], float(depths[first]), float(depths[last])))
     parts.sort(key=lambda part: part.depth)
     return merged(parts)
 
 
-def merged(parts: Sequence[Part]) -> list[Part]:
+def merged(parts: Sequence[LoggedPart]) -> list[LoggedPart]:
     """Parts of which those of one unit that follow one another are one."""
-    joined: list[Part] = []
+    joined: list[LoggedPart] = []
     for part in parts:
         if joined and joined[-1].unit == part.unit:
             last = joined.pop()
-            part = Part(part.unit, last.top, part.bottom, last.depth, part.end)
+            part = LoggedPart(part.unit, last.top, part.bottom, last.depth, part.end)
         joined.append(part)
     return joined

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -14,57 +14,39 @@ from numpy.typing import ArrayLike
 from ..base.errors import InputRefused, UsageError, counted
 from ..base.named import keyword_only
 from ..base.units import MODEL_UNIT
+from ..project.library import Library
 from ..project.plan_input import read_rings
 from ..project.project import Project, Rock, Surface
 from ..project.project_checks import check_project
 from ..project.structure_entries import Body
+from ..readers import read_mesh
 from ..readers.formats import MESH, RASTER, format_of
 from ..readers.point_input import read_point_file, read_raster_heights
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, dip_file_of
 from ..settings.method_options import OptionRefused
+from .choices import Proposal
 from .colors import library_of
 from .extent import base_below, edge_length, region_around
-from .lenses import Conflict, Lens, Repeat, Sorted, lens_mesh, sort_out, spacing
+from .folder import save_folder
+from .lenses import Sorted, lens_mesh, sort_out, spacing
 from .logs import HoleLogs, Log, read_logs
 from .maps import MapUnits, map_file_of, read_map_units, unconformities
 from .methods import with_methods
-from .order import Alternative, UnitOrder, evidence_of, find_order
+from .order import UnitOrder, evidence_of, find_order
 from .rules import CUTS, RuleChoice, choose_rules
-
-
-@dataclass
-class Proposal:
-    """Why a project is as it is.
-
-    order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
-    the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became bodies.
-    repeats: where several units come again in a hole. rules: of the surface over each unit, with reasons.
-    reasons: of the other choices, by the key of the project file. warnings: sentences.
-    """
-
-    order: list[str]
-    alternatives: list[Alternative] = field(default_factory=list)
-    conflicts: list[Conflict] = field(default_factory=list)
-    lenses: list[Lens] = field(default_factory=list)
-    repeats: list[Repeat] = field(default_factory=list)
-    rules: list[RuleChoice] = field(default_factory=list)
-    reasons: dict[str, str] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
 
 
 @dataclass(eq=False)
 class ProposedProject(Project):
-    """A project with the reasons of its choices."""
+    """A project with the reasons of its choices, `proposal`."""
 
     proposal: Proposal = field(default_factory=lambda: Proposal([]), compare=False)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Writes project.toml, whose comments say why each choice was made, the tables, the library and
         proposal.json to a new folder, whole or not at all. Returns the files. Raises OutputFailed."""
-        from .folder import save_folder
-
-        return save_folder(self, folder)
+        return save_folder(self, self.proposal, folder)
 
 
 @dataclass
@@ -168,7 +150,7 @@ def _ground_of(given: Any) -> PointFile | MeshFile | None:
     return MeshFile(given) if file_format is not None and file_format.holds == MESH else PointFile(given)
 
 
-def _heights_of(ground: PointFile | MeshFile, units: str):
+def _heights_of(ground: PointFile | MeshFile, units: str) -> Callable[[np.ndarray], np.ndarray]:
     """The heights of the ground at places (N, 2): of a raster, else of the nearest point."""
 
     def heights(plan: np.ndarray) -> np.ndarray:
@@ -184,8 +166,6 @@ def _heights_of(ground: PointFile | MeshFile, units: str):
 def _ground_points(ground: PointFile | MeshFile, units: str) -> np.ndarray:
     if isinstance(ground, PointFile):
         return read_point_file(ground, units)[0]
-    from ..readers import read_mesh
-
     return read_mesh(ground.file).in_model(ground, units)[0]
 
 
@@ -231,7 +211,7 @@ class _Maker:
 
     def project(self, name: str | None, region: Any) -> ProposedProject:
         data, proposal = self._data, self._proposal
-        rings, given_region, holes = self._region(region)
+        rings, given_region = self._region(region)
         plan = np.array([log.plan for log in data.logs]).reshape(-1, 2)
         if data.holes is not None and not data.logs:
             plan = np.unique(data.holes.places[:, :2], axis=0)
@@ -244,11 +224,10 @@ class _Maker:
             "rock",
             self._surfaces(library),
             region=given_region,
-            holes=holes,
             edge_length=length,
             base_elevation=base,
             boreholes=data.boreholes,
-            map=self._map_file(),
+            map=data.map,
             dips=data.dips,
         )
         return ProposedProject(
@@ -256,7 +235,7 @@ class _Maker:
             [rock],
             library=library,
             units=self._units,
-            bodies=self._bodies(library, plan),
+            bodies=self._bodies(library, rock.surfaces, plan),
             proposal=proposal,
         )
 
@@ -277,14 +256,14 @@ class _Maker:
             raise InputRefused("no height is known", advice="give the ground, or boreholes")
         return heights[np.isfinite(heights)]
 
-    def _region(self, region: Any) -> tuple[list[np.ndarray], Any, Sequence]:
-        """The rings, and the region of the rock mass with its holes."""
+    def _region(self, region: Any) -> tuple[list[np.ndarray], Any]:
+        """The rings, and the region of the rock mass."""
         if region is not None:
             self._why["region"] = "as given"
             outline, holes, _ = read_rings(region, (), self._units)
             rings = outline if isinstance(outline, list) else [outline, *holes]
             rings = [np.asarray(ring, float) for ring in rings]
-            return rings, region if isinstance(region, (str, Path, MapLayer)) else outline, ()
+            return rings, region if isinstance(region, (str, Path, MapLayer)) else outline
         data = self._data
         box = self._raster_box()
         within = "" if box is None else ", as far as the ground is known"
@@ -301,7 +280,7 @@ class _Maker:
             assert data.holes is not None
             ring, margin = region_around(data.holes.places[:, :2], box)
             self._why["region"] = f"the convex hull of the holes and a margin of {margin:g}{within}"
-        return [ring], ring, ()
+        return [ring], ring
 
     def _raster_box(self) -> np.ndarray | None:
         """(2, 2) the corners of the raster of the ground; None where it is none."""
@@ -311,7 +290,7 @@ class _Maker:
         points = _ground_points(ground, self._units)
         return np.array([points[:, :2].min(axis=0), points[:, :2].max(axis=0)])
 
-    def _surfaces(self, library) -> list[Surface]:
+    def _surfaces(self, library: Library) -> list[Surface]:
         proposal = self._proposal
         numbers = {entry.name: entry.id for entry in library}
         only_picks = self._data.holes is not None and not self._data.logs and self._data.mapped is None
@@ -325,13 +304,12 @@ class _Maker:
             surfaces.append(Surface(surface, rule=choice.rule, block=block, property=numbers[unit]))
         if only_picks:
             surfaces.append(Surface(order[-1], property=numbers[order[-1]]))
-            return surfaces
-        youngest = order[-1]
-        shape = self._ground_shape()
-        surfaces.append(
-            Surface(_free("ground", taken), rule=CUTS, block=youngest, property=numbers[youngest], **shape)
-        )
-        return surfaces
+            if self._data.ground is None:
+                return surfaces
+        youngest = None if only_picks else order[-1]
+        number = 0 if youngest is None else numbers[youngest]
+        ground = Surface(_free("ground", taken), rule=CUTS, block=youngest, property=number)
+        return [*surfaces, replace(ground, **self._ground_shape())]
 
     def _ground_shape(self) -> dict:
         """The shape of the youngest surface."""
@@ -352,10 +330,7 @@ class _Maker:
         """The collar of a hole, or the top of its log where that is not known."""
         return log.parts[0].top if log.collar is None else log.collar
 
-    def _map_file(self) -> MapFile | None:
-        return self._data.map
-
-    def _bodies(self, library, plan: np.ndarray) -> list[Body]:
+    def _bodies(self, library: Library, surfaces: Sequence[Surface], plan: np.ndarray) -> list[Body]:
         lenses = self._proposal.lenses
         if not lenses:
             return []
@@ -363,11 +338,11 @@ class _Maker:
         at = {log.hole: log.plan for log in self._data.logs}
         extent = float(np.ptp(plan, axis=0).max()) or 1.0
         reach = spacing(plan) or extent
-        tops = {unit: number for number, unit in enumerate(self._proposal.order)}
+        tops = {surface.block: surface.name for surface in surfaces[:-1]}
         bodies = []
         for lens in lenses:
             vertices, triangles = lens_mesh(lens, at, reach)
-            after = None if tops[lens.host] == len(tops) - 1 else f"{lens.host} top"
+            after = tops.get(lens.host)  # None: the youngest
             bodies.append(Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit]))
         return bodies
 

@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from ..base.errors import InputRefused
 from ..base.text import Step, no_step
-from ..base.units import MODEL_UNIT, factors
+from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
-from .object_input import is_object_file, read_hole_objects
+from .object_input import hole_sheets, is_object_file, read_hole_objects
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, picks_of_tables
-from .tables.hole_data import HoleTables, read_hole_rows
+from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
 from .tables.hole_logs import read_logs
 from .tables.hole_repair import repair
 from .tables.holes import Holes
@@ -31,6 +33,11 @@ def read_boreholes(
     tables, or of the objects of an OMF or geoh5 file. units: what the names in them mean. plan_step: as of
     read_intervals. Raises InputRefused naming file and line, or object."""
     units = units or UnitNames()
+    if given.file is not None and is_object_file(Path(given.file)):
+        file = Path(given.file)
+        sheets, _ = hole_sheets(given, file, model_unit)
+        named: dict[str, Any] = {kind: file for kind in ("picks", "intervals") if kind in sheets}
+        given = replace(given, file=None, **named)
     of_objects = [file for file in given.files if is_object_file(file)]
     if not of_objects and given.layer is not None:
         what = f"it is a table, so it has no object '{given.layer}'"
@@ -49,8 +56,7 @@ def read_boreholes(
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    plan, height = factors(given.units, model_unit)
-    picks = read_hole_objects(given, np.array([plan, plan, height]), units, plan_step)
+    picks = read_hole_objects(given, model_unit, units, plan_step)
     step(1.0)
     return picks
 
@@ -60,6 +66,13 @@ def read_repaired(
 ) -> HoleTables:
     """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
     InputRefused naming file and line."""
-    tables = read_hole_rows(given, model_unit, step)
+    sheets, warnings = None, []
+    if of_objects := [file for file in given.files if is_object_file(file)]:
+        refuse_keys(of_objects[0], "has objects", given.only_for_tables)
+        sheets, warnings = hole_sheets(given, of_objects[0], model_unit)
+        tables_of: dict[str, Any] = dict.fromkeys(MEANINGS) | dict.fromkeys(sheets, of_objects[0])
+        given = replace(given, file=None, layer=None, units=None, columns={}, **tables_of)
+    tables = read_hole_rows(given, model_unit, step, sheets=sheets)
+    tables.warnings += warnings
     repair(tables, units)
     return tables

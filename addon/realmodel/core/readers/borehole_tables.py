@@ -53,8 +53,8 @@ def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **ke
 
     >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
     """
-    given = _given(file, keys)
-    tables = read_repaired(given, units)
+    boreholes = _boreholes(file, keys)
+    tables = read_repaired(boreholes, units)
     scale = tables.scale(units)
     height = scale[2]
     return BoreholeTables(
@@ -68,18 +68,18 @@ def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **ke
     )
 
 
-def _given(file: str | Path | None, keys: dict[str, Any]) -> Boreholes:
+def _boreholes(file: str | Path | None, keys: dict[str, Any]) -> Boreholes:
     if "file_units" in keys:
         keys = keys | {"units": keys["file_units"]}
         del keys["file_units"]
     if file is not None:
         keys = keys | {"file": file}
     try:
-        given = Boreholes(**keys)
-        given.check()
+        boreholes = Boreholes(**keys)
+        boreholes.check()
     except (TypeError, OptionRefused) as error:
         raise UsageError(f"read_boreholes: {error}") from error
-    return given
+    return boreholes
 
 
 def _texts(rows: list[Row], column: str) -> np.ndarray:
@@ -128,7 +128,7 @@ def _intervals(tables: HoleTables, height: float) -> Table:
 
 
 def _logs(tables: HoleTables, unit: str) -> Table:
-    logs = read_logs(tables, Holes(tables), unit) if tables.given.logs else []
+    logs = read_logs(tables, Holes(tables), unit) if tables.boreholes.logs else []
     values = IntervalValues.joined(logs) if logs else None
     if values is None:
         return Table({"hole": np.array([], str), "from": np.zeros(0), "to": np.zeros(0)})

@@ -18,14 +18,15 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import MapLayer, PointFile
 from ..settings.directions import checked_direction
 from ..settings.method_options import OptionRefused
-from .formats import RASTER, SHAPES, STICKS, format_of
+from ..settings.setting import settings_of
+from .formats import OBJECTS, RASTER, SHAPES, STICKS, format_of
 from .map_input import read_shapes
 from .maps.shapes import Heights, Shapes
 from .maps.wkt import parse_wkt
-from .point_input import in_model, read_point_file, refuse_keys
+from .point_input import in_model, read_point_file, read_points, refuse_keys
 from .tables.points import body_rows, table_of
 from .tables.sticks import begins_as_sticks, read_sticks
-from .tables.table_layout import plain_name
+from .tables.table_layout import names_shown, plain_name
 
 _COLUMN = "stick"  # the column of a stick's name or number, where none is given
 
@@ -37,14 +38,16 @@ def read_fault_points(
 
     A file of polylines has x y z in each line, and 999 999 999 ends a stick. stick: the column of a table, by
     name or by number from 1, with one value for each stick; default: the column named "stick", and without
-    such a column the points are scattered. Raises InputRefused naming the file, and the line where it has
-    lines.
+    such a column the points are scattered. Lines of an object of a file are sticks, too. Raises InputRefused
+    naming the file, and the line where it has lines.
     """
     file = Path(given.file)
     if format_of(file, RASTER, SHAPES):
         if stick is not None:
             raise InputRefused("it is no table, so 'stick' has no effect", file=file, advice="take it out")
         return read_point_file(given, model_unit, step)
+    if format_of(file, OBJECTS):
+        return _object_sticks(given, stick, model_unit)
     if format_of(file, STICKS) or begins_as_sticks(read_bytes(file)):  # the first stick may be long
         units = given.plan_unit, given.height_unit
         sticks = [in_model(points, units, given.z_axis, model_unit) for points in read_sticks(file, step)]
@@ -53,6 +56,20 @@ def read_fault_points(
     if column is None:
         return read_point_file(given, model_unit, step)
     return _table_sticks(given, file, column, model_unit)
+
+
+def _object_sticks(
+    given: PointFile, stick: str | int | None, model_unit: str
+) -> tuple[list[np.ndarray] | np.ndarray, list[str]]:
+    keys = {key: getattr(given, key) for key in settings_of(PointFile) if key not in ("file", "units")}
+    data = read_points(given.file, model_unit, file_units=given.units, **keys)
+    column = data.columns.get(str(stick or _COLUMN))
+    if column is None and stick is not None:
+        advice = f"its points have {names_shown(list(data.columns))}" if data.columns else None
+        raise InputRefused(f"it has no attribute '{stick}'", file=given.file, advice=advice)
+    if column is None:
+        return data.xyz, data.warnings
+    return [data.xyz[column == name] for name in dict.fromkeys(column.tolist())], data.warnings
 
 
 def _stick_column(source: PointFile, stick: str | int | None) -> str | None:

@@ -22,7 +22,6 @@ from .gdal_files import (
 )
 from .holes.ags import begins_as_ags, read_ags
 from .holes.diggs import begins_as_diggs, read_diggs
-from .holes.gocad_wells import begins_as_gocad_well, read_gocad_wells
 from .holes.las import begins_as_las, read_las
 from .holes.well_tops import begins_as_well_tops, read_well_tops
 from .maps.geojson import begins_as_geojson, read_geojson
@@ -140,7 +139,6 @@ FORMATS = (
     FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
     FileFormat("DIGGS", (".xml", ".diggs"), HOLES, begins_as_diggs, read_diggs),
     FileFormat("Petrel well tops", (".tops", ".asc", ".txt"), HOLES, begins_as_well_tops, read_well_tops),
-    FileFormat("GOCAD wells", (".wl",), HOLES, begins_as_gocad_well, read_gocad_wells),
     FileFormat("LAS", (".las",), HOLES, begins_as_las, read_las),
     FileFormat("fault sticks", (".pol",), STICKS, begins_as_sticks, read_sticks, by_ending=True),
     *(FileFormat(d.label, d.endings, TABLE, d.begins, read_point_rows) for d in DIALECTS),

@@ -14,6 +14,18 @@ from .meshes.triangle_mesh import TriangleMesh
 from .object_input import objects_in, read_object
 from .objects.geo_object import SURFACE
 
+# Formats whose layout is not public, or that hold solids of curved faces, and the programs that write them.
+_CLOSED = {
+    ".00t": "Vulcan",
+    ".dwg": "AutoCAD",
+    ".dgn": "MicroStation",
+    ".skp": "SketchUp",
+    ".3dm": "Rhino",
+    ".fbx": "the program that wrote it",
+    ".stp": "the program that wrote it",
+    ".step": "the program that wrote it",
+}
+
 
 def is_mesh_file(file: str | Path) -> bool:
     """Whether there is a surface in a file, by its content or else by its ending. Raises InputRefused where
@@ -47,5 +59,7 @@ def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows 
         raise InputRefused(what, file=file, advice="take 'layer' out")
     if file_format is None:
         what = f"neither its content nor its extension is that of a mesh ({labels(MESH, OBJECTS)})"
-        raise InputRefused(what, file=file)
+        program = _CLOSED.get(file.suffix.lower())
+        advice = f"export it from {program} as DXF or OBJ" if program else None
+        raise InputRefused(what, file=file, advice=advice)
     return file_format.read(file, step, rows)

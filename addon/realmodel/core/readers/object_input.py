@@ -13,11 +13,22 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import InputRefused, RealModelError, counted, number_list
 from ..base.text import Step, no_step
-from ..settings.data_files import Boreholes
-from .formats import OBJECTS, FileFormat, format_of
-from .objects.geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values
+from ..base.units import factor
+from ..settings.data_files import Boreholes, MeshFile
+from .formats import HOLES, OBJECTS, FileFormat, format_of
+from .objects.geo_object import (
+    HOLE,
+    LINES,
+    POINTS,
+    SURFACE,
+    GeoObject,
+    ObjectName,
+    OpenFile,
+    Values,
+    object_units,
+)
 from .tables.boreholes import Pick, Picks
-from .tables.hole_tables import INTERVALS, PICKS
+from .tables.hole_tables import INTERVALS, PICKS, Sheet
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
 from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
@@ -29,7 +40,8 @@ _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE:
 
 def is_object_file(file: Path) -> bool:
     """Whether a file is one of objects. Raises InputRefused where it cannot be read."""
-    return format_of(file, OBJECTS) is not None
+    file_format = format_of(file, HOLES, OBJECTS)
+    return file_format is not None and file_format.holds == OBJECTS
 
 
 def objects_in(file: Path) -> list[ObjectName]:
@@ -69,8 +81,8 @@ def _chosen(
     if layer is None:
         fitting = [obj for obj in objects if obj.kind in kinds and not obj.is_part]
     else:
-        named = [obj for obj in objects if obj.is_called(layer)]
-        named = named or [obj for obj in objects if obj.is_called_like(layer)]
+        named = [obj for obj in objects if obj.name == layer]
+        named = named or [obj for obj in objects if obj.name.casefold() == layer.casefold()]
         if not named:
             raise InputRefused(f"it has no object '{layer}'", file=file, advice=listed)
         fitting = [obj for obj in named if obj.kind in kinds]
@@ -116,32 +128,75 @@ def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterat
 _KINDS = (HOLE, LINES, POINTS)
 
 
-def read_hole_objects(
-    given: Boreholes, scale: np.ndarray, units: UnitNames, plan_step: float | None
-) -> Picks:
-    """What the boreholes of a file say, or the object `layer`. scale (3,): the factors to the model's unit.
-    units: what the names in it mean. plan_step: as of read_intervals.
+def _read_holes(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[list[GeoObject], list[str]]:
+    """The boreholes of a file, or its object `layer`, in the model's unit, and warnings, sentences. Raises
+    InputRefused for a unit that is not known."""
+    objects, warnings = [], []
+    for obj in read_objects(file, boreholes.layer, (HOLE,) if boreholes.layer is None else _KINDS):
+        of_axes, said = object_units(MeshFile(file, boreholes.units), obj, model_unit)
+        plan, height = (factor(unit, model_unit) for unit in of_axes)
+        objects.append(obj.scaled(np.array([plan, plan, height])))
+        warnings += [text for text in said if text not in warnings]
+    return objects, warnings
+
+
+def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_step: float | None) -> Picks:
+    """What the boreholes of a file say, or the object `layer`, in the model's unit. units: what the names in
+    it mean. plan_step: as of read_intervals.
 
     Picks are points whose data name a surface, and tops of intervals that name one where the interval above
-    has another name. `hole` among the data names the hole, else the object's name does.
-    Raises InputRefused naming the file and the object.
+    has another name. `hole` among the data names the hole, else the object's name does. Raises InputRefused
+    naming the file and the object.
     """
     picks = Picks()
     for file in dict.fromkeys(given.files):
-        kinds = (HOLE,) if given.layer is None else _KINDS
-        objects = read_objects(file, given.layer, kinds)
+        objects, warnings = _read_holes(given, file, model_unit)
+        picks.warnings += warnings
         if given.picks is not None and Path(given.picks) == file:
-            _add_picks(picks, objects, given, scale, units)
+            _add_picks(picks, objects, given, units)
         if given.intervals is not None and Path(given.intervals) == file:
-            _add_intervals(picks, objects, given, scale, (units, plan_step))
+            _add_intervals(picks, objects, given, (units, plan_step))
     for _, places in picks.holes.values():
         places.sort(key=lambda pick: -pick[1][2])
     return picks
 
 
-def _add_picks(
-    picks: Picks, objects: list[GeoObject], boreholes: Boreholes, scale: np.ndarray, units: UnitNames
-) -> None:
+def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[dict[str, Sheet], list[str]]:
+    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
+    those that it has, in the model's unit; and warnings, sentences. Raises as read_object."""
+    rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
+    objects, warnings = _read_holes(boreholes, file, model_unit)
+    for obj in objects:
+        collar = np.full(3, np.nan) if obj.collar is None else obj.collar
+        if np.isfinite(collar).all():
+            rows["collars"].append((0, [obj.name, *map(repr, collar.tolist())]))
+        for values in obj.values:
+            meaning, aliases = ("surface", (*PICKS["surface"], *INTERVALS["block"]))
+            if values.ends is not None:
+                meaning, aliases = ("block", INTERVALS["block"])
+            column = _column(values, boreholes.columns.get(meaning), aliases)
+            if column is None:
+                continue
+            names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
+            numbers = values.places
+            if values.ends is not None:
+                along = values.depths
+                numbers = _depths(values.places, values.ends, holes) if along is None else along
+            kind = "picks" if values.ends is None else "intervals"
+            rows[kind] += [
+                (0, [hole, *map(repr, row), name])
+                for hole, row, name in zip(holes, numbers.tolist(), names, strict=True)
+            ]
+    columns = {
+        "collars": ("hole", "x", "y", "z"),
+        "intervals": ("hole", "from", "to", "block"),
+        "picks": ("hole", "x", "y", "z", "surface"),
+    }
+    sheets = {kind: Sheet(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
+    return sheets, warnings
+
+
+def _add_picks(picks: Picks, objects: list[GeoObject], boreholes: Boreholes, units: UnitNames) -> None:
     points: dict[str, list[Pick]] = {}
     missing = 0
     for obj in objects:
@@ -152,8 +207,8 @@ def _add_picks(
             if not np.isfinite(place).all():
                 missing += 1
                 continue
-            points.setdefault(surface, []).append((Origin(hole), place * scale))
-            picks.holes.setdefault(hole, (_collar(obj, scale), []))[1].append((surface, place * scale))
+            points.setdefault(surface, []).append((Origin(hole), place))
+            picks.holes.setdefault(hole, (obj.collar, []))[1].append((surface, place))
     picks.of_surfaces |= points
     if not points:
         raise InputRefused("there are no picks in it", file=boreholes.picks)
@@ -194,13 +249,12 @@ def _add_intervals(
     picks: Picks,
     objects: list[GeoObject],
     boreholes: Boreholes,
-    scale: np.ndarray,
     meaning: tuple[UnitNames, float | None],
 ) -> None:
     units, plan_step = meaning
     logs: dict[str, _Log] = {}
     for obj in objects:
-        _read_log(logs, picks, obj, boreholes, scale, units)
+        _read_log(logs, picks, obj, boreholes, units)
     if not logs:
         raise InputRefused("there are no intervals in it", file=boreholes.intervals)
     if plan_step is None:
@@ -217,17 +271,16 @@ def _read_log(
     picks: Picks,
     obj: GeoObject,
     boreholes: Boreholes,
-    scale: np.ndarray,
     units: UnitNames,
 ) -> None:
     tables = [values for values in obj.values if values.ends is not None]
     values, column = _table(obj, tables, boreholes, "block", INTERVALS["block"])
     names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
     assert values.ends is not None
-    begins, ends = values.places * scale, values.ends * scale
-    depths = _depths(begins, ends, holes) if values.depths is None else values.depths * scale[2]
+    begins, ends = values.places, values.ends
+    depths = _depths(begins, ends, holes) if values.depths is None else values.depths
     for code, hole, (low, high), begin, end in zip(names, holes, depths.tolist(), begins, ends, strict=True):
-        log = logs.setdefault(hole, _Log(_collar(obj, scale)))
+        log = logs.setdefault(hole, _Log(obj.collar))
         if not (np.isfinite(begin).all() and np.isfinite(end).all()):
             what = f"an interval of hole '{hole}' has no place"
             raise InputRefused(what, file=boreholes.intervals, item=f"object '{obj.name}'")
@@ -293,10 +346,6 @@ def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
 def _holes(obj: GeoObject, values: Values, boreholes: Boreholes) -> list[str]:
     column = _column(values, boreholes.columns.get("hole"), PICKS["hole"])
     return [obj.name] * len(values.places) if column is None else _texts(values.columns[column])
-
-
-def _collar(obj: GeoObject, scale: np.ndarray) -> np.ndarray | None:
-    return None if obj.collar is None else obj.collar * scale
 
 
 def _texts(column: np.ndarray) -> list[str]:

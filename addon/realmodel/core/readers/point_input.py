@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import HeightsMissing, InputRefused, UsageError, counted
-from ..base.mapped_arrays import JoinPieces, in_memory, in_pieces
+from ..base.mapped_arrays import JoinPieces, Rows, in_memory, in_pieces
 from ..base.no_value import OFTEN_NO_VALUE
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT, factor, stated_units
@@ -152,7 +152,7 @@ def read_points(
 
 
 def reading_keys(of: type, file: Any, units: str, file_units: Any, keys: Mapping[str, Any]) -> Any:
-    """A PointFile, MeshFile or Boreholes with the reading keys of a call. Raises UsageError."""
+    """A PointFile or MeshFile with the reading keys of a call. Raises UsageError."""
     known = [key for key in settings_of(of) if key not in ("file", "units")]
     if unknown := [key for key in keys if key not in known]:
         raise UsageError(f"there is no key '{unknown[0]}'; there are {', '.join([*known, 'file_units'])}")
@@ -191,7 +191,7 @@ def _read(
         warnings += [] if given.units else [f"{file}: {text}" for text in raster.warnings]
         points = raster.points(file, values)
     elif file_format.holds == TABLE:
-        refuse_keys(file, "is a table", given.only_for_shapes, () if not file_format.layers else ("layer",))
+        refuse_keys(file, "is a table", given.only_for_shapes, ("layer",) if file_format.layers else ())
         rows = file_format.read(given, step, values)
         points = rows.points
         units, warnings = _table_units(given, file, rows, model_unit)
@@ -222,7 +222,7 @@ def _others(
     gather: JoinPieces,
     columns: dict[str, np.ndarray] | None,
 ) -> tuple[np.ndarray, list[str]]:
-    """(P, 3) points of arrays, shapes and polylines, in the file's unit, and warnings."""
+    """(P, 3) points of arrays, shapes, polylines and meshes, in the file's unit, and warnings."""
     chosen = ["where"] if given.where else []
     if file_format.holds == ARRAY:
         refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
@@ -236,8 +236,7 @@ def _others(
         if columns is not None:
             columns["stick"] = np.repeat(np.arange(1.0, len(sticks) + 1), [len(stick) for stick in sticks])
         return gather(sticks, np.empty((0, 3))), []
-    what = f"it is a mesh ({file_format.label}), not points"
-    raise InputRefused(what, file=file, advice="give it as the mesh of a surface")
+    return gather([file_format.read(file, step, Rows).vertices], np.empty((0, 3))), []
 
 
 def _table_units(
@@ -307,9 +306,9 @@ class _Values:
         999 that end lines; and the columns without theirs."""
         if self._given.nodata_values:
             return points
-        ends = {counts.pop(_END_OF_LINE, 0) for counts in self._counts}
-        far = [self._far(axis) for axis in range(3)]
-        has_ends = len(ends) == 1 and ends != {0} and not self._low[0] <= _END_OF_LINE <= self._high[0]
+        ends = [counts.pop(_END_OF_LINE, 0) for counts in self._counts]
+        far = [self.none_of(axis) for axis in range(3)]
+        has_ends = all(ends) and not self._low[0] <= _END_OF_LINE <= self._high[0]
         if not any(far) and not has_ends:
             return points
 
@@ -322,7 +321,7 @@ class _Values:
             columns[name] = values[is_known(points)]
         return self._gather((piece[is_known(piece)] for piece in in_pieces(points)), np.empty((0, 3)))
 
-    def _far(self, axis: int) -> list[float]:
+    def none_of(self, axis: int) -> list[float]:
         """The values of an axis that stand for none."""
         low, high, name = self._low[axis], self._high[axis], "xyz"[axis]
         called = "height" if axis == 2 else name
@@ -341,7 +340,7 @@ class _Values:
                     f"{what}, {'far from all others, ' if is_far else ''}which often means no data, and left "
                     'out: if it is a value, set nodata = "none"'
                 )
-            elif value % 1 or (count > 1 and not is_rare):
+            elif not has_others or value % 1 or (count > 1 and not is_rare):
                 self.warnings.append(
                     f"{what}, which often means no data: it is used; if it is none, set nodata = {value:g}"
                 )
@@ -374,6 +373,11 @@ def read_raster_heights(
     raster = _raster(given, file, file_format, no_step, in_memory)
     stated = [("x and y", raster.units[0], given.plan_unit), ("z", raster.units[1], given.height_unit)]
     (of_plan, of_height), _ = stated_units(file, stated, model_unit)
+    if not given.nodata_values:
+        heights = raster.z[np.isfinite(raster.z)]
+        values = _Values(in_memory, file, given)
+        values([np.column_stack([heights] * 3)], np.empty((0, 3)))
+        raster.z[np.isin(raster.z, values.none_of(2))] = np.nan
     z = raster.heights_at(plan / factor(of_plan, model_unit))
     points = np.column_stack([plan, z])
     return in_model(points, (None, of_height), given.z_axis, model_unit)[:, 2]

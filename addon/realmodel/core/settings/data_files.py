@@ -148,25 +148,29 @@ _Z_AXIS = Setting(
 _LAYER = Setting(
     kind="layer",
     label="Layer",
-    tip="Layer of a GeoPackage, or object of a file of objects; needed where there are several",
+    tip="Layer of a GeoPackage, object of a file of several, or sheet of a workbook; needed where there are "
+    "several",
     check=checked_name,
 )
 
 
 @dataclass(frozen=True)
 class PointFile:
-    """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, a file of shapes (GeoJSON, well-known text, a
-    shapefile or a layer of a GeoPackage), or an object of a file of objects.
+    """Points in a table of text or a sheet of a workbook, a raster (ESRI ASCII, GeoTIFF, ...), a file of
+    shapes (GeoJSON, well-known text, a shapefile or a layer of a GeoPackage), or an object of a file.
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
     separator: one character; " " means any blanks and tabs; None: detected from the content.
     decimal: "." or ","; None: detected from the content.
-    nodata: no-data values: a number, a text or a list of them; such points are left out.
-    units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
+    nodata: no-data values: a number, a text or a list of them; such points are left out. Without it
+    those that often mean no data are looked for.
+    units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those that it states,
+    or else those of the model.
     z_axis: "up", or "down" where z is a depth.
     height: the attribute of features or points that holds their height; None: the z of their positions.
-    layer: of a GeoPackage, or the object of a file of objects; needed where there are several.
+    layer: of a GeoPackage, the object of a file of objects, or the sheet of a workbook; needed where
+    there are several.
     columns, separator and decimal are for tables only, height and layer for shapes and objects.
     """
 
@@ -354,9 +358,9 @@ class Boreholes:
     (depths are in the unit of z); None: those of the model.
     Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
     of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
-    tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops, GOCAD wells and LAS;
-    those given beside it count in their place. tolerance: up to which gaps and overlaps of intervals are
-    closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
+    tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops and LAS, those given
+    beside it count in their place; or one of objects. tolerance: up to which gaps and overlaps of intervals
+    are closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
     tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
     are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
     logs: LAS files of logs along the holes, a file or a list of them, each of the hole that is called as its

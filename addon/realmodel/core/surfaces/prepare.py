@@ -152,8 +152,8 @@ def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
         texts.append(f"boreholes have picks of {number_list(of_none)}, which no surface from points is named")
     if len(of_none) < len(field.unnamed):
         texts.append(
-            f"boreholes have picks of '{terrain}', which is the terrain, so they are not used; if that is wrong, "
-            "add a surface without points above it, for the terrain"
+            f"boreholes have picks of '{terrain}', which is the terrain, so they are not used; if that is "
+            "wrong, add a surface without points above it, for the terrain"
         )
     return [BuildWarning(text, "points", rock.name) for text in texts]
 

@@ -22,6 +22,7 @@ from ..model.cutting import Fence, Section
 from ..model.model import Model
 from ..notebook import ShortRepr
 from ..project.project import Project
+from ..proof.closed_form import AIR, checked_places, grid_centers
 from ..results.layer_values import RockFields, field_of
 from ..results.model_holes import Interval
 from ..results.tables import block_table, borehole_table
@@ -140,6 +141,29 @@ class TiledModel(ShortRepr):
             if (low <= place).all() and (place <= high).all():
                 intervals += self._model(number).borehole(*place.tolist())
         return joined_intervals(intervals)
+
+    @keyword_only
+    def block_at(self, points: ArrayLike, *, threads: int = 0) -> np.ndarray:
+        """As Model.block_at, tile by tile."""
+        places = checked_places(points)
+        blocks = np.full(len(places), AIR, np.int32)
+        for number, tile in enumerate(self.tiles):
+            low, high = np.array(tile.box[:2]), np.array(tile.box[2:])
+            here = ((low <= places[:, :2]) & (places[:, :2] <= high)).all(axis=1) & (blocks == AIR)
+            if here.any():
+                blocks[here] = self._model(number).block_at(places[here], threads=threads)
+        return blocks
+
+    @keyword_only
+    def grid(self, shape: Sequence[int], *, threads: int = 0) -> np.ndarray:
+        """As Model.grid."""
+        corners = np.array([tile.extent for tile in self.tiles]).reshape(-1, 2, 3)
+        box = (
+            np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+            if len(corners)
+            else np.zeros((2, 3))
+        )
+        return self.block_at(grid_centers(box, shape), threads=threads).reshape(shape)
 
     def field(self, series: str, compartment: str | None = None) -> ScalarField:
         """As Model.field: it is the field of the undivided model. Raises InputRefused where the file of the

@@ -130,13 +130,15 @@ def _section(sections: list[_Section], letter: str) -> _Section:
 def _curves(file: Path, sections: list[_Section], hole: str) -> Sheet | None:
     """The curves of a file; None where it has none."""
     titles = {"C": "A", "LOG_DEFINITION": "LOG"}
-    found = [
+    curve_sections = [
         (s, titles[key]) for s in sections for key in titles if s.title.upper().startswith(key) and s.items
     ]
-    found = [(section, data) for section, data in found if "CORE" not in section.title.upper()]
-    if not found:
+    curve_sections = [
+        (section, data) for section, data in curve_sections if "CORE" not in section.title.upper()
+    ]
+    if not curve_sections:
         return None
-    definition, letter = found[0]
+    definition, letter = curve_sections[0]
     data = next((s for s in sections if _is_data(s) and s.title.upper().startswith(letter)), None)
     if data is None or not data.rows:
         return None
@@ -233,7 +235,7 @@ def _collar(sections: list[_Section], hole: str) -> Sheet | None:
     """The collar of the well; None where the file does not say its place."""
     values, units = [hole], [""]
     for mnemonics in (_X, _Y, _Z, _END):
-        value, unit = next((found for s in sections if (found := s.item(*mnemonics))[0]), ("", ""))
+        value, unit = next((item for s in sections if (item := s.item(*mnemonics))[0]), ("", ""))
         values.append(value)
         units.append(_FEET.get(unit.upper(), unit))
     if not all(values[1:4]):

@@ -42,11 +42,11 @@ def read_datamine(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
             raise InputRefused(what, file=file, advice="put the two files of a wireframe into one folder")
         points = _table(point_file)
     elif {"PID", *_PLACE} <= table.keys():
-        points, triangle_file = table, _beside(file, "pt", "tr")
+        points, other_file = table, _beside(file, "pt", "tr")
         places = np.column_stack([points[name] for name in _PLACE])
-        if triangle_file is None:
+        if other_file is None:
             return [point_object(file.stem, places)]
-        triangles = _table(triangle_file)
+        triangle_file, triangles = other_file, _table(other_file)
     else:
         what = f"its fields are {', '.join(table)}: it is no table of a wireframe"
         raise InputRefused(what, file=file, advice="export it as text (.csv) or as DXF")
@@ -128,11 +128,11 @@ def _binary_table(raw: bytes, size: int) -> dict[str, np.ndarray]:
     per_page = _USED // max(words, 1)
     pages = []
     for page in range(1, last_page):
-        rows = per_page if page < last_page - 1 else last_rows
+        count = per_page if page < last_page - 1 else last_rows
         begin = page * _WORDS * size
-        if rows < 0 or rows > per_page or begin + rows * words * size > len(raw):
+        if not 0 <= count <= per_page or begin + count * words * size > len(raw):
             raise ValueError(f"the file is cut off at byte {len(raw)}")
-        pages.append(_numbers(raw, size, begin, rows * words).reshape(rows, words))
+        pages.append(_numbers(raw, size, begin, count * words).reshape(count, words))
     rows = np.concatenate([np.empty((0, words)), *pages])
     table = {
         name: rows[:, at] if at >= 0 else np.full(len(rows), value)

@@ -22,14 +22,14 @@ def read_landxml(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     """The surfaces; faces that are marked as invisible (i="1") are left out. Raises InputRefused."""
     file = Path(file)
     root = parse_xml(file, read_bytes(file), step)
-    unit, objects = None, []
+    unit: str | None = None
+    objects: list[ObjectName] = []
     for element in root.iter():
         kind = local_name(element)
         if kind in ("Metric", "Imperial"):
             unit = element.get("linearUnit") or unit
         elif kind == "Surface":
-            objects.append(_surface(file, element, unit))
-    objects = [obj for obj in objects if obj is not None]
+            objects += _surface(file, element, unit)
     if not objects:
         raise InputRefused(
             "it has no triangulated surface", file=file, advice="export surfaces with their faces"
@@ -37,7 +37,8 @@ def read_landxml(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     return objects
 
 
-def _surface(file: Path, element: ElementTree.Element, unit: str | None) -> ObjectName | None:
+def _surface(file: Path, element: ElementTree.Element, unit: str | None) -> list[ObjectName]:
+    """A surface, its points where it has no faces, nothing where it has neither."""
     name = element.get("name", "")
     index: dict[str, int] = {}
     vertices: list[tuple[float, ...]] = []
@@ -51,13 +52,13 @@ def _surface(file: Path, element: ElementTree.Element, unit: str | None) -> Obje
             if kind == "F":
                 if part.get("i") != "1":
                     faces.append(tuple([index[word] for word in words[:3]]))
-            elif kind == "P" and "id" in part.attrib:
+            elif kind == "P":
                 north, east, up = map(float, words[:3])
-                index[part.attrib["id"]] = len(vertices)
+                index[part.get("id", str(len(vertices) + 1))] = len(vertices)
                 vertices.append((east, north, up))
         except (ValueError, KeyError) as error:
             what = f"surface '{name}': '{' '.join(words):.40}' cannot be read"
             raise InputRefused(what, file=file) from error
     if faces:
-        return surface_object(file, name, vertices, faces, unit=unit)
-    return point_object(name, vertices, unit=unit) if vertices else None
+        return [surface_object(file, name, vertices, faces, unit=unit)]
+    return [point_object(name, vertices, unit=unit)] if vertices else []

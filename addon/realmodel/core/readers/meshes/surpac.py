@@ -57,13 +57,9 @@ def read_dtm(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
 
 
 def begins_as_str(head: bytes, _size: int = 0) -> bool:
-    """Whether a file that begins so has strings: its second record is the axis, its third a point."""
-    records = [line.split(b",") for line in head.splitlines()[:3]]
-    try:
-        axis, point = ([float(word) for word in record[:4]] for record in records[1:3])
-    except ValueError:
-        return False
-    return len(axis) == len(point) == 4 and axis[0] == 0 and point[0] >= 0 and len(records[1]) >= 7
+    """Whether a file that begins so has strings: its first record names their styles. Others look like
+    tables, so that only the ending tells them."""
+    return b"ssi_styles:" in head.partition(b"\n")[0].lower()
 
 
 def read_str(file: str | Path, _step: Step = no_step) -> list[ObjectName]:

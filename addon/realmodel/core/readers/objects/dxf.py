@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -22,8 +22,8 @@ import numpy as np
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ..meshes.triangle_mesh import mesh_of_corners, object_of_mesh
-from .dxf_tags import BINARY, Entity, read_entities
-from .geo_object import LINES, POINTS, SURFACE, GeoObject, ObjectName, point_object
+from .dxf_tags import BINARY, Drawing, Entity
+from .geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
 
 _BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
@@ -56,6 +56,7 @@ class _Layer:
     corners: list[_Place] = field(default_factory=list)
     sizes: list[int] = field(default_factory=list)
     places: list[_Place] = field(default_factory=list)
+    sticks: list[int] = field(default_factory=list)  # of places: the number of their line
     kind: str = POINTS
     not_read: Counter = field(default_factory=Counter)
 
@@ -65,6 +66,7 @@ class _Layer:
                 self.corners += face
                 self.sizes.append(len(face))
         self.places += shape.places
+        self.sticks += [self.sticks[-1] + 1 if self.sticks else 1] * len(shape.places)
         if shape.is_line:
             self.kind = LINES
 
@@ -74,11 +76,11 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     of faces at the same place become one vertex. A layer with faces and others has two objects. Raises
     InputRefused naming file and line."""
     file = Path(file)
-    entities, blocks, unit = read_entities(file, step)
+    drawing = Drawing()
     layers: dict[str, _Layer] = {}
     inserted: dict[str, _Layer] = {}
-    reader = _Drawing(file, blocks)
-    for entity, shape, layer, within in reader.shapes(entities):
+    reader = _Shapes(file, drawing.blocks)
+    for entity, shape, layer, within in reader.shapes(drawing.entities(file, step)):
         targets = [layers.setdefault(layer.casefold(), _Layer(layer))]
         targets += [inserted.setdefault(name.casefold(), _Layer(name)) for name in within]
         for target in targets:
@@ -87,7 +89,7 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
             else:
                 target.add(shape)
     # many programs write the unit of their template, so that nothing is converted by it
-    said_unit = _UNIT_NAMES.get(unit or 0)
+    said_unit = _UNIT_NAMES.get(drawing.unit or 0)
     objects = [obj for layer in layers.values() for obj in _objects(file, layer, said_unit, False)]
     parts = [layer for name, layer in inserted.items() if name not in layers]
     objects += [obj for layer in parts for obj in _objects(file, layer, said_unit, True)]
@@ -115,11 +117,14 @@ def _objects(file: Path, layer: _Layer, said_unit: str | None, is_part: bool) ->
     if layer.sizes:
         yield ObjectName(layer.name, SURFACE, surface, is_part=is_part)
     if layer.places:
-        points = point_object(layer.name, layer.places, layer.kind, said_unit=said_unit, warnings=warnings)
+        columns = {STICK: np.array(layer.sticks)} if layer.kind == LINES else {}
+        points = point_object(
+            layer.name, layer.places, layer.kind, columns, said_unit=said_unit, warnings=warnings
+        )
         yield ObjectName(points.name, points.kind, points.key, is_part=is_part)
 
 
-class _Drawing:
+class _Shapes:
     """Gives the shapes of entities, those of blocks where they are inserted."""
 
     def __init__(self, file: Path, blocks: dict[str, Entity]):
@@ -127,7 +132,7 @@ class _Drawing:
 
     def shapes(
         self,
-        entities: list[Entity],
+        entities: Iterable[Entity],
         change: np.ndarray | None = None,
         on: str = "0",
         within: tuple[str, ...] = (),

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,6 +24,8 @@ _INTS["<q"] = tuple(range(160, 170))
 _INTS["<B"] = tuple(range(290, 300))
 _INTS["<d"] = (*range(10, 60), *range(110, 150), *range(210, 240), *range(460, 470), *range(1010, 1060))
 _FORMS = {code: form for form, codes in _INTS.items() for code in codes}
+_WITH_ENTITIES, _MARKS = ("ENTITIES", "BLOCKS"), ("", "SECTION", "ENDSEC")
+_LISTS = ("LWPOLYLINE", "MESH")  # entities with several values of a code
 _CHUNKS = (*range(310, 320), 1004)  # bytes behind their number
 
 
@@ -43,6 +45,8 @@ class Entity:
     def close(self) -> None:
         """Its values are all there: the first of each code is found by it."""
         self.codes = dict(reversed(self.pairs))
+        if self.name not in _LISTS:
+            self.pairs = []
 
     def text(self, code: int, default: str = "") -> str:
         """The first value of a code; names may have characters by their numbers."""
@@ -66,63 +70,63 @@ class Entity:
         return [float(value) for key, value in self.pairs if key == code]
 
 
-def read_entities(file: Path, step: Step) -> tuple[list[Entity], dict[str, Entity], int | None]:
-    """The entities of a drawing, its blocks by their names in small letters, and the number of the unit in
-    its header. Raises InputRefused naming file and line."""
-    raw = read_bytes(file)
-    tags = _binary_tags(file, raw) if raw.startswith(BINARY) else _text_tags(file, raw, step)
-    entities: list[Entity] = []
-    blocks: dict[str, Entity] = {}
-    unit, section, variable = None, "", ""
-    current, opened, block = Entity("", None), None, None
-    for code, value, line in tags:
-        if code != 0:
-            if code == 2 and current.name == "SECTION":
-                section = value.upper()
-            elif section == "HEADER" and code == 9:
-                variable = value.upper()
-            elif section == "HEADER" and variable == "$INSUNITS" and code == 70 and value.isdecimal():
-                unit = int(value)
-            elif section in ("ENTITIES", "BLOCKS"):
-                current.pairs.append((code, value))
-            continue
-        if section in ("ENTITIES", "BLOCKS"):
-            opened, block = _placed(current, opened, block, entities, blocks)
-        current = Entity(value.upper(), line)
-        if current.name in ("SECTION", "ENDSEC"):
-            section = ""
-        if current.name == "EOF":
-            return entities, blocks, unit
-    at = None if raw.startswith(BINARY) else raw.count(b"\n") + 1
-    raise InputRefused("the file has no EOF", file=file, line=at, advice="it is cut off")
+@dataclass
+class Drawing:
+    """A drawing that is read: its blocks by their names in small letters, which come before its entities, and
+    the number of the unit in its header."""
 
+    blocks: dict[str, Entity] = field(default_factory=dict)
+    unit: int | None = None
 
-def _placed(
-    entity: Entity,
-    opened: Entity | None,
-    block: Entity | None,
-    entities: list[Entity],
-    blocks: dict[str, Entity],
-) -> tuple[Entity | None, Entity | None]:
-    """Puts an entity where it belongs: into the POLYLINE that is open, the block, or the drawing. Returns the
-    POLYLINE and the block that are open then."""
-    entity.close()
-    into = entities if block is None else block.parts
-    if entity.name == "BLOCK":
-        blocks[entity.text(2).casefold()] = entity
-        return None, entity
-    if entity.name == "ENDBLK":
-        return None, None
-    if entity.name == "VERTEX" and opened is not None:
-        opened.parts.append(entity)
-    elif entity.name == "SEQEND":
-        return None, block
-    elif entity.name == "POLYLINE":
-        into.append(entity)
-        return entity, block
-    elif entity.name not in ("", "SECTION", "ENDSEC", "ATTRIB"):
-        into.append(entity)
-    return opened, block
+    def entities(self, file: Path, step: Step) -> Iterator[Entity]:
+        """The entities, one after another. Raises InputRefused naming file and line."""
+        raw = read_bytes(file)
+        tags = _binary_tags(file, raw) if raw.startswith(BINARY) else _text_tags(file, raw, step)
+        section, variable, current = "", "", Entity("", None)
+        block: Entity | None = None
+        polyline: Entity | None = None
+        for code, value, line in tags:
+            if code != 0:
+                if code == 2 and current.name == "SECTION":
+                    section = value.upper()
+                elif section == "HEADER" and code == 9:
+                    variable = value.upper()
+                elif section == "HEADER" and variable == "$INSUNITS" and code == 70 and value.isdecimal():
+                    self.unit = int(value)
+                elif section in _WITH_ENTITIES:
+                    current.pairs.append((code, value))
+                continue
+            if section in _WITH_ENTITIES and current.name not in _MARKS:
+                current.close()
+                if current.name == "VERTEX" and polyline is not None:
+                    polyline.parts.append(current)
+                else:
+                    for entity in (polyline, None if current.name == "POLYLINE" else current):
+                        block = yield from self._placed(entity, block)
+                    polyline = current if current.name == "POLYLINE" else None
+            current = Entity(value.upper(), line)
+            if current.name in ("SECTION", "ENDSEC"):
+                section = ""
+            if current.name == "EOF":
+                return
+        at = None if raw.startswith(BINARY) else raw.count(b"\n") + 1
+        raise InputRefused("the file has no EOF", file=file, line=at, advice="it is cut off")
+
+    def _placed(self, entity: Entity | None, block: Entity | None) -> Generator[Entity, None, Entity | None]:
+        """Yields an entity of the drawing, or puts it into the block that is open. Returns that which is open
+        then."""
+        if entity is None or entity.name == "SEQEND":
+            return block
+        if entity.name == "BLOCK":
+            self.blocks[entity.text(2).casefold()] = entity
+            return entity
+        if entity.name == "ENDBLK":
+            return None
+        if block is None:
+            yield entity
+        else:
+            block.parts.append(entity)
+        return block
 
 
 def _text_tags(file: Path, raw: bytes, step: Step) -> Iterator[tuple[int, str, int]]:

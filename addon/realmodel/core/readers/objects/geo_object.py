@@ -20,26 +20,18 @@ if TYPE_CHECKING:
     from ..meshes.triangle_mesh import TriangleMesh
 
 POINTS, LINES, SURFACE, HOLE = "points", "lines", "surface", "borehole"
+STICK = "stick"  # the column with the number of the line that a vertex of lines is of
 
 
 @dataclass(frozen=True)
 class ObjectName:
     """An object in a file: its name and what it is: POINTS, LINES, SURFACE, HOLE. key: by which the library
-    finds it. aliases: other names for it. is_part: of an object that is listed, too."""
+    finds it. is_part: of an object that is listed, too."""
 
     name: str
     kind: str
     key: Any = None
-    aliases: tuple[str, ...] = ()
     is_part: bool = False
-
-    def is_called(self, name: str) -> bool:
-        """Whether this is its name, or another one for it."""
-        return name == self.name or name in self.aliases
-
-    def is_called_like(self, name: str) -> bool:
-        """The same in any case."""
-        return name.casefold() in (known.casefold() for known in (self.name, *self.aliases))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +67,22 @@ class GeoObject:
     def columns(self) -> dict[str, np.ndarray]:
         """What is known of its vertices."""
         return next((values.columns for values in self.values if values.ends is None), {})
+
+    def scaled(self, scale: np.ndarray) -> GeoObject:
+        """The same with all places times a scale (3,), depths times that of z."""
+        if (scale == 1.0).all():
+            return self
+        values = [
+            replace(
+                some,
+                places=some.places * scale,
+                ends=None if some.ends is None else some.ends * scale,
+                depths=None if some.depths is None else some.depths * scale[2],
+            )
+            for some in self.values
+        ]
+        collar = None if self.collar is None else self.collar * scale
+        return replace(self, vertices=self.vertices * scale, values=values, collar=collar)
 
 
 class OpenFile(Protocol):
@@ -130,6 +138,12 @@ def _joined(pieces: list[GeoObject]) -> GeoObject:
     is_whole = all(piece.face_of_triangle is None for piece in pieces)
     owners = None if is_whole else np.concatenate(faces)
     return replace(joined, triangles=np.concatenate(triangles), face_of_triangle=owners)
+
+
+def stated_text(unit: str | None) -> str | None:
+    """The text by which a file names a unit; None where it names none."""
+    plain = (unit or "").strip()
+    return None if plain.lower() in ("", "none", "unknown", "unitless", "undefined") else plain
 
 
 def object_units(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from ...base.packages import extra, quiet
 from ...base.text import Step, no_step
+from ...base.units import unit_of
 from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
@@ -45,6 +47,11 @@ class _Geoh5File:
 
     def read(self, wanted: ObjectName) -> GeoObject:
         """As OpenFile."""
+        # "meter" is what every program writes that does not ask
+        said = unit_of(str(self._workspace.distance_unit))
+        return replace(self._object(wanted), unit=None if said == "m" else said)
+
+    def _object(self, wanted: ObjectName) -> GeoObject:
         (obj,) = self._workspace.get_entity(wanted.key)
         if wanted.kind == HOLE:
             return _hole(obj, wanted)

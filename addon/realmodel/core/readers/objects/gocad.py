@@ -9,7 +9,7 @@ Depths that are positive downward become heights. Units of the axes are those th
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,11 +20,10 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step, text_lines
 from ...base.units import unit_of
 from ..meshes.triangle_mesh import UNREADABLE, surface_object
-from .geo_object import HOLE, LINES, POINTS, GeoObject, ObjectName, Values, point_object
+from .geo_object import HOLE, LINES, POINTS, STICK, GeoObject, ObjectName, Values, point_object, stated_text
 
 _WORD = re.compile(r'"([^"]*)"|(\S+)')
 _NAME = re.compile(r"\*?name\s*:\s*(.*?)\s*(?:\}.*)?$", re.IGNORECASE)
-_NO_UNIT = ("", "none", "unknown", "unitless", "undefined")
 _TYPES = {"TSurf": "surface", "VSet": POINTS, "PLine": LINES, "Well": HOLE}
 
 
@@ -48,8 +47,10 @@ class _Object:
     properties: list[str] = field(default_factory=list)
     no_data: list[str] = field(default_factory=list)
     rows: dict[int, list[str]] = field(default_factory=dict)  # values of the properties by vertex
-    collar: tuple[float, ...] = ()
+    collar: tuple[float, float, float] | None = None
     path: list[tuple[float, float, float, float]] = field(default_factory=list)  # depth, z, dx, dy
+    part: int = 0  # of a PLine
+    parts: list[int] = field(default_factory=list)  # by vertex
     markers: list[tuple[str, float]] = field(default_factory=list)
     zones: list[tuple[str, float, float]] = field(default_factory=list)
 
@@ -60,7 +61,7 @@ def read_gocad(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     line."""
     file = Path(file)
     objects: list[_Object] = []
-    others: list[str] = []
+    others: list[_Object] = []
     current = _Object("")
     for number, line in _lines(file, step):
         words = [quoted or plain for quoted, plain in _WORD.findall(line)]
@@ -99,10 +100,12 @@ def _read_line(obj: _Object, words: list[str], line: str, number: int) -> None:
         a, b, c = words[1:4]
         obj.faces.append((obj.index[int(a)], obj.index[int(b)], obj.index[int(c)]))
         obj.lines.append(number)
+    elif key == "ILINE":
+        obj.part += 1
     elif key == "ZPOSITIVE":
         obj.up = -1.0 if words[1].lower() == "depth" else 1.0
     elif key == "AXIS_UNIT":
-        obj.units = [_stated(word) for word in words[1:4]]
+        obj.units = [stated_text(word) for word in words[1:4]]
     elif key == "PROPERTIES":
         obj.properties = words[1:]
     elif key == "NO_DATA_VALUES":
@@ -119,6 +122,7 @@ def _read_vertex(obj: _Object, words: list[str]) -> None:
         obj.rows[len(obj.vertices)] = words[5 : 5 + len(obj.properties)]
     obj.index[int(words[1])] = len(obj.vertices)
     obj.vertices.append((x, y, obj.up * z))
+    obj.parts.append(obj.part)
 
 
 def _read_well(obj: _Object, words: list[str]) -> None:
@@ -159,14 +163,9 @@ def _units(file: Path, obj: _Object) -> str | dict | None:
     return x if x == z else {"xy": x, "z": z}
 
 
-def _stated(word: str) -> str | None:
-    """The text of a unit, where it names one."""
-    return None if word.strip().lower() in _NO_UNIT else word.strip()
-
-
 def _columns(obj: _Object) -> dict[str, np.ndarray]:
-    """(V,) numbers of each property; NaN where there is none."""
-    columns = {}
+    """(V,) numbers of each property; NaN where there is none. Those of lines are sticks."""
+    columns = {STICK: np.array(obj.parts)} if obj.kind == "PLine" else {}
     for number, name in enumerate(obj.properties):
         missing = obj.no_data[number] if number < len(obj.no_data) else None
         column = np.full(len(obj.vertices), np.nan)
@@ -183,13 +182,13 @@ def _well(obj: _Object, units: str | dict | None) -> Callable[[], GeoObject]:
     def made() -> GeoObject:
         depths, places = _path(obj)
 
-        def at(depth: list[float]) -> np.ndarray:
+        def at(depth: Sequence[float]) -> np.ndarray:
             return np.column_stack([np.interp(depth, depths, column) for column in places.T])
 
         values = []
         if obj.markers:
             names, marked = zip(*obj.markers, strict=True)
-            values.append(Values(at(list(marked)), {"surface": np.array(names, object)}))
+            values.append(Values(at(marked), {"surface": np.array(names, object)}))
         if obj.zones:
             names, begins, ends = zip(*obj.zones, strict=True)
             columns = {"block": np.array(names, object)}

@@ -13,7 +13,18 @@ import numpy as np
 
 from ...base.packages import omf_library, quiet
 from ...base.text import Step, no_step
-from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
+from .geo_object import (
+    HOLE,
+    LINES,
+    POINTS,
+    SURFACE,
+    GeoObject,
+    ObjectName,
+    OpenFile,
+    Values,
+    stated_text,
+    texts,
+)
 
 _MAGIC = b"\x84\x83\x82\x81"
 _HOLES = "borehole"  # subtype of lines
@@ -70,7 +81,8 @@ class _OmfFile:
         if segments is not None:
             begins, ends = vertices[segments[:, 0]], vertices[segments[:, 1]]
             values.append(Values(begins, by_place.get("segments", {}), ends))
-        return GeoObject(wanted.name, wanted.kind, vertices, triangles, values)
+        unit = stated_text(project.units)
+        return GeoObject(wanted.name, wanted.kind, vertices, triangles, values, unit=unit)
 
     def _reader(self) -> Any:
         """A reader changes what it has read, so that each time needs another, which closes its file."""

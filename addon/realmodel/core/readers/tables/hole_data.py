@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -45,11 +46,11 @@ _NEEDED = {
 
 @dataclass
 class HoleTables:
-    """given: what they were read from. collars, survey, picks, intervals: their rows, None where there is no
-    such table. factors: to the units in which they are read, by kind of table and column, for those that say
-    others. problems: what was wrong with rows, as far as they are repaired. warnings: sentences."""
+    """boreholes: what they were read from. collars, survey, picks, intervals: their rows, None where there is
+    no such table. factors: to the units in which they are read, by kind of table and column, for those that
+    say others. problems: what was wrong with rows, as far as they are repaired. warnings: sentences."""
 
-    given: Boreholes
+    boreholes: Boreholes
     collars: list[Row] | None = None
     survey: list[Row] | None = None
     picks: list[Row] | None = None
@@ -60,73 +61,83 @@ class HoleTables:
 
     def scale(self, model_unit: str) -> np.ndarray:
         """(3,) the factors of x, y and of heights and depths to the model's unit."""
-        plan, height = factors(self.given.units, model_unit)
+        plan, height = factors(self.boreholes.units, model_unit)
         return np.array([plan, plan, height])
 
 
 def read_hole_rows(
-    given: Boreholes, model_unit: str, step: Step = no_step, needed: tuple[str, ...] | None = None
+    boreholes: Boreholes,
+    model_unit: str,
+    step: Step = no_step,
+    needed: tuple[str, ...] | None = None,
+    sheets: dict[str, Sheet] | None = None,
 ) -> HoleTables:
     """The rows of the tables of some boreholes as they are. needed: the columns of intervals that there must
-    be; None: with the block. Raises InputRefused naming file and line."""
+    be; None: with the block. sheets: tables of files that are read already. Raises InputRefused naming file
+    and line."""
     required = _NEEDED | ({} if needed is None else {"intervals": needed})
-    given, sheets = _whole_files(given)
-    tables = HoleTables(given)
+    if sheets is None:
+        boreholes, sheets = _whole_files(boreholes)
+    tables = HoleTables(boreholes)
     for kind, known in MEANINGS.items():
-        file = getattr(given, kind)
+        file = getattr(boreholes, kind)
         if file is None:
             continue
-        is_log = kind == "intervals" and Path(file) in given.log_files
-        if is_log or (kind in sheets and "block" in required[kind] and not _has_blocks(given, sheets[kind])):
+        is_log = kind == "intervals" and Path(file) in boreholes.log_files
+        if is_log or (
+            kind in sheets and "block" in required[kind] and not _has_blocks(boreholes, sheets[kind])
+        ):
             continue  # curves of a log
         slow = step if kind in ("picks", "intervals") else no_step
         if kind in sheets:
-            found = sheet_rows(given, Path(file), sheets[kind], known, required[kind])
-            if sheets[kind].choice and "block" not in given.columns:
+            table_rows = sheet_rows(boreholes, Path(file), sheets[kind], known, required[kind])
+            if sheets[kind].choice and "block" not in boreholes.columns:
                 tables.warnings.append(f"{file}: {sheets[kind].choice}")
         else:
-            found = list(rows(given, Path(file), known, required[kind], slow))
-        setattr(tables, kind, found)
-        tables.factors[kind] = _to_one_unit(tables, found, model_unit)
+            table_rows = list(rows(boreholes, Path(file), known, required[kind], slow))
+        setattr(tables, kind, table_rows)
+        tables.factors[kind] = _to_one_unit(tables, table_rows, model_unit)
     return tables
 
 
-def _has_blocks(given: Boreholes, sheet: Sheet) -> bool:
+def _has_blocks(boreholes: Boreholes, sheet: Sheet) -> bool:
     """Whether a table has a column that names blocks."""
     keys = set(map(column_key, sheet.names))
-    return "block" in given.columns or not keys.isdisjoint(map(column_key, INTERVALS["block"]))
+    return "block" in boreholes.columns or not keys.isdisjoint(map(column_key, INTERVALS["block"]))
 
 
-def _whole_files(given: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
-    """The same with the tables of files that hold all of them in the places of those that are not given, and
+def _whole_files(boreholes: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
+    """The same with the tables of files that hold all of them in the places of those that are not named, and
     these tables by their kind."""
     sheets: dict[str, Sheet] = {}
-    for file in dict.fromkeys(given.files[len(given.log_files) :]):
+    for file in dict.fromkeys(boreholes.files[len(boreholes.log_files) :]):
         file_format = format_of(file, HOLES)
         if file_format is None:
-            if file == given.file:
+            if file == boreholes.file:
                 what = "it does not hold all tables of boreholes"
                 advice = "name its tables: collars = ..., intervals = ..., picks = ..."
                 raise InputRefused(what, file=file, advice=advice)
             continue
-        said = [kind for kind in MEANINGS if getattr(given, kind) is not None]
-        here = [kind for kind in said if Path(getattr(given, kind)) == file]
-        given = replace(given, file=None, **dict.fromkeys(here))
-        for kind, sheet in file_format.read(file).items():
-            if getattr(given, kind) is None:
-                sheets[kind] = sheet
-                given = replace(given, **{kind: file})
-        if given.downward_dip is None and "survey" in sheets:
-            given = replace(given, downward_dip=file_format.downward_dip)
-    return given, sheets
+        read = file_format.read(file)
+        said = {kind: getattr(boreholes, kind) for kind in MEANINGS}
+        others: dict[str, Any] = {
+            kind: table for kind, table in said.items() if table is not None and Path(table) != file
+        }
+        here = [kind for kind in read if kind not in others]
+        sheets |= {kind: read[kind] for kind in here}
+        tables: dict[str, Any] = dict.fromkeys(MEANINGS) | others | dict.fromkeys(here, file)
+        boreholes = replace(boreholes, file=None, **tables)
+        if boreholes.downward_dip is None and "survey" in sheets:
+            boreholes = replace(boreholes, downward_dip=file_format.downward_dip)
+    return boreholes, sheets
 
 
-def _to_one_unit(tables: HoleTables, found: list[Row], model_unit: str) -> dict[str, float]:
+def _to_one_unit(tables: HoleTables, table_rows: list[Row], model_unit: str) -> dict[str, float]:
     """The factors of columns to the unit in which they are read: that of the model where the user does not
     say it. Raises InputRefused for a unit that is not known."""
-    if not found:
+    if not table_rows:
         return {}
-    header, units = found[0].header, tables.given.units
+    header, units = table_rows[0].header, tables.boreholes.units
     units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     factors_of: dict[str, float] = {}
     said: dict[str, list[str]] = {}

@@ -36,7 +36,7 @@ def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[Interva
     so on. A unit stands in brackets behind the name of its curve. tables: repaired; what there is to say is
     added to their warnings. Raises InputRefused, also where a well is no hole of the tables."""
     rows = _rows_of_holes(tables)
-    sheets = {file: _curves(file) for file in tables.given.log_files}
+    sheets = {file: _curves(file) for file in tables.boreholes.log_files}
     holes_of = {file: _hole(file, sheet, rows) for file, sheet in sheets.items()}
     strangers = [f"'{sheet.rows[0][1][0]}'" for file, sheet in sheets.items() if holes_of[file] is None]
     if strangers:
@@ -100,7 +100,7 @@ def _named(file: Path, hole: str) -> Row:
 
 def _bounds(tables: HoleTables, file: Path, sheet: Sheet, model_unit: str) -> np.ndarray:
     """(N, 2) the depths of the samples, in the unit of the tables: the file says its own."""
-    of_tables = tables.given.units
+    of_tables = tables.boreholes.units
     of_tables = (of_tables.get("z") if isinstance(of_tables, Mapping) else of_tables) or model_unit
     text = sheet.units[1] if len(sheet.units) > 1 else ""
     unit = unit_of(text)

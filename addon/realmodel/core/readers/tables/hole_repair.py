@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...base.errors import InputRefused, number_list
+from ...base.no_value import OFTEN_NO_VALUE
 from .hole_data import HoleTables
 from .hole_problems import DECIDED, LEFT_OUT, NOT_REACHED, REPAIRED, USED, ProblemList, problem_warnings
-from .hole_tables import NULL_NUMBERS, Row, column_key, normalized_name
+from .hole_tables import Row, column_key, normalized_name
 from .holes import end_of
 from .interval_repair import repair_intervals
 from .survey_repair import repair_survey
@@ -25,8 +26,9 @@ _NUMBERS = {
     "picks": ("x", "y", "z", "depth", "elevation"),
     "intervals": ("x", "y", "z", "from", "to"),
 }
-_HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be what else stands for no value
-_ALWAYS = frozenset(value for value in NULL_NUMBERS if value != round(value) or abs(value) > 1e9)
+_HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be below 0
+_NULLS = frozenset(OFTEN_NO_VALUE)
+_ALWAYS = 1e19  # so large nothing is
 _OTHERS = 3  # holes that have two surfaces in the other order make a hole look wrong
 # Beyond the range of the others by so many times it, a collar is none of them.
 _FAR = 1.0
@@ -59,15 +61,19 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
     if tables.picks is not None:
         tables.picks = _repaired_picks(tables, units, problems)
     for kind, rows in unrepaired.items():
-        setattr(tables, kind, sorted([*getattr(tables, kind), *rows], key=lambda row: row.line))
+        scaled = [row.scaled(tables.factors.get(kind, {})) for row in rows]
+        setattr(tables, kind, sorted([*getattr(tables, kind), *scaled], key=lambda row: row.line))
     tables.problems = problems.in_order()
-    tables.warnings += problem_warnings([problem for problem in tables.problems if problem.kind not in DECIDED])
+    undecided = [problem for problem in tables.problems if problem.kind not in DECIDED]
+    tables.warnings += problem_warnings(undecided)
 
 
 def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]]:
     """The rows, by their table, that take no part in the repair and are used as they are; they and those that
     are not used are taken out of the tables. Raises InputRefused for a row that there is not."""
-    unrepaired, left_out = (_row_names(names) for names in (tables.given.unrepaired, tables.given.left_out))
+    unrepaired, left_out = (
+        _row_names(names) for names in (tables.boreholes.unrepaired, tables.boreholes.left_out)
+    )
     taken: dict[str, list[Row]] = {}
     seen = set()
     for kind in _NUMBERS if unrepaired or left_out else ():
@@ -87,7 +93,7 @@ def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]
             setattr(tables, kind, others)
     for name, line in sorted((unrepaired | left_out) - seen):
         what = f"there is no row '{name}:{line}', which 'unrepaired' or 'left_out' names"
-        raise InputRefused(what, file=tables.given.files[0])
+        raise InputRefused(what, file=tables.boreholes.files[0])
     return taken
 
 
@@ -142,16 +148,22 @@ def _number(row: Row, column: str) -> float | None:
 
 
 def _nulls(values: np.ndarray, column: str) -> set[float]:
-    """The numbers among those of a column that stand for no value: of heights and coordinates those that lie
-    far from all others."""
-    found = {value for value in set(values.tolist()) if value in NULL_NUMBERS or abs(value) >= 1e30}
-    others = values[~np.isin(values, list(found))]
+    """The numbers among those of a column that stand for no value: of heights, coordinates and depths that
+    may be real only those that lie far from all others."""
+    nulls = {value for value in set(values.tolist()) if value in _NULLS or abs(value) > _ALWAYS}
+    others = values[~np.isin(values, list(nulls))]
+    if not nulls or not len(others):
+        return nulls
     signed = column in _HEIGHTS or (others < 0).sum() * 2 > (others != 0).sum()
-    if not found or not signed or not len(others):
-        return found
     low, high = others.min(), others.max()
     reach = high - low
-    return {value for value in found if value in _ALWAYS or not low - reach <= value <= high + reach}
+    return {
+        value
+        for value in nulls
+        if abs(value) > _ALWAYS
+        or (value < 0 and not (signed and value == round(value)))
+        or not low - reach <= value <= high + reach
+    }
 
 
 def _mended(row: Row, column: str, problems: ProblemList) -> Row:
@@ -186,7 +198,7 @@ def _complete_collars(tables: HoleTables, problems: ProblemList) -> tuple[list[R
             complete.append(row)
     if not complete:
         what = next(iter(lacking.values()), "there are no holes in it")
-        raise InputRefused(what, file=tables.given.collars)
+        raise InputRefused(what, file=tables.boreholes.collars)
     return complete, lacking
 
 
@@ -216,30 +228,32 @@ def _with_collars(
 ) -> list[list[Row] | None]:
     """The rows of survey, picks and intervals whose holes have a name and a collar."""
     known = None if tables.collars is None else {row.text("hole") for row in tables.collars}
-    found: list[list[Row] | None] = []
+    tables_left: list[list[Row] | None] = []
     for kind, named in (("survey", ""), ("picks", "surface"), ("intervals", "block")):
         rows = getattr(tables, kind)
         if rows is None:
-            found.append(None)
+            tables_left.append(None)
             continue
         having = [row for row in rows if row.has("hole") and (known is None or row.text("hole") in known)]
         if rows and not having and known is not None and named:
             advice = "check how holes are written"
-            what = f"no hole of it has a collar in {tables.given.collars}, as hole '{rows[0].text('hole')}'"
+            what = (
+                f"no hole of it has a collar in {tables.boreholes.collars}, as hole '{rows[0].text('hole')}'"
+            )
             raise rows[0].refuse(what, advice)
-        kept = set(map(id, having))
+        usable = set(map(id, having))
         for row in rows if named else ():
             code = row.text(named) if named in row.columns and row.has(named) else ""
-            if id(row) in kept or not row.is_used or units.says_nothing(code):
+            if id(row) in usable or not row.is_used or units.says_nothing(code):
                 continue
             hole = row.text("hole") if row.has("hole") else ""
             problems.taken(row, *_NUMBERS[kind])
             reason = lacking.get(
-                hole, f"it has no collar in {tables.given.collars}" if hole else "it has no name"
+                hole, f"it has no collar in {tables.boreholes.collars}" if hole else "it has no name"
             )
             problems.note("no_collar", LEFT_OUT, row, reason, depth_of(row), code)
-        found.append(having if named else [row for row in rows if row.has("hole")])
-    return found
+        tables_left.append(having if named else [row for row in rows if row.has("hole")])
+    return tables_left
 
 
 def depth_of(row: Row) -> float | None:
@@ -314,14 +328,14 @@ def _deepest(tables: HoleTables) -> dict[str, float]:
 
 def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList) -> list[Row]:
     """Picks with a surface and a depth or an elevation, each once."""
-    rows, kept, seen = tables.picks or [], list[Row](), dict[tuple, Row]()
+    rows, usable, seen = tables.picks or [], list[Row](), dict[tuple, Row]()
     if not rows:
         return rows
     column = next((name for name in ("depth", "elevation", "z") if name in rows[0].columns), None)
     ends = {row.text("hole"): end_of(row) for row in tables.collars or ()}
     for row in rows:
         if not row.is_used or column is None:
-            kept.append(row)
+            usable.append(row)
             continue
         if not row.has("surface"):
             problems.note("no_row", LEFT_OUT, row, "the surface has no name", depth_of(row))
@@ -345,10 +359,10 @@ def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList)
         end = ends.get(row.text("hole"), np.nan)
         if column == "depth" and value > end * (1 + 1e-6):
             problems.note("below_end", USED, row, f"the hole ends at {end:g}", value)
-        kept.append(row)
+        usable.append(row)
     if column is not None:
-        _note_order(kept, column, problems)
-    return kept
+        _note_order(usable, column, problems)
+    return usable
 
 
 def _note_order(rows: list[Row], column: str, problems: ProblemList) -> None:

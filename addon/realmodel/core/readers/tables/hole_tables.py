@@ -177,24 +177,6 @@ OBSERVED = {
 }
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
-# Numbers that programs write where there is no value.
-NULL_NUMBERS = frozenset(
-    (
-        *(
-            -999.0,
-            -999.25,
-            -999.99,
-            -9999.0,
-            -9999.25,
-            -9999.99,
-            -99999.0,
-            -999999.0,
-            -9999999.0,
-            -99999999.0,
-        ),
-        *(99999.0, 999999.0, 1e30, -1e30, 1e31, 1e33, -32768.0, -32767.0),
-    )
-)
 _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
 LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))

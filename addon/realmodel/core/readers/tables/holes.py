@@ -110,14 +110,14 @@ class HoleDirections:
     @classmethod
     def of_survey(cls, tables: HoleTables) -> HoleDirections:
         """The stations of a survey table. Raises InputRefused naming the line."""
-        directions = cls(tables.given)
+        directions = cls(tables.boreholes)
         for row in tables.survey or ():
             depth = row.number("depth")
             if depth < 0:
                 raise row.refuse(f"depth is {depth:g}", "depths count from the collar along the hole")
             directions.add(row, depth, row.text("hole"))
         if not directions._stations:
-            raise InputRefused("there are no directions in it", file=tables.given.survey)
+            raise InputRefused("there are no directions in it", file=tables.boreholes.survey)
         return directions
 
     def add(self, row: Row, depth: float, hole: str) -> None:
@@ -219,7 +219,7 @@ class Holes:
     """The collars and the paths of holes, of tables that are repaired."""
 
     def __init__(self, tables: HoleTables):
-        self.given = tables.given
+        self.given = tables.boreholes
         self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
         self._without_survey: dict[str, None] = {}
         self._paths: dict[str, WellTrajectory] = {}

@@ -55,9 +55,9 @@ def repair_intervals(tables: HoleTables, units: UnitNames, problems: ProblemList
             replaced[n] = []  # it has no depth, and is listed
     _as_depths(holes, heights, problems)
     for hole, intervals in holes.items():
-        kept = _repaired_hole(hole, intervals, tables.given.tolerance, (units, problems))
+        rows_of = _repaired_hole(hole, intervals, tables.boreholes.tolerance, (units, problems))
         for interval in intervals:
-            replaced[places[id(interval)]] = kept.get(id(interval), [])
+            replaced[places[id(interval)]] = rows_of.get(id(interval), [])
         _note_below(intervals, ends.get(hole, np.nan), problems)
     return [new for n, row in enumerate(rows) for new in replaced.get(n, [row])]
 

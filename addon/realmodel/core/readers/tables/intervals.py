@@ -247,7 +247,7 @@ def interval_values(tables: HoleTables, model_unit: str) -> IntervalValues:
     if rows:
         parts.insert(0, _values_of(rows, holes, tables.scale(model_unit)))
     if not parts:
-        raise InputRefused("there are no intervals in it", file=tables.given.intervals)
+        raise InputRefused("there are no intervals in it", file=tables.boreholes.intervals)
     return IntervalValues.joined(parts)
 
 

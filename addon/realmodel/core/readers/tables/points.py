@@ -59,25 +59,11 @@ _WORDS = {
     ),
 }
 _BESIDE = (
-    *("utm", "coord", "coordinate", "coordinates", "coords", "point", "rd", "pos", "position", "map", "grid"),
-    *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat", "mga", "lv95", "gk"),
-    *(
-        "world",
-        "local",
-        "projected",
-        "nat_grid",
-        "value",
-        "utme",
-        "utmn",
-        "nap",
-        "nn",
-        "nhn",
-        "asl",
-        "amsl",
-        "msl",
-        "wert",
-        "l93",
-    ),
+    *("utm", "mga", "lv95", "gk", "map", "grid", "coord", "coordinate", "rd"),
+    *("coordinates", "coords", "point", "pos", "position"),
+    *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat"),
+    *("world", "local", "projected", "nat_grid", "value", "utme", "utmn", "nap", "nn", "nhn", "asl", "amsl"),
+    *("msl", "wert", "l93"),
 )
 _DEPTHS = (
     *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
@@ -87,16 +73,21 @@ _SYSTEM = re.compile(
     r"(?:utm|mga|lv|gda|epsg|zone|l|gk|cc|rt|osgb|ch|etrs|wgs|nad|nzgd|sweref|dhdn|ed|itrf)?\d+[a-z]{0,2}"
     r"|lambert|dhdn|osgb|bng|nztm|amersfoort|stereo\d*|swissgrid|gauss|krueger|krüger|tm"
 )
-AXES = {
-    axis: (
-        *words,
-        *(f"{beside}_{word}" for word in words for beside in _BESIDE),
-        *(f"{word}_{beside}" for word in words for beside in (*_BESIDE, *(_DEPTHS if axis == "z" else ()))),
-        *(f"{beside}{word}" for word in words[:3] for beside in _BESIDE),
-        *(f"{word}{beside}" for word in words[:3] for beside in _BESIDE),
-    )
-    for axis, words in _WORDS.items()
-}
+
+
+def _names_of(axis: str) -> tuple[str, ...]:
+    """The words of an axis, and these with what may stand beside them."""
+    names = list(_WORDS[axis])
+    for word in _WORDS[axis]:
+        # N_value is another thing
+        beside = _BESIDE[:9] if word in ("e", "n") else (*_BESIDE, *(_DEPTHS if word == "z" else ()))
+        names += [form.format(word, other) for other in beside for form in ("{1}_{0}", "{0}_{1}")]
+        if word in "xyz":
+            names += [f"{other}{word}" for other in beside] + [f"{word}{other}" for other in beside]
+    return tuple(names)
+
+
+AXES = {axis: _names_of(axis) for axis in _WORDS}
 # Taken where no column has one of those names, with a warning.
 _DEGREES = {
     "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),

@@ -106,8 +106,8 @@ def _wrong(row: Row, angle: str) -> str:
 
 def _downward(tables: HoleTables, rows: list[Row], angle: str) -> float:
     """The sign of downward dips: as given, or that of most."""
-    if tables.given.downward_dip is not None:
-        return -1.0 if tables.given.downward_dip == "negative" else 1.0
+    if tables.boreholes.downward_dip is not None:
+        return -1.0 if tables.boreholes.downward_dip == "negative" else 1.0
     dips = np.array([row.number("dip") for row in rows]) if angle == "dip" else np.zeros(1)
     return -1.0 if (dips < 0).sum() > (dips > 0).sum() else 1.0
 

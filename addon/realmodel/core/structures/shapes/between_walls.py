@@ -20,26 +20,27 @@ from ...surfaces.planar_mesh import MeshOptions, mesh_rings
 from .fitted import convex_hull, plane_axes
 
 _IN_LINE = 0.1  # of the extent of contacts along a line: so near to it, they show no dip across it
-_LEVEL = 0.1  # of a hole's direction: so little of it goes down in a hole that is level
+_ALONG = 0.1  # of a direction: with so little of it across a plane it runs along that
 _ROUND = 16  # places around a contact where the body has ended
-_EDGES = 4  # from a contact to where the body ends, at least
-_MOST_EDGES = 100  # across the body
-_OFF = 1e-3  # of an edge: contacts so near one another are one place; of a share: no nearer to the end
+_EDGES = 5  # from a contact to where the body ends, at least
+_MOST_EDGES = 50  # across the body
+_NEAR = 0.05  # of an edge: contacts so near one another, seen along the plane, are one place
+_OFF = 1e-3  # of a share of the thickness: no vertex is nearer to where the body ends
 
 
 class Pierced(NamedTuple):
     """What holes say of a body. ends: (K, 2, 3) where each hole enters and leaves it. without: (S, 2, 3) ways
-    along holes that are not in it. holes: of the ends, by name."""
+    along holes that are not in it."""
 
     ends: np.ndarray
     without: np.ndarray
-    holes: Sequence[str]
 
 
 def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, list[str]]:
-    """What the intervals of holes say of a body; and warnings, sentences. Of several intervals in one hole the
-    longest counts."""
+    """What the intervals of holes say of a body; and warnings, sentences. Of several intervals in one hole
+    the longest counts."""
     ends: dict[str, list[np.ndarray]] = {}
+    open_ended: list[str] = []
     without: list[np.ndarray] = []
     for seen in observations:
         in_hole = in_one_interval(seen, seen.in_use) & (seen.holes != "")
@@ -52,13 +53,18 @@ def pierced(name: str, observations: Sequence[Observations]) -> tuple[Pierced, l
             if intervals and (intervals[-1][1] == way[0]).all():
                 way = np.array([intervals.pop()[0], way[1]])
             intervals.append(way)
+            if row + 1 == len(seen) or seen.holes[row + 1] != seen.holes[row]:
+                open_ended.append(f"'{seen.holes[row]}'")
     longest = [max(intervals, key=lambda way: norm(way[1] - way[0])) for intervals in ends.values()]
     several = [f"'{hole}'" for hole, intervals in ends.items() if len(intervals) > 1]
     warnings = []
-    if several:
-        holes = f"{'hole' if len(several) == 1 else 'holes'} {number_list(several)}"
-        warnings.append(f"{holes} met it several times: the longest interval counts; name the others differently")
-    return Pierced(_ways(longest), _ways(without), list(ends)), warnings
+    for holes, said in (
+        (several, "met it several times: the longest interval counts; name the others differently"),
+        (open_ended, "ended in it: it is taken to end there, and may be thicker"),
+    ):
+        if holes:
+            warnings.append(f"{'hole' if len(holes) == 1 else 'holes'} {number_list(holes)} {said}")
+    return Pierced(_ways(longest), _ways(without)), warnings
 
 
 def _ways(ways: list[np.ndarray]) -> np.ndarray:
@@ -77,7 +83,9 @@ def body_between_walls(work: Work, met: Pierced, reach: float | None = None) -> 
     ends, without = met.ends[order], met.without
     ends = ends[norm(ends[:, 1] - ends[:, 0]) > 0]
     if not len(ends):
-        raise InputRefused("no interval of a borehole is in it", advice="give its name to intervals, or a mesh")
+        raise InputRefused(
+            "no interval of a borehole is in it", advice="give its name to intervals, or a mesh"
+        )
     axes, warnings = _plane(ends)
     center = ends.mean(axis=(0, 1))
     walls, passing = (_local(ways - center, axes) for ways in (ends, without))
@@ -91,33 +99,32 @@ def body_between_walls(work: Work, met: Pierced, reach: float | None = None) -> 
     reach = _reach(middles[:, :2], absent, reach)
     plan, triangles, share = _extent(work, places, absent, reach)
     middle = _kriged(work, middles, plan)
-    upper = _beside(work, plan, middle, hanging, 1.0, warnings)
-    lower = _beside(work, plan, middle, footwall, -1.0, warnings)
-    local = _closed(plan, triangles, share, middle + upper * share, middle - lower * share)
+    top, bottom = (
+        _wall(work, plan, middle, share, contacts, sign, warnings)
+        for contacts, sign in ((hanging, 1.0), (footwall, -1.0))
+    )
+    local = _closed(triangles, share, top, bottom)
     vertices = center + dot(local.vertices[:, None], axes.T[None])
     return Sheet(vertices, local.triangles), warnings
 
 
 def _plane(ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """The axes, in rows, of the plane of a body by its intervals (K, 2, 3), the last one upward; and warnings.
-    Where they lie in a line, it is as level as that allows."""
+    """The axes, in rows, of the plane of a body by its intervals (K, 2, 3), the last one upward; warnings.
+    Where they lie in a line, or holes run along the plane, it is as level as they allow."""
     middles = ends.mean(axis=1)
     ways = ends[:, 0] - ends[:, 1]
     hole = ways.sum(axis=0) / norm(ways).sum()
     level = np.array([0.0, 0.0, 1.0])
     spread, directions = principal_axes(middles)
-    if len(ends) > 2 and spread[1] > _IN_LINE * spread[0]:
-        normal, warnings = directions[2], []
-    else:
-        across = hole if abs(hole[2]) < _LEVEL else level
+    normal, warnings = directions[2], list[str]()
+    if len(ends) < 3 or spread[1] <= _IN_LINE * spread[0] or abs(dot(hole, normal)) < _ALONG:
+        across = hole if abs(hole[2]) < _ALONG else level
         along = directions[0] if len(ends) > 1 else np.zeros(3)
         normal = across - dot(across, along) * along
-        if norm(normal) < _LEVEL:  # holes above one another
-            normal = hole - dot(hole, along) * along
-        warnings = [
-            f"{counted(len(ends), 'interval')} in a line show no dip across it: it is as level there as they "
-            "allow; give a mesh, or intervals of more holes"
-        ]
+        if abs(dot(hole, normal)) < _ALONG * norm(normal) or norm(normal) < _ALONG:
+            normal = hole  # in holes above one another
+        those = "one interval shows no dip" if len(ends) == 1 else "intervals in a line show no dip across it"
+        warnings = [f"{those}: it is as level as they allow; give a mesh, or intervals of more holes"]
     normal = normal / norm(normal)
     along, down, normal = plane_axes(-normal if dot(normal, level) < 0 else normal)
     return np.array([along, down, normal] if normal[2] >= 0 else [along, -down, -normal]), warnings
@@ -177,7 +184,7 @@ def _extent(
     absent = absent[(away < 2 * reach) & (away > _OFF * reach)]
     nearest = min(reach, away[away > _OFF * reach].min(initial=np.inf) / 2)
     edge = min(max(nearest / _EDGES, size / _MOST_EDGES), reach / 2)
-    nodes = _apart(places, _OFF * edge)
+    nodes = _apart(places, _NEAR * edge)
     options = MeshOptions(edge, constraint_points=nodes)
     plan, triangles = mesh_rings(work, [outline], options)
     known = np.vstack([places, absent, ring])
@@ -207,16 +214,17 @@ def _apart(places: np.ndarray, least: float) -> np.ndarray:
     return np.array(chosen)
 
 
-def _beside(
+def _wall(
     work: Work,
     plan: np.ndarray,
     middle: np.ndarray,
+    share: np.ndarray,
     contacts: np.ndarray,
     sign: float,
     warnings: list[str],
 ) -> np.ndarray:
-    """(N,) how far a wall is from the middle at nodes (N, 2), never less than 0: through contacts (K, 3) of
-    it. sign: 1 above, -1 below."""
+    """(N, 3) a wall at nodes (N, 2), on its side of the middle: through contacts (K, 3) of it. sign: 1 above,
+    -1 below."""
     at = norm(plan[:, None] - contacts[None, :, :2]).argmin(axis=0)  # nodes: _extent sees to it
     thick = sign * (contacts[:, 2] - middle[at])
     if (thick < 0).any():
@@ -229,18 +237,19 @@ def _beside(
     half = _kriged(work, np.column_stack([plan[at], thick]), plan)
     half = np.clip(half, thick.min(), thick.max())
     half[at] = thick
-    return half
+    wall_places = np.column_stack([plan, middle + sign * half * share])
+    wall_places[at, :2] = contacts[:, :2]  # which may share a node with one of the other wall
+    return wall_places
 
 
-def _closed(
-    plan: np.ndarray, triangles: np.ndarray, share: np.ndarray, top: np.ndarray, bottom: np.ndarray
-) -> Sheet:
+def _closed(triangles: np.ndarray, share: np.ndarray, top: np.ndarray, bottom: np.ndarray) -> Sheet:
     """The closed surface over the part of triangles where a share of nodes is above 0, between a top and a
-    bottom, which meet where it is 0."""
-    vertices: list[tuple[float, float, float]] = []
+    bottom (N, 3), which meet where it is 0."""
+    middle = (top + bottom) / 2
+    vertices: list[np.ndarray] = []
     numbers: dict[tuple, int] = {}
 
-    def vertex(key: tuple, *place: float) -> int:
+    def vertex(key: tuple, place: np.ndarray) -> int:
         if key not in numbers:
             numbers[key] = len(vertices)
             vertices.append(place)
@@ -249,9 +258,7 @@ def _closed(
     def end(a: int, b: int) -> int:
         a, b = min(a, b), max(a, b)
         part = share[a] / (share[a] - share[b])
-        x, y = plan[a] + part * (plan[b] - plan[a])
-        middle = (top + bottom) / 2
-        return vertex((a, b, 0), x, y, middle[a] + part * (middle[b] - middle[a]))
+        return vertex((a, b, 0), middle[a] + part * (middle[b] - middle[a]))
 
     faces: list[tuple[int, int, int]] = []
     is_in = share > 0
@@ -260,7 +267,7 @@ def _closed(
             ring = []
             for a, b in zip(triangle, [*triangle[1:], triangle[0]], strict=True):
                 if is_in[a]:
-                    ring.append(vertex((a, a, side), *plan[a], wall[a]))
+                    ring.append(vertex((a, a, side), wall[a]))
                 if is_in[a] != is_in[b]:
                     ring.append(end(a, b))
             ring = ring[::side]

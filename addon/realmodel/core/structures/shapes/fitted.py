@@ -291,6 +291,7 @@ _OBLIQUE = math.cos(math.radians(30.0))  # of the angle to the normal of the tra
 _END = 0.1  # of the length of a line: so much of it at an end gives the direction of its continuation
 _PIECES = 256  # of the extent of the rock in plan: so long are the pieces of a line that is put on the ground
 _STRAIGHT = 1e-5  # of the same extent: what leaves a straight line by less needs no vertex
+_DETOUR = 1.1  # a trace is not longer than the shortest way through its points by more
 _MOST_LINES = 1000
 
 
@@ -308,6 +309,7 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
             advice="cut it open, or give the fault as a mesh",
             place=tuple(line[0, :2].tolist()),
         )
+    _refuse_unsorted(line[:, :2])
     if fault.elevation is None and (line[:, 2] == 0.0).all() and fault.trace_file is not None:
         text = "its line has elevation 0 everywhere; if that is no elevation, set elevation = ..."
         warnings.append(text)
@@ -452,6 +454,20 @@ def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
         return line, []
     text = f"gaps of {number_list(f'{gap:.6g}' for gap in open_gaps)} between the {len(lines)} lines of its "
     return line, [text + "trace are bridged by straight lines"]
+
+
+def _refuse_unsorted(line: np.ndarray) -> None:
+    """Refuses a line (N, 2) whose points another order joins by a much shorter way."""
+    if len(line) > _TRIED:
+        return
+    ways = [float(norm(np.diff(points, axis=0)).sum()) for points in (line, line[_path(line)])]
+    if ways[0] > _DETOUR * ways[1]:
+        raise InputRefused(
+            f"the points of its trace are not in order along it: in another order it is {ways[1]:.6g} long, "
+            f"not {ways[0]:.6g}",
+            advice="sort them along the trace, or give them as points with dips",
+            place=tuple(line[0].tolist()),
+        )
 
 
 def _refuse_turning_back(before: np.ndarray, after: np.ndarray) -> None:

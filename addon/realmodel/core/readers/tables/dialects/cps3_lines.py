@@ -2,7 +2,8 @@
 """CPS-3 lines and points (Schlumberger), as Petrel writes polygons and faults: lines of keys that begin
 with FF (or FC), a line "->name" before each polyline, then rows of x, y and z.
 
-The layout is that of Petrel's "CPS-3 lines (ASCII)" in its manual of formats, and of OpendTect's readers.
+The layout is that of Petrel's export "CPS-3 lines (ASCII)", as far as its users show it in public; no
+public file of it was found.
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ def begins_as_cps3_lines(head: bytes, _size: int = 0) -> bool:
 
 def cps3_lines_header(file: Path, lines: list[str]) -> Header:
     """The header of its first lines. Raises InputRefused where rows have no z."""
-    keys = [n for n, line in enumerate(lines) if not line.strip() or line.lstrip()[0] in "#!"]
-    rows = next((n for n in range(len(lines)) if n not in keys), len(lines))
+    rows = next(
+        (n for n, line in enumerate(lines) if line.strip() and line.strip()[0] not in "#!"), len(lines)
+    )
     if rows < len(lines) and len(lines[rows].split()) < 3:
         what = "its rows have no z"
         raise InputRefused(what, file=file, line=rows + 1, advice="export the lines with their depths")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from ....base.errors import InputRefused
 from .dialect import Header, comment_units
 
 _FIELD = re.compile(r"#\s*Field:\s*(\d+)\s+(\S+)(?:\s+(.+?))?\s*$", re.IGNORECASE)
@@ -21,17 +22,17 @@ def begins_as_earthvision(head: bytes, _size: int = 0) -> bool:
     return any(_FIELD.match(line.decode("latin-1").strip()) for line in head[:4096].splitlines())
 
 
-def earthvision_header(_file: Path, lines: list[str]) -> Header:
-    """The header of its first lines."""
-    rows = next(
-        (n for n, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")), len(lines)
-    )
+def earthvision_header(file: Path, lines: list[str]) -> Header:
+    """The header of its first lines. Raises InputRefused where it has more fields than a row may have."""
+    fields = {n: match for n, line in enumerate(lines) if (match := _FIELD.match(line.strip()))}
+    name_line = max(fields)
     names: dict[int, str] = {}
-    name_line = None
-    for n, line in enumerate(lines[:rows]):
-        if field := _FIELD.match(line.strip()):
-            unit = field[3] if field[3] and field[3].lower() not in _TYPES else ""
-            names[int(field[1]) - 1] = f"{field[2]} ({unit})" if unit else field[2]
-            name_line = n
+    for n, field in fields.items():
+        if not 1 <= len(field[1]) <= 4:
+            raise InputRefused(f"there is no field {field[1]:.20}", file=file, line=n + 1)
+        unit = field[3] if field[3] and field[3].lower() not in _TYPES else ""
+        names[int(field[1]) - 1] = f"{field[2]} ({unit})" if unit else field[2]
+    behind = range(name_line + 1, len(lines))
+    rows = next((n for n in behind if lines[n].strip() and lines[n].strip()[0] != "#"), len(lines))
     listed = tuple(names.get(n, f"column {n + 1}") for n in range(max(names) + 1))
     return Header(rows, listed, name_line, comment_units(lines[:rows]))
