@@ -25,7 +25,8 @@ size = [{ at = "outline", length = 4.1, distance = 2.3 },
   { at = [[60, 20], [70, 25.5]], length = 2.5, distance = 0 },
   { at = "constraints", length = 3, distance = 1 }]
 constraints = ["river.geojson", [[5, 5], [30.3, 60]], [80, 60]]
-boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft", columns={hole="BHID"}, logs=["b.las"]}
+boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft",\
+  columns={hole="BHID"}, logs=["b.las"]}
 observations = "seen.csv"
 names = { B = "Bottom", D = "distance" }
 

@@ -11,7 +11,7 @@ from panel_case import PanelCase, ops, outline
 from realmodel.bl.field import boreholes
 from realmodel.bl.project import interval_values, project_settings
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "core"))
+sys.path.append(str(Path(__file__).parents[1] / "core"))  # behind the tests of this folder
 from las_files import las_text
 
 COLLARS = "hole,x,y,z,eoh\nB-0,20,50,60,40\nB-1,80,51,60,40\n"
@@ -97,10 +97,12 @@ class HoleLogs(PanelCase):
     def test_projects_bring_their_logs(self):
         self.read_all()
         (self.folder / "project.toml").write_text(
-            'format = 1\nname = "p"\n[[rock]]\nname = "r"\nregion = [[0, 0], [100, 0], [100, 100], [0, 100]]\n'
+            'format = 1\nname = "p"\n[[rock]]\nname = "r"\n'
+            "region = [[0, 0], [100, 0], [100, 100], [0, 100]]\n"
             "edge_length = 20\nbase_elevation = 0\n"
             'boreholes = { collars = "collars.csv", intervals = "logs.csv", logs = ["0.las", "1.las"] }\n'
-            '[[rock.surface]]\nname = "Clay"\nmethod = "plane"\n[[rock.surface]]\nname = "Sand"\nmethod = "plane"\n'
+            '[[rock.surface]]\nname = "Clay"\nmethod = "plane"\n'
+            '[[rock.surface]]\nname = "Sand"\nmethod = "plane"\n'
         )
         ops.open_project(filepath=str(self.folder / "project.toml"))
         self.assertEqual(boreholes.columns(self.scene), ["GR (GAPI)", "RHOB (G/C3)"])

@@ -90,12 +90,11 @@ def _rasters(properties):
 
 class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, FilesImportHelper):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
-    the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of an
-    OMF or geoh5 file; tables of
-    places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
-    name, or for the active surface or its series where none names any; and geological maps. Choose all of
-    them at once: each is told by its columns. Surfaces get these data beside their own, and are added where
-    they are not there yet"""
+    the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of
+    an OMF or geoh5 file; tables of places in known blocks, such as outcrops; dips, which count for the
+    surfaces or blocks that their rows name, or for the active surface or its series where none names any; and
+    geological maps. Choose all of them at once: each is told by its columns. Surfaces get these
+    data beside their own, and are added where they are not there yet"""
 
     bl_label = "Import Field Data"
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
-from typing import Generic
+from typing import Any, Generic
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,8 +46,8 @@ class Section(SectionData):
         boreholes within this distance of the section, model units. hole_column: beside these as a curve, a
         column of `hole_values`; its unit may be left out. The file appears whole or not at all. Raises
         UsageError, OutputFailed."""
-        drawn = {"exaggeration": exaggeration, "hole_width": hole_width, "hole_column": hole_column}
-        SECTION.save(self, path, **drawn)
+        of_holes: dict[str, Any] = {"hole_width": hole_width, "hole_column": hole_column}
+        SECTION.save(self, path, exaggeration=exaggeration, **of_holes)
 
     def _repr_svg_(self) -> str | None:
         """The drawing that `save` writes; None where there is none, as of the section by a surface."""

@@ -15,7 +15,8 @@ _SAME = 1e-9  # of a depth: depths that are nearer are one
 
 def seen_values(values: IntervalValues, name: str, most: int = _MOST) -> IntervalValues:
     """The values of a column of numbers that can be seen: hole by hole, downward, where there is one. Where
-    more than `most` intervals meet, the least and the greatest of each stretch, which meet in their places."""
+    more than `most` intervals meet, the least and the greatest of each stretch, which meet in their
+    places."""
     values = values.some(values.has(name))
     _, number = np.unique(values.holes, return_inverse=True)
     values = values.some(np.lexsort((values.depths[:, 0], number.reshape(-1))))
