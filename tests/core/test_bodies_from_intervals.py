@@ -156,6 +156,18 @@ def test_a_vein_is_built_from_its_intervals(tmp_path):
     assert model.project.bodies[0].vertices is not None and model.project.bodies[0].reach is None
 
 
+def test_a_rock_mass_of_ready_meshes_may_have_one(tmp_path):
+    corners, two = np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), [[0, 1, 2], [0, 2, 3]]
+    rock = rock_with(vein_tables(tmp_path))
+    rock.surfaces = [
+        Surface(name, np.column_stack([corners, np.full(4, z)]), two, block=block)
+        for name, z, block in (("base", -150.0, "x"), ("top", 50.0, "Host"))
+    ]
+    rock.region = rock.edge_length = None
+    volumes = {b.name: b.volume for b in build(Project("v", [rock], bodies=[Body("Vein")])).blocks}
+    assert volumes["Vein"] > 3e4 and sum(volumes.values()) == pytest.approx(2e6)
+
+
 def test_reach_says_how_far_it_goes(tmp_path):
     holes = vein_tables(tmp_path)
     volumes = []

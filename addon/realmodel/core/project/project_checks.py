@@ -78,10 +78,12 @@ def check_field_data(project: Project, rock: Rock) -> None:
         check_table_file(table, key, refuse)
     if rock.map is not None:
         _check_map(rock, rock.map)
+    of_intervals = any(not body.has_shape for body in project.bodies)
     for key in ("boreholes", "observations", "map", "dips"):
         has_effect = rock.interpolates or (
             key != "dips" and any(surface.has_points for surface in rock.surfaces)
         )
+        has_effect |= key in ("boreholes", "observations") and of_intervals
         if getattr(rock, key) is not None and not has_effect:
             raise refuse(f"'{key}' has no effect, as no surface is interpolated", key)
     _check_names_of_data(project, rock)

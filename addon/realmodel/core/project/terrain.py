@@ -49,7 +49,8 @@ def _surface(rock: Rock) -> tuple[Surface, list[Surface]]:
     if isinstance(given, Surface):
         return given, rock.surfaces
     if isinstance(given, (str, Path, PointFile, MeshFile)):
-        check_file(getattr(given, "file", given), "terrain", rock.refused)
+        file = given if isinstance(given, (str, Path)) else given.file
+        check_file(file, "terrain", rock.refused)
     shape = terrain_shape(given)
     youngest = rock.surfaces[-1] if rock.surfaces else None
     if youngest is None or youngest.series is not None or not needs_shape(rock, youngest):
