@@ -15,8 +15,8 @@ from .bl.field import handle
 from .bl.host import afterwards, caches, undo
 from .bl.objects import viewports
 from .bl.overlay import rendered
-from .bl.project import region_size, settings
-from .bl.scene import live, migration, quality
+from .bl.project import settings
+from .bl.scene import live, migration, quality, region_size
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
 _evaluated = caches.new()  # by the name of a scene: the names of objects and data that Blender evaluated

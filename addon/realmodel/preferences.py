@@ -78,7 +78,7 @@ class RealModelPreferences(bpy.types.AddonPreferences):
 
 def _draw_profiles(layout):
     """The profiles of imports, with buttons."""
-    from .bl.project import profiles  # its module needs this one
+    from .bl.field import profiles  # its module needs this one
 
     column = layout.column(heading="Import Profiles", align=True)
     for profile in profiles.all_of_user():

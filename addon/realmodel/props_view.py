@@ -196,8 +196,8 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     show_hole_curves: BoolProperty(
         name="Curve Beside",
-        description="Show the numbers that color the boreholes also as a curve beside each, from the lowest to "
-        "the highest; on sections that are saved, too",
+        description="Show the numbers that color the boreholes also as a curve beside each, from the lowest "
+        "to the highest; on sections that are saved, too",
         options=set(),
         update=changes.field_data,
     )

@@ -9,8 +9,8 @@ from blender_state import empty_file, inventory
 from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
 from realmodel.bl.display import ensembles
-from realmodel.bl.project import samples, settings
-from realmodel.bl.scene import quality
+from realmodel.bl.project import settings
+from realmodel.bl.scene import quality, samples
 from realmodel.core.settings.methods import METHODS
 from realmodel.core.settings.series_kinds import FIELD
 from recording_layout import Drawing, Layout, Refused, draw, draw_tab

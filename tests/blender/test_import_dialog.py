@@ -7,7 +7,7 @@ from unittest import mock
 
 import numpy as np
 from panel_case import PanelCase, ops
-from realmodel.bl.project import profiles
+from realmodel.bl.field import profiles
 from realmodel.core import InputRefused
 from realmodel.props_import import IGNORED
 from realmodel.ui.panel import wrapped
@@ -79,8 +79,10 @@ class Profiles(PanelCase):
         self.addCleanup(place.stop)
 
     def test_remembered_renamed_saved_and_loaded(self):
-        made = profiles.Profile("tops", "points", ("E", "N", "H (m)"), {"x": "E", "y": 2}, {"units": "ft"})
-        profiles.add(made, profiles.Profile("tops", "points", ("a", "b"), {"x": "a"}))
+        made = profiles.ImportProfile(
+            "tops", "points", ("E", "N", "H (m)"), {"x": "E", "y": 2}, {"units": "ft"}
+        )
+        profiles.add(made, profiles.ImportProfile("tops", "points", ("a", "b"), {"x": "a"}))
         self.assertEqual([profile.name for profile in profiles.all_of_user()], ["tops", "tops 2"])
         self.assertEqual(profiles.of_header("points", ["e", "n", "h (m)"]), made)
         self.assertIsNone(profiles.of_header("field data", ["e", "n", "h (m)"]))
@@ -95,7 +97,7 @@ class Profiles(PanelCase):
 
     def test_damaged_files(self):
         """Of any kind: those of the user are none, others are refused, and nothing is lost."""
-        made = profiles.Profile("tops", "points", ("E", "N"), {"x": "E"})
+        made = profiles.ImportProfile("tops", "points", ("E", "N"), {"x": "E"})
         profiles.add(made)
         whole = json.loads(profiles.file().read_text())
         bad = self.folder / "bad.json"

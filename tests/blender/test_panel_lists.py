@@ -11,7 +11,8 @@ import numpy as np
 from blender_state import inventory, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl.display import shown_models
-from realmodel.bl.project import method_settings, region_size, results, surface_statistics
+from realmodel.bl.project import method_settings, results, surface_statistics
+from realmodel.bl.scene import region_size
 from realmodel.core import load_library, load_project
 from realmodel.core.exporters import MODEL
 from realmodel.core.project.project import ROCK, SURFACE

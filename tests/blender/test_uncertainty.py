@@ -9,7 +9,7 @@ from realmodel.bl.objects import model_tree
 from realmodel.bl.pictures import batch
 from realmodel.bl.project import surface_statistics
 from realmodel.core import build
-from realmodel.core.results import layer_values
+from realmodel.core.drawing import color_scale
 
 
 def values(mesh, name):
@@ -70,7 +70,7 @@ class UncertaintyInThePanel(PanelCase):
         self.assertAlmostEqual(self.model.view.shade_limits[1], most, places=5)
         self.assertEqual(self.model.view.shade_limits[0], 0.0)
         for each, deviation in zip(interfaces, deviations, strict=True):
-            expected = layer_values.colors(deviation, (0.0, most))[:, :3]
+            expected = color_scale.colors(deviation, (0.0, most))[:, :3]
             np.testing.assert_allclose(self.colors(each), expected, atol=0.01)
         self.assertEqual(item.material_slots[0].material.name, "Color Scale")
         self.assertEqual(item.data.color_attributes.active_color.name, "realmodel_shade")
@@ -92,7 +92,7 @@ class UncertaintyInThePanel(PanelCase):
             high, max(max(v.co.z for v in o.data.vertices) for o in self.shown()), places=4
         )
         np.testing.assert_allclose(
-            self.colors(block), layer_values.colors(heights, (low, high))[:, :3], atol=0.01
+            self.colors(block), color_scale.colors(heights, (low, high))[:, :3], atol=0.01
         )
         self.model.color_by = "THICKNESS"
         thickest = self.model.view.shade_limits[1]

@@ -12,8 +12,8 @@ from realmodel import core
 from realmodel.core import Boreholes, InputRefused, Model, UsageError, build, load_project
 from realmodel.core.drawing.drawing import FilledRings, Text
 from realmodel.core.readers.borehole_input import read_boreholes
+from realmodel.core.readers.hole_values import read_interval_values
 from realmodel.core.readers.tables.interval_values import IntervalValues
-from realmodel.core.readers.tables.intervals import read_interval_values
 from realmodel.core.results.sections.hole_curves import seen_values
 from realmodel.core.results.sections.section_drawing import draw_section
 

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused
 from realmodel.core.readers import read_boreholes
-from realmodel.core.readers.tables.intervals import IntervalValues, read_interval_values
-from realmodel.core.readers.tables.table_kind import table_kind
+from realmodel.core.readers.hole_values import read_interval_values
+from realmodel.core.readers.table_kind import table_kind
+from realmodel.core.readers.tables.interval_values import IntervalValues
 
 COLLARS = "BHID,Easting,Northing,RL,EOH,dip,azimuth\nA,10,20,100,30,-90,0\nB,50,20,110,20,-45,90\n"
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from realmodel.core.drawing import color_scale
 from realmodel.core.drawing.drawing import FilledRings, Text
 from realmodel.core.drawing.overlay import ColorKey, Eye, Shown, draw_overlay
 from realmodel.core.drawing.png import rasterize
@@ -122,9 +123,9 @@ def test_legends_fit_and_are_drawn():
     assert "Rock 0" in texts(drawing)
     assert any(text.endswith(" more") for text in texts(drawing))
     assert max(item.y for item in texts(drawing).values()) < SIZE[1]
-    key = ColorKey("Elevation (m)", limits=(80.0, 120.0), colors=layer_values.RISING)
+    key = ColorKey("Elevation (m)", limits=(80.0, 120.0), colors=color_scale.RISING)
     pixels = rasterize(draw_overlay(eye(152, 27), shown(), [key], []), 1.0, None)
-    for color in layer_values.RISING:
+    for color in color_scale.RISING:
         assert (np.abs(pixels[..., :3] - color).max(axis=2) < 0.02).any()
 
 
@@ -144,8 +145,8 @@ def test_thickness_is_vertical():
 
 
 def test_colors_are_even_and_gray_where_nothing_is_known():
-    found = layer_values.colors(np.array([1.0, np.nan, 3.0, 2.0]), (1.0, 3.0))
-    np.testing.assert_allclose(found[0, :3], layer_values.RISING[0], atol=1e-6)
-    np.testing.assert_allclose(found[2, :3], layer_values.RISING[-1], atol=1e-6)
-    np.testing.assert_allclose(found[1], (*layer_values.UNKNOWN, 1.0))
-    np.testing.assert_allclose(found[3, :3], layer_values.RISING[2:4].mean(axis=0), atol=1e-6)
+    found = color_scale.colors(np.array([1.0, np.nan, 3.0, 2.0]), (1.0, 3.0))
+    np.testing.assert_allclose(found[0, :3], color_scale.RISING[0], atol=1e-6)
+    np.testing.assert_allclose(found[2, :3], color_scale.RISING[-1], atol=1e-6)
+    np.testing.assert_allclose(found[1], (*color_scale.UNKNOWN, 1.0))
+    np.testing.assert_allclose(found[3, :3], color_scale.RISING[2:4].mean(axis=0), atol=1e-6)

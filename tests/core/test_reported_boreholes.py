@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, Project, Rock, Surface, build, read_boreholes
-from realmodel.core.readers.tables.table_kind import table_kind
+from realmodel.core.readers.table_kind import table_kind
 
 PLACES = {"H0": (10, 10), "H1": (90, 10), "H2": (90, 90), "H3": (10, 90), "H4": (50, 50)}
 SQUARE = [[0, 0], [100, 0], [100, 100], [0, 100]]

@@ -74,11 +74,11 @@ def run(options: argparse.Namespace) -> None:
         units=options.units,
         name=options.out.resolve().name,
     )
-    files = project.save(options.out)
+    path = project.save(options.out)
     if not options.quiet:
         for warning in project.proposal.warnings:
             print(f"warning: {warning}")
         print(f"units, oldest first: {', '.join(project.proposal.order)}")
-        print(f"{options.out}: {len(files)} files; build it: {PROGRAM} {options.out / 'project.toml'}")
+        print(f"{options.out}: {len(list(options.out.iterdir()))} files; build it: {PROGRAM} {path}")
     if options.build is not None:
         run_build(options.build)

@@ -16,14 +16,13 @@ from .project import (
     names,
     plan_mesh,
     project_settings,
-    region_size,
     series_settings,
     settings,
     structure_settings,
     surface_statistics,
     units,
 )
-from .scene import data_objects, live, planned_holes
+from .scene import data_objects, live, planned_holes, region_size
 from .shading import looks, weathering
 
 

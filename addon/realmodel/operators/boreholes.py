@@ -36,8 +36,8 @@ from ..core.readers import (
 from ..core.readers.borehole_input import read_repaired
 from ..core.readers.code_counts import count_codes
 from ..core.readers.formats import HOLES, OBJECTS, RASTER, SHAPES, TABLE, endings
+from ..core.readers.hole_values import is_log
 from ..core.readers.object_input import is_object_file
-from ..core.readers.tables.hole_logs import is_log
 from ..core.settings.data_files import READING
 from ..core.settings.series_kinds import FIELD
 from ..core.surfaces.field_data import left_out_texts

@@ -8,7 +8,7 @@ import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, StringProperty
 
 from .. import props_import
-from ..bl.project import profiles
+from ..bl.field import profiles
 from ..core import RealModelError
 from ..core.base.errors import counted
 from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
@@ -95,7 +95,7 @@ class TableDialog:
             known = profiles.of_header(self.of, header)
             if preview.has_header and (known or reading or columns != self.understood(preview)):
                 name = preview.file.stem if known is None else known.name
-                new.append(profiles.Profile(name, self.of, header, columns, dict(reading)))
+                new.append(profiles.ImportProfile(name, self.of, header, columns, dict(reading)))
         if new:
             try:
                 profiles.add(*new)

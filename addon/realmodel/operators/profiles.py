@@ -5,7 +5,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..bl.project import profiles
+from ..bl.field import profiles
 from ..core import InputRefused
 from ..core.base.errors import counted
 from .reporting import Reporting, chosen_path, file_filter, require_file

@@ -14,8 +14,8 @@ from ..bl.field import map_settings
 from ..bl.host.threads import threads
 from ..bl.objects import model_tree, shapes, viewports
 from ..bl.objects.origin import KEY as ORIGIN_KEY
-from ..bl.project import library_rows, plan_mesh, project_settings, region_size, samples, settings
-from ..bl.scene import built_scene, data_objects, live
+from ..bl.project import library_rows, plan_mesh, project_settings, settings
+from ..bl.scene import built_scene, data_objects, live, region_size, samples
 from ..core import BuildFailed, Model, load_project
 from ..core.base.errors import counted
 from ..core.project.project_writer import save_project

@@ -24,24 +24,8 @@ from . import (
 )
 
 _MODULES = (
-    lists,
-    start,
-    rocks,
-    surfaces,
-    series,
-    field_data,
-    codes,
-    structures,
-    judge,
-    build,
-    view,
-    library,
-    results,
-    hole_validation,
-    ensemble,
-    planned_holes,
-    booleans,
-    menu,
+    *(lists, start, rocks, surfaces, series, field_data, codes, structures, judge, build, view, library),
+    *(results, hole_validation, ensemble, planned_holes, booleans, menu),
 )
 
 

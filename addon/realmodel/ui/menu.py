@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl.objects.boolean_job import OPERATIONS
-from ..bl.project import samples
+from ..bl.scene import samples
 
 # (operator without "realmodel.", text or None for its label, properties); None: a line
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})

@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..bl.project import method_settings, plan_mesh, region_size, settings
+from ..bl.project import method_settings, plan_mesh, settings
+from ..bl.scene import region_size
 from ..core.base.errors import counted
 from ..core.project.project import ROCK
 from ..core.settings.meshers import SIZE

@@ -11,9 +11,9 @@ import colorsys
 import bpy
 import numpy as np
 
+from ...core.drawing import color_scale
 from ...core.drawing.overlay import ColorKey
 from ...core.project.looks import encoded, hex_color, rgb
-from ...core.results import layer_values
 from ..objects import materials, viewports
 from ..project import compartments, library_rows, settings
 from . import bodies, modes, shades, stages
@@ -60,7 +60,7 @@ def key(scene):
     by, group = scene.realmodel.color_by, scene.realmodel
     if by in shades.TITLES:
         low, high = shades.limits(scene)
-        colors = layer_values.colors(np.linspace(0.0, 1.0, 64), (0.0, 1.0))
+        colors = color_scale.colors(np.linspace(0.0, 1.0, 64), (0.0, 1.0))
         title = f"{shades.TITLES[by]} ({group.units})"
         return ColorKey(title, limits=(low, high), colors=colors) if high > low else None
     if by == shades.COMPARTMENT:

@@ -8,10 +8,10 @@ import bpy
 import numpy as np
 
 from ...core.display.polygon_mesh import PolygonMesh
+from ...core.drawing import color_scale
 from ...core.drawing.overlay import ColorKey
 from ...core.ensembles import PERCENTILES, Probabilities
 from ...core.project.looks import hex_color
-from ...core.results import layer_values
 from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import offsets_from
 from ..objects.stored_arrays import StoredArrays
@@ -171,7 +171,7 @@ def key(scene):
 
 
 def _colors(count):
-    return layer_values.colors(np.linspace(0.0, 1.0, count), (0.0, 1.0))
+    return color_scale.colors(np.linspace(0.0, 1.0, count), (0.0, 1.0))
 
 
 def headings():

@@ -11,9 +11,9 @@ from ...core import Cancelled, RealModelError
 from ...core.base import work
 from ...core.display.field_shapes import field_levels, field_range, field_section, field_surfaces
 from ...core.display.polygon_mesh import PolygonMesh
+from ...core.drawing import color_scale
 from ...core.drawing.overlay import ColorKey
 from ...core.project.looks import hex_color
-from ...core.results import layer_values
 from ..host.debounce import DebouncedJob
 from ..host.threads import threads
 from ..objects import viewports
@@ -150,7 +150,7 @@ def _put(scene, kind, places, bands):
 
 
 def _colors():
-    return layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
+    return color_scale.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
 
 
 def _begin(name, _changed_at):

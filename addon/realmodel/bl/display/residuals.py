@@ -5,9 +5,9 @@ import json
 
 import numpy as np
 
+from ...core.drawing import color_scale
 from ...core.drawing.overlay import ColorKey
 from ...core.project.looks import hex_color
-from ...core.results import layer_values
 from ...core.results.surface_quality import residuals
 from ..host import caches
 from ..objects import exaggeration, marks, meshes
@@ -107,4 +107,4 @@ def key(scene):
 
 
 def _colors(count):
-    return layer_values.colors(np.linspace(-1.0, 1.0, count), (-1.0, 1.0), layer_values.DIVERGING)
+    return color_scale.colors(np.linspace(-1.0, 1.0, count), (-1.0, 1.0), color_scale.DIVERGING)

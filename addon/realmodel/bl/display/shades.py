@@ -10,6 +10,7 @@ import colorsys
 import bpy
 import numpy as np
 
+from ...core.drawing import color_scale
 from ...core.results import layer_values
 from ..host import versions
 from ..objects import materials, meshes, shapes, uncertainty
@@ -45,7 +46,7 @@ def apply(scene, by):
     limits = (0.0 if by in _FROM_ZERO else low, high)
     scene.realmodel.view.shade_limits = limits
     for obj, values in shaded:
-        write(obj.data, layer_values.colors(values, limits))
+        write(obj.data, color_scale.colors(values, limits))
 
 
 def limits(scene):

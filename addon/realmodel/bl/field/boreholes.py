@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...core.drawing import color_scale
 from ...core.drawing.overlay import ColorKey
 from ...core.project.looks import hex_color, rgb
-from ...core.results import layer_values
 from ...core.results.sections.hole_curves import limits_of, seen_values, shares_of
 from ...core.results.sections.section_holes import near_plane
 from ..display import bodies, colors, cuts
@@ -87,7 +87,7 @@ def key(scene):
         return ColorKey(name, [(word, rgb(colors.hue(n))) for n, word in enumerate(words)])
     if not between[1] > between[0]:
         return None
-    shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
+    shades = color_scale.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
     return ColorKey(name, limits=between, colors=shades)
 
 
@@ -161,7 +161,7 @@ def _scale_of(scene, name):
 
 def _shades(values, between):
     steps = np.rint(shares_of(values, between) * (_STEPS - 1))
-    shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))[:, :3].tolist()
+    shades = color_scale.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))[:, :3].tolist()
     codes = [hex_color(shade) for shade in shades]
     return [codes[int(step)] for step in steps.tolist()]
 

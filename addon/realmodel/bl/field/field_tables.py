@@ -18,10 +18,9 @@ from ...core.readers import (
     table_kind,
 )
 from ...core.readers.formats import HOLES, SHAPES, endings, format_of
+from ...core.readers.hole_values import is_log, read_interval_values
 from ...core.readers.object_input import is_object_file
-from ...core.readers.tables.hole_logs import is_log
 from ...core.readers.tables.hole_tables import COLLARS, OBSERVED, columns_in, normalized_name
-from ...core.readers.tables.intervals import read_interval_values
 from ...core.readers.tables.table_layout import plain_name
 from ...core.settings.data_files import HOLE_COLUMNS as OF_HOLES
 from ...core.settings.data_files import OBSERVATION_COLUMNS as OF_PLACES

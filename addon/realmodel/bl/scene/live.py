@@ -21,8 +21,8 @@ from ...core import Cancelled, RealModelError
 from ..host import caches
 from ..host.debounce import DebouncedJob
 from ..objects import stored_arrays, viewports
-from ..project import names, plan_mesh, project_settings, region_size, settings
-from . import build_job, built_scene, problems
+from ..project import names, plan_mesh, project_settings, settings
+from . import build_job, built_scene, problems, region_size
 
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 

@@ -41,10 +41,9 @@ _SPELLINGS = {
     "mm": ("mm", "millimeter", "millimeters", "millimetre", "millimetres"),
     "cm": ("cm", "centimeter", "centimeters", "centimetre", "centimetres"),
     "m": (
-        *("m", "mt", "mtr", "mtrs", "mts", "meter", "meters", "metre", "metres", "metro", "metros", "mètre"),
-        *("mètres", "metri", "internationalmeter", "internationalmetre", "masl", "mamsl", "mbsl"),
-        *("mnn", "mnhn"),
-        *("münn", "münhn", "müm", "mnap", "mahd", "msnm"),
+        *("m", "mt", "mtr", "mtrs", "mts", "meter", "meters", "metre", "metres", "metro", "metros"),
+        *("mètre", "mètres", "metri", "internationalmeter", "internationalmetre", "masl", "mamsl", "mbsl"),
+        *("mnn", "mnhn", "münn", "münhn", "müm", "mnap", "mahd", "msnm"),
     ),
     "km": ("km", "kms", "kilometer", "kilometers", "kilometre", "kilometres"),
     "in": ("in", "inch", "inches", '"'),
@@ -55,9 +54,8 @@ _SPELLINGS = {
     ),
     "us-ft": (
         *("usft", "ftus", "ussft", "sft", "usfoot", "usfeet", "footus", "feetus", "ussurveyfoot"),
-        "ussurveyfeet",
-        *("ussurveyft", "surveyfoot", "surveyfeet", "footussurvey", "feetussurvey", "ftussurvey", "surveyft"),
-        *("usfootsurvey", "ftsurvey"),
+        *("ussurveyfeet", "ussurveyft", "surveyfoot", "surveyfeet", "footussurvey", "feetussurvey"),
+        *("ftussurvey", "surveyft", "usfootsurvey", "ftsurvey"),
     ),
     "yd": ("yd", "yds", "yard", "yards"),
     "mi": ("mi", "mile", "miles", "statutemile", "statutemiles"),
@@ -67,13 +65,11 @@ _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spellin
 _NO_FACTOR = frozenset(
     (
         *("dm", "decimeter", "decimeters", "decimetre", "decimetres", "fathom", "fathoms", "fm", "ftm"),
-        "chain",
-        *("chains", "ch", "link", "links", "rod", "rods", "furlong", "furlongs", "nmi", "nauticalmile"),
-        *("nauticalmiles", "league", "leagues", "toise", "toises", "ms", "msec", "msecs", "millisecond"),
-        *("milliseconds", "s", "sec", "second", "seconds", "twt", "deg", "degs", "degree", "degrees"),
-        *("°", "dd"),
-        *("decimaldegrees", "rad", "radian", "radians", "gon", "grad", "dms", "arcsec", "arcsecond"),
-        "arcseconds",
+        *("chain", "chains", "ch", "link", "links", "rod", "rods", "furlong", "furlongs", "nmi"),
+        *("nauticalmile", "nauticalmiles", "league", "leagues", "toise", "toises", "ms", "msec", "msecs"),
+        *("millisecond", "milliseconds", "s", "sec", "second", "seconds", "twt", "deg", "degs", "degree"),
+        *("degrees", "°", "dd", "decimaldegrees", "rad", "radian", "radians", "gon", "grad", "dms"),
+        *("arcsec", "arcsecond", "arcseconds"),
     )
 )
 _SIGNS = r"[\s._(){}<>\[\]-]+"  # which spellings are without

@@ -38,9 +38,8 @@ from .model_data import ModelData
 RECORDED: tuple[type, ...] = (
     *(RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body, Sheet),
     *(BuildWarning, InputRefused, Project, Library, Property, Interpolation, Variogram, Structure),
-    *(SeriesField, Lattice, ScalarField, SolvedField, Anisotropy),
-    *(MapLayer, MeshFile, PointFile, DipFile, Dips, SpaceDips, Series),
-    *(Observations, Bounds, LeftOut, Origin, SurfaceData, IntervalValues),
+    *(SeriesField, Lattice, ScalarField, SolvedField, Anisotropy, MapLayer, MeshFile, PointFile, DipFile),
+    *(Dips, SpaceDips, Series, Observations, Bounds, LeftOut, Origin, SurfaceData, IntervalValues),
 )
 RECORD = "record"  # the table of objects; its arrays are record_0, record_1, ...
 _STORED = StoredClasses(RECORDED)

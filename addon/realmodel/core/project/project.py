@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import builtins
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..base.atomic import make_folder
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
@@ -449,6 +448,8 @@ class Project(Compared):
     for it name.
     """
 
+    save: ClassVar[Callable[..., Path]]  # set by project_writer, which knows projects
+
     name: str = declared(kind="name", is_needed=True)
     rocks: list[Rock] = declared(kind="tables", key="rock", of=Rock, is_needed=True)
     library: Library | None = declared(kind="library")
@@ -482,21 +483,6 @@ class Project(Compared):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
         return [Path(file) for file in files if file is not None]
-
-    def save(self, folder: str | Path) -> Path:
-        """Writes the project into a folder, which is made if needed: project.toml, whose path is returned,
-        and beside it the arrays as tables and meshes. load_project of it, or of the folder, is the same
-        project. Files that were there under these names are replaced; all appear whole or none does.
-
-        Raises UsageError where a file that the project names was not read yet (the project of its built
-        model has all), InputRefused for a project that could not be built, OutputFailed.
-        """
-        from .project_writer import save_project  # it knows projects
-
-        path = Path(folder) / PROJECT_FILE
-        make_folder(folder)
-        save_project(self, path)
-        return path
 
     def names_of_units(self, rock: Rock) -> list[str]:
         """What a name in a table of a rock mass may mean: its blocks and surfaces, and the bodies."""

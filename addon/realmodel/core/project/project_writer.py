@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.atomic import Outputs
+from ..base.atomic import Outputs, make_folder
 from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..readers import UnitNames
@@ -25,7 +25,7 @@ from ..settings.dips import Dips, SpaceDips, as_given
 from .entry import changed_values
 from .library import Library
 from .plan_input import is_several, map_layer
-from .project import Project, Rock, Surface
+from .project import PROJECT_FILE, Project, Rock, Surface
 from .project_checks import check_project
 from .structure_entries import Body, Fault
 
@@ -50,6 +50,23 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
         with outputs.file(path) as file:
             file.write(("\n".join(lines) + "\n").encode())
     return [path, *files.written]
+
+
+def _save(self: Project, folder: str | Path) -> Path:
+    """Writes the project into a folder, which is made if needed: project.toml, whose path is returned,
+    and beside it the arrays as tables and meshes. load_project of it, or of the folder, is the same
+    project. Files that were there under these names are replaced; all appear whole or none does.
+
+    Raises UsageError where a file that the project names was not read yet (the project of its built
+    model has all), InputRefused for a project that could not be built, OutputFailed.
+    """
+    path = Path(folder) / PROJECT_FILE
+    make_folder(folder)
+    save_project(self, path)
+    return path
+
+
+Project.save = _save
 
 
 class _Beside:

@@ -27,8 +27,8 @@ _PROJECT, _LIBRARY, _PROPOSAL, _GROUND = "project.toml", "library.toml", "propos
 _WIDTH = 110  # of comments
 
 
-def save_folder(project: Project, proposal: Proposal, folder: str | Path) -> list[Path]:
-    """Writes a proposed project to a new folder. Raises OutputFailed."""
+def save_folder(project: Project, proposal: Proposal, folder: str | Path) -> Path:
+    """Writes a proposed project to a new folder; the path of its project file. Raises OutputFailed."""
     folder = Path(folder)
     require_new(folder)
     with Outputs() as outputs, outputs.folder(folder, _PROJECT) as waiting:
@@ -38,8 +38,7 @@ def save_folder(project: Project, proposal: Proposal, folder: str | Path) -> lis
         files.write(_PROPOSAL, json.dumps(_as_json(proposal), indent=1, ensure_ascii=False).encode())
         files.write(_PROJECT, text.encode())
         load_project(waiting / _PROJECT)  # what it says is right
-        names = sorted(files.taken)
-    return [folder / name for name in names]
+    return folder / _PROJECT
 
 
 def require_new(folder: Path) -> None:

@@ -43,9 +43,10 @@ class ProposedProject(Project):
 
     proposal: Proposal = field(default_factory=lambda: Proposal([]), compare=False)
 
-    def save(self, folder: str | Path) -> list[Path]:
+    def save(self, folder: str | Path) -> Path:
         """Writes project.toml, whose comments say why each choice was made, the tables, the library and
-        proposal.json to a new folder, whole or not at all. Returns the files. Raises OutputFailed."""
+        proposal.json to a new folder, whole or not at all; returns the path of project.toml. Raises
+        OutputFailed."""
         return save_folder(self, self.proposal, folder)
 
 

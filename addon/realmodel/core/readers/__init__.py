@@ -12,10 +12,10 @@ from .mesh_input import is_mesh_file, read_mesh
 from .meshes.off import read_off
 from .object_input import objects_in
 from .point_input import PointData, read_point_file, read_points
+from .table_kind import TABLE_KINDS, table_contents, table_kind
 from .tables.boreholes import Picks
 from .tables.dips import gradient_of, names_units, normal_of, read_dips, read_dips_of_rock, read_space_dips
 from .tables.observations import read_observed_places
-from .tables.table_kind import TABLE_KINDS, table_contents, table_kind
 from .tables.table_preview import TablePreview, preview_table
 from .tables.unit_names import UnitNames
 

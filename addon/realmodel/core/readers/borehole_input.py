@@ -11,11 +11,12 @@ from ..base.errors import InputRefused
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
+from .hole_files import read_hole_files
+from .hole_values import read_logs
 from .object_input import hole_sheets, is_object_file, read_hole_objects
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, picks_of_tables
 from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
-from .tables.hole_logs import read_logs
 from .tables.hole_repair import repair
 from .tables.holes import Holes
 from .tables.interval_values import IntervalValues
@@ -66,13 +67,14 @@ def read_repaired(
 ) -> HoleTables:
     """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
     InputRefused naming file and line."""
-    sheets, warnings = None, []
     if of_objects := [file for file in given.files if is_object_file(file)]:
         refuse_keys(of_objects[0], "has objects", given.only_for_tables)
         sheets, warnings = hole_sheets(given, of_objects[0], model_unit)
         tables_of: dict[str, Any] = dict.fromkeys(MEANINGS) | dict.fromkeys(sheets, of_objects[0])
         given = replace(given, file=None, layer=None, units=None, columns={}, **tables_of)
-    tables = read_hole_rows(given, model_unit, step, sheets=sheets)
-    tables.warnings += warnings
+        tables = read_hole_rows(given, model_unit, step, sheets=sheets)
+        tables.warnings += warnings
+    else:
+        tables = read_hole_files(given, model_unit, step)
     repair(tables, units)
     return tables

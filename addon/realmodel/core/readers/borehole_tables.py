@@ -15,8 +15,8 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from ..settings.method_options import OptionRefused
 from .borehole_input import read_repaired
+from .hole_values import read_logs
 from .tables.hole_data import HoleTables
-from .tables.hole_logs import read_logs
 from .tables.hole_problems import HoleProblem
 from .tables.hole_tables import Row
 from .tables.holes import Holes, end_of

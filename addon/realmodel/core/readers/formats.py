@@ -29,8 +29,10 @@ from .maps.geopackage import geopackage_layers, is_geopackage, read_geopackage
 from .maps.shapefile_reader import is_shapefile, read_shapefile
 from .maps.wkt import begins_as_wkt_file, read_wkt
 from .meshes.datamine import begins_as_datamine, read_datamine
+from .meshes.dxf import begins_as_dxf, read_dxf
 from .meshes.gltf_mesh import begins_as_gltf, read_gltf
 from .meshes.gmsh_mesh import begins_as_msh, read_msh
+from .meshes.gocad import begins_as_gocad, read_gocad
 from .meshes.landxml import begins_as_landxml, read_landxml
 from .meshes.leapfrog import begins_as_leapfrog, read_leapfrog
 from .meshes.obj_mesh import begins_as_obj, read_obj
@@ -40,10 +42,8 @@ from .meshes.stl_mesh import begins_as_stl, read_stl
 from .meshes.surpac import begins_as_dtm, begins_as_str, read_dtm, read_str
 from .meshes.vtk_legacy import begins_as_vtk, begins_as_vtm, read_vtk, read_vtm
 from .meshes.vtk_mesh import begins_as_vtk_xml, read_vtk_xml
-from .objects.dxf import begins_as_dxf, read_dxf
 from .objects.geo_object import as_a_whole
 from .objects.geoh5_file import begins_as_geoh5, open_geoh5
-from .objects.gocad import begins_as_gocad, read_gocad
 from .objects.omf_file import begins_as_omf, open_omf
 from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
 from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
@@ -51,9 +51,9 @@ from .rasters.geotiff import is_tiff, read_geotiff
 from .rasters.irap_grid import is_irap_grid, read_irap_grid
 from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
 from .tables.dialects import DIALECTS
+from .tables.dialects.workbook import begins_as_workbook, sheet_names
 from .tables.points import begins_as_array, read_point_array, read_point_rows
 from .tables.sticks import begins_as_sticks, read_sticks
-from .tables.workbook import begins_as_workbook, sheet_names
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"

@@ -28,7 +28,7 @@ from .objects.geo_object import (
     object_units,
 )
 from .tables.boreholes import Pick, Picks
-from .tables.hole_tables import INTERVALS, PICKS, Sheet
+from .tables.hole_tables import INTERVALS, PICKS, RawTable
 from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
 from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
@@ -161,7 +161,7 @@ def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_
     return picks
 
 
-def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[dict[str, Sheet], list[str]]:
+def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[dict[str, RawTable], list[str]]:
     """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
     those that it has, in the model's unit; and warnings, sentences. Raises as read_object."""
     rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
@@ -192,7 +192,7 @@ def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[dict
         "intervals": ("hole", "from", "to", "block"),
         "picks": ("hole", "x", "y", "z", "surface"),
     }
-    sheets = {kind: Sheet(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
+    sheets = {kind: RawTable(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
     return sheets, warnings
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ...base.errors import InputRefused
 from ...base.text import BOM, read_text
-from ..tables.hole_tables import Sheet
+from ..tables.hole_tables import RawTable
 
 _KINDS = {"collars": ("LOCA", "HOLE"), "intervals": ("GEOL",), "survey": ("HORN", "HDPH")}
 # Where a column has no value in any row, the other one is meant.
@@ -44,7 +44,7 @@ def begins_as_ags(head: bytes, _size: int = 0) -> bool:
     return text.startswith((b'"GROUP"', b'"**', b"**PROJ", b"GROUP,"))
 
 
-def read_ags(file: Path) -> dict[str, Sheet]:
+def read_ags(file: Path) -> dict[str, RawTable]:
     """The collars of a file, its intervals and survey where it has them. Raises InputRefused naming the
     line."""
     groups = _groups(file)
@@ -104,7 +104,7 @@ def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:
         before[at] += entry
 
 
-def _sheet(group: _Group) -> Sheet:
+def _sheet(group: _Group) -> RawTable:
     names = list(group.names)
     for name, other in _INSTEAD.items():
         if (
@@ -113,7 +113,7 @@ def _sheet(group: _Group) -> Sheet:
             and not any(_entry(row, names.index(name)) for _, row in group.rows)
         ):
             names[names.index(name)], names[names.index(other)] = "", name
-    return Sheet(names, group.rows, group.line, group.units, _choice(names, group.rows))
+    return RawTable(names, group.rows, group.line, group.units, _choice(names, group.rows))
 
 
 def _choice(names: list[str], rows: list[tuple[int, list[str]]]) -> str:

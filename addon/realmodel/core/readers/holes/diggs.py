@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 
 from ...base.errors import InputRefused
 from ...base.text import local_name, no_step, parse_xml, read_bytes
-from ..tables.hole_tables import Sheet
+from ..tables.hole_tables import RawTable
 
 _HOLES = ("Borehole", "TrialPit", "Sounding")
 _CODES = ("classificationCode", "classificationSymbol", "classificationName", "legendCode", "lithDescription")
@@ -25,7 +25,7 @@ def begins_as_diggs(head: bytes, _size: int = 0) -> bool:
     return b"<" in head[:8] and b"Diggs" in head
 
 
-def read_diggs(file: Path) -> dict[str, Sheet]:
+def read_diggs(file: Path) -> dict[str, RawTable]:
     """The collars and intervals of a file. Raises InputRefused."""
     root = parse_xml(file, read_bytes(file), no_step)
     names: dict[str, str] = {}
@@ -62,10 +62,10 @@ def read_diggs(file: Path) -> dict[str, Sheet]:
         if not rows:
             raise InputRefused(f"it has no {what}", file=file)
     return {
-        "collars": Sheet(
+        "collars": RawTable(
             ("hole", "x", "y", "z", "end"), collars, 1, ("", unit_of_plan, unit_of_plan, unit_of_height, unit)
         ),
-        "intervals": Sheet(("hole", "from", "to", "block"), intervals, 1, ("", unit, unit, "")),
+        "intervals": RawTable(("hole", "from", "to", "block"), intervals, 1, ("", unit, unit, "")),
     }
 
 

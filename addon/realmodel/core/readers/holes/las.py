@@ -18,7 +18,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.text import BOM, read_text
 from ...base.units import unit_of
-from ..tables.hole_tables import Sheet
+from ..tables.hole_tables import RawTable
 from ..tables.table_layout import is_number
 
 _ITEM = re.compile(r"\s*([^.]*?)\s*\.([^\s:]*)\s*(.*)$")
@@ -56,7 +56,7 @@ def begins_as_las(head: bytes, _size: int = 0) -> bool:
     return first[:2].upper() == b"~V"
 
 
-def read_las(file: Path) -> dict[str, Sheet]:
+def read_las(file: Path) -> dict[str, RawTable]:
     """The curves of a file as values of intervals, which meet between depths; and its collar, tops and
     directions where it has them. Raises InputRefused naming the line."""
     sections = _sections(file)
@@ -73,7 +73,7 @@ def read_las(file: Path) -> dict[str, Sheet]:
         named = {"MD": "depth", "AZIM": "azimuth", "DEVI": "inclination"}
         names = [named.get(name, "") for name in ways.names]
         rows = [(line, [hole, *row]) for line, row in ways.rows]
-        sheets["survey"] = Sheet(["hole", *names], rows, ways.line, ["", *ways.units])
+        sheets["survey"] = RawTable(["hole", *names], rows, ways.line, ["", *ways.units])
     return sheets
 
 
@@ -127,7 +127,7 @@ def _section(sections: list[_Section], letter: str) -> _Section:
     return _Section("", 0)
 
 
-def _curves(file: Path, sections: list[_Section], hole: str) -> Sheet | None:
+def _curves(file: Path, sections: list[_Section], hole: str) -> RawTable | None:
     """The curves of a file; None where it has none."""
     titles = {"C": "A", "LOG_DEFINITION": "LOG"}
     curve_sections = [
@@ -165,7 +165,7 @@ def _curves(file: Path, sections: list[_Section], hole: str) -> Sheet | None:
     ]
     length = _FEET.get(unit.upper(), unit)
     units = ["", length, length, *(unit for _, unit, *_ in definition.items[1:])]
-    return Sheet(["hole", "from", "to", *names[1:]], entries, definition.line, units)
+    return RawTable(["hole", "from", "to", *names[1:]], entries, definition.line, units)
 
 
 def _known(values: list[str], null: str) -> list[str]:
@@ -210,7 +210,7 @@ def _rows(file: Path, data: _Section, count: int, version: _Section) -> list[tup
     return rows
 
 
-def _data(file: Path, sections: list[_Section], kind: str, version: _Section) -> Sheet | None:
+def _data(file: Path, sections: list[_Section], kind: str, version: _Section) -> RawTable | None:
     """The table of a kind of data of LAS 3; None where there is none."""
     definition = next((s for s in sections if s.title.upper().startswith(f"{kind}_DEFINITION")), None)
     data = next((s for s in sections if _is_data(s) and s.title.upper().startswith(kind)), None)
@@ -218,20 +218,20 @@ def _data(file: Path, sections: list[_Section], kind: str, version: _Section) ->
         return None
     names = [mnemonic.upper() for mnemonic, *_ in definition.items]
     units = [_FEET.get(unit.upper(), unit) for _, unit, *_ in definition.items]
-    return Sheet(names, _rows(file, data, len(names), version), definition.line, units)
+    return RawTable(names, _rows(file, data, len(names), version), definition.line, units)
 
 
-def _tops(sections: list[_Section], tops: Sheet, hole: str) -> Sheet:
+def _tops(sections: list[_Section], tops: RawTable, hole: str) -> RawTable:
     """Tops as picks: by depth, or by height where the file counts them from the sea."""
     parameters = next((s for s in sections if s.title.upper().startswith("TOPS_PARAMETER")), _Section("", 0))
     from_sea = "SUB" in parameters.item("TOPDR")[0].upper()
     named = {"TOPT": "elevation" if from_sea else "depth", "TOPN": "surface"}
     names = [named.get(name, "") for name in tops.names]
     rows = [(line, [hole, *row]) for line, row in tops.rows]
-    return Sheet(["hole", *names], rows, tops.line, ["", *tops.units])
+    return RawTable(["hole", *names], rows, tops.line, ["", *tops.units])
 
 
-def _collar(sections: list[_Section], hole: str) -> Sheet | None:
+def _collar(sections: list[_Section], hole: str) -> RawTable | None:
     """The collar of the well; None where the file does not say its place."""
     values, units = [hole], [""]
     for mnemonics in (_X, _Y, _Z, _END):
@@ -240,4 +240,4 @@ def _collar(sections: list[_Section], hole: str) -> Sheet | None:
         units.append(_FEET.get(unit.upper(), unit))
     if not all(values[1:4]):
         return None
-    return Sheet(("hole", "x", "y", "z", "end"), [(sections[0].line, values)], sections[0].line, units)
+    return RawTable(("hole", "x", "y", "z", "end"), [(sections[0].line, values)], sections[0].line, units)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...base.errors import InputRefused
 from ...base.text import BOM, read_text
-from ..tables.hole_tables import Sheet, column_key
+from ..tables.hole_tables import RawTable, column_key
 from ..tables.table_layout import fields
 
 _PLACE = ("x", "y", "z")
@@ -23,7 +23,7 @@ def begins_as_well_tops(head: bytes, _size: int = 0) -> bool:
     return head.removeprefix(BOM).lstrip().lower().startswith(b"# petrel well tops")
 
 
-def read_well_tops(file: Path) -> dict[str, Sheet]:
+def read_well_tops(file: Path) -> dict[str, RawTable]:
     """The picks of a file: at their places where it has them, else by depth. Raises InputRefused naming the
     line."""
     names: list[str] = []
@@ -50,7 +50,7 @@ def read_well_tops(file: Path) -> dict[str, Sheet]:
     taken_out = _DEPTHS if has_places else _PLACE
     names = ["" if key in taken_out else name for name, key in zip(names, keys, strict=True)]
     of_columns = [units.get(key, units["depth"] if key in ("z", "md") else "") for key in keys]
-    return {"picks": Sheet(names, rows, header_line, of_columns)}
+    return {"picks": RawTable(names, rows, header_line, of_columns)}
 
 
 def _note_unit(comment: str, units: dict[str, str]) -> None:

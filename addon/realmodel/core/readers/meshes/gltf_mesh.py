@@ -24,12 +24,8 @@ _TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126:
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _ALLOWED = (
-    "KHR_mesh_quantization",
-    "KHR_materials_",
-    "KHR_texture_",
-    "KHR_technique",
-    "KHR_lights_",
-    "EXT_texture_",
+    *("KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "KHR_technique", "KHR_lights_"),
+    *("EXT_texture_",),
 )
 _DEEPEST = 64
 _Z_UP = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])

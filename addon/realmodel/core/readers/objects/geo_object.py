@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +15,6 @@ from numpy.typing import ArrayLike
 from ...base.text import Step, no_step
 from ...base.units import stated_units
 from ...settings.data_files import MeshFile, PointFile
-
-if TYPE_CHECKING:
-    from ..meshes.triangle_mesh import TriangleMesh
 
 POINTS, LINES, SURFACE, HOLE = "points", "lines", "surface", "borehole"
 STICK = "stick"  # the column with the number of the line that a vertex of lines is of
@@ -146,8 +143,17 @@ def stated_text(unit: str | None) -> str | None:
     return None if plain.lower() in ("", "none", "unknown", "unitless", "undefined") else plain
 
 
+class WithUnit(Protocol):
+    """A GeoObject or a TriangleMesh, whose file may say a unit."""
+
+    @property
+    def unit(self) -> str | Mapping | None: ...
+    @property
+    def said_unit(self) -> str | None: ...
+
+
 def object_units(
-    given: PointFile | MeshFile, obj: GeoObject | TriangleMesh, model_unit: str
+    given: PointFile | MeshFile, obj: WithUnit, model_unit: str
 ) -> tuple[tuple[str | None, str | None], list[str]]:
     """The units of x and y, and of z, in which an object or a mesh is read, None for that of the model, and
     warnings. Raises InputRefused where it states one that is not known."""

@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ...base.units import factor, factors, other_units, unit_of, unit_of_column, unknown_unit
 from ...settings.data_files import Boreholes
-from ..formats import HOLES, format_of
 from .hole_problems import HoleProblem
 from .hole_tables import (
     COLLARS,
@@ -22,9 +20,9 @@ from .hole_tables import (
     LENGTHS,
     SURVEY,
     Columns,
-    Header,
+    RawTable,
     Row,
-    Sheet,
+    TableHeader,
     column_key,
     rows,
     sheet_rows,
@@ -70,14 +68,13 @@ def read_hole_rows(
     model_unit: str,
     step: Step = no_step,
     needed: tuple[str, ...] | None = None,
-    sheets: dict[str, Sheet] | None = None,
+    sheets: dict[str, RawTable] | None = None,
 ) -> HoleTables:
     """The rows of the tables of some boreholes as they are. needed: the columns of intervals that there must
-    be; None: with the block. sheets: tables of files that are read already. Raises InputRefused naming file
-    and line."""
+    be; None: with the block. sheets: tables of files that hold several, by their kind. Raises
+    InputRefused naming file and line."""
     required = _NEEDED | ({} if needed is None else {"intervals": needed})
-    if sheets is None:
-        boreholes, sheets = _whole_files(boreholes)
+    sheets = sheets or {}
     tables = HoleTables(boreholes)
     for kind, known in MEANINGS.items():
         file = getattr(boreholes, kind)
@@ -100,36 +97,10 @@ def read_hole_rows(
     return tables
 
 
-def _has_blocks(boreholes: Boreholes, sheet: Sheet) -> bool:
+def _has_blocks(boreholes: Boreholes, sheet: RawTable) -> bool:
     """Whether a table has a column that names blocks."""
     keys = set(map(column_key, sheet.names))
     return "block" in boreholes.columns or not keys.isdisjoint(map(column_key, INTERVALS["block"]))
-
-
-def _whole_files(boreholes: Boreholes) -> tuple[Boreholes, dict[str, Sheet]]:
-    """The same with the tables of files that hold all of them in the places of those that are not named, and
-    these tables by their kind."""
-    sheets: dict[str, Sheet] = {}
-    for file in dict.fromkeys(boreholes.files[len(boreholes.log_files) :]):
-        file_format = format_of(file, HOLES)
-        if file_format is None:
-            if file == boreholes.file:
-                what = "it does not hold all tables of boreholes"
-                advice = "name its tables: collars = ..., intervals = ..., picks = ..."
-                raise InputRefused(what, file=file, advice=advice)
-            continue
-        read = file_format.read(file)
-        said = {kind: getattr(boreholes, kind) for kind in MEANINGS}
-        others: dict[str, Any] = {
-            kind: table for kind, table in said.items() if table is not None and Path(table) != file
-        }
-        here = [kind for kind in read if kind not in others]
-        sheets |= {kind: read[kind] for kind in here}
-        tables: dict[str, Any] = dict.fromkeys(MEANINGS) | others | dict.fromkeys(here, file)
-        boreholes = replace(boreholes, file=None, **tables)
-        if boreholes.downward_dip is None and "survey" in sheets:
-            boreholes = replace(boreholes, downward_dip=file_format.downward_dip)
-    return boreholes, sheets
 
 
 def _to_one_unit(tables: HoleTables, table_rows: list[Row], model_unit: str) -> dict[str, float]:
@@ -162,7 +133,7 @@ def _to_one_unit(tables: HoleTables, table_rows: list[Row], model_unit: str) -> 
     return factors_of
 
 
-def _contradicted(header: Header, units: Mapping, model_unit: str) -> list[str]:
+def _contradicted(header: TableHeader, units: Mapping, model_unit: str) -> list[str]:
     """The warnings about units in a header other than those that the user says."""
     columns: dict[str, str | None] = {}
     for meaning, text in header.units.items():

@@ -24,32 +24,12 @@ from .table_layout import Expected, TableLayout, column_number, fields, is_numbe
 # Spanish and Dutch, and those of Leapfrog, Surpac, Datamine, Micromine, Vulcan, gINT, AGS, GSWA, DINO and
 # swisstopo. A column has one meaning in a table; names stand in the order in which they are looked for.
 _HOLE_NAMES = (
-    *(
-        "hole",
-        "hole_id",
-        "bhid",
-        "dhid",
-        "borehole",
-        "well",
-        "well_id",
-        "hole_name",
-        "hole_no",
-        "hole_number",
-    ),
-    *("borehole_id", "borehole_name", "borehole_no", "bore", "bore_id", "drillhole", "drillhole_id", "ddh"),
-    *("collar_id", "well_name", "well_identifier", "wellbore", "uwi", "dino_nr", "nitg_nr", "nitg"),
-    *(
-        "Bohrung",
-        "Bohrung Nr",
-        "Bohrungsname",
-        "Bohrungsnummer",
-        "Bohrloch",
-        "Bohrprofil",
-        "Bohr_ID",
-        "Sondage",
-    ),
-    *("nom_sondage", "Forage", "nom_forage", "Sondeo", "Pozo", "Barreno", "Boring", "Boringnummer"),
-    *("Boornummer", "Boorgat"),
+    *("hole", "hole_id", "bhid", "dhid", "borehole", "well", "well_id", "hole_name", "hole_no"),
+    *("hole_number", "borehole_id", "borehole_name", "borehole_no", "bore", "bore_id", "drillhole"),
+    *("drillhole_id", "ddh", "collar_id", "well_name", "well_identifier", "wellbore", "uwi", "dino_nr"),
+    *("nitg_nr", "nitg", "Bohrung", "Bohrung Nr", "Bohrungsname", "Bohrungsnummer", "Bohrloch"),
+    *("Bohrprofil", "Bohr_ID", "Sondage", "nom_sondage", "Forage", "nom_forage", "Sondeo", "Pozo"),
+    *("Barreno", "Boring", "Boringnummer", "Boornummer", "Boorgat"),
 )
 _PLACE_NAMES = ("location_id", "loca_id", "loc_id", "point_id", "site_id", "original_name", "name", "id")
 _HOLE = (*_HOLE_NAMES, *_PLACE_NAMES)
@@ -62,17 +42,9 @@ PICKS = {
         *("location_x", "x_coordinate", "x_coordinaat", "x_koordinate", "x_lambert", "xl", *AXES["x"]),
     ),
     "y": (
-        *(
-            "y",
-            "northing",
-            "north",
-            "loca_natn",
-            "hole_natn",
-            "national_grid_northing",
-            "y_collar",
-            "collar_y",
-        ),
-        *("location_y", "y_coordinate", "y_coordinaat", "y_koordinate", "y_lambert", "yl", *AXES["y"]),
+        *("y", "northing", "north", "loca_natn", "hole_natn", "national_grid_northing", "y_collar"),
+        *("collar_y", "location_y", "y_coordinate", "y_coordinaat", "y_koordinate", "y_lambert", "yl"),
+        *AXES["y"],
     ),
     "z": (
         *("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height", "ground_level", "loca_gl"),
@@ -133,32 +105,11 @@ INTERVALS = {
         "depth",
     ),
     "to": (
-        *(
-            "to",
-            "depth_to",
-            "to_depth",
-            "end",
-            "bottom",
-            "base",
-            "bottom_depth",
-            "depth_bottom",
-            "base_depth",
-        ),
-        *("depth_base", "depth_to_base", "geol_base", "lower_depth", "end_depth", "depth_end", "interval_to"),
-        *(
-            "md_to",
-            "to_md",
-            "Bis",
-            "Tiefe bis",
-            "bis Tiefe",
-            "Tiefe unten",
-            "Hasta",
-            "prof_hasta",
-            "à",
-            "Mur",
-        ),
-        *("prof_mur", "prof_fin", "Profondeur mur", "Tot", "Onderkant", "Onderkant laag", "diepte_tot"),
-        "Basis",
+        *("to", "depth_to", "to_depth", "end", "bottom", "base", "bottom_depth", "depth_bottom"),
+        *("base_depth", "depth_base", "depth_to_base", "geol_base", "lower_depth", "end_depth"),
+        *("depth_end", "interval_to", "md_to", "to_md", "Bis", "Tiefe bis", "bis Tiefe", "Tiefe unten"),
+        *("Hasta", "prof_hasta", "à", "Mur", "prof_mur", "prof_fin", "Profondeur mur", "Tot", "Onderkant"),
+        *("Onderkant laag", "diepte_tot", "Basis"),
     ),
     "block": _BLOCK,
     **DIRECTIONS,
@@ -201,7 +152,7 @@ class Reading(Protocol):
 
 
 @dataclass(frozen=True)
-class Header:
+class TableHeader:
     """names: of the columns as they are written, none without a header. line: its number, 1 without one.
     columns: the numbers of the columns from 0, by their meaning. units: of columns, as they are written, by
     their meaning."""
@@ -214,7 +165,7 @@ class Header:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class RawTable:
     """A table in a file that holds several: the names of its columns, the lines and entries of its rows, what
     units its columns have, as they are written, "" for none, and what was chosen for the user to know."""
 
@@ -227,7 +178,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Row:
-    header: Header
+    header: TableHeader
     line: int
     entries: list[str]
     decimal: str = "."
@@ -305,9 +256,9 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
     layout = table.layout
     names, name_line = layout.names or (), layout.name_line or 1
     columns = _columns(given, file, layout, known)
-    _require(given, Header(file, names, name_line, columns), needed)
+    _require(given, TableHeader(file, names, name_line, columns), needed)
     written = {meaning: unit_text_of_column(names[at]) for meaning, at in columns.items() if at < len(names)}
-    header = Header(file, names, name_line, columns, written)
+    header = TableHeader(file, names, name_line, columns, written)
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
@@ -326,11 +277,13 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
         yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
 
 
-def sheet_rows(given: Reading, file: Path, sheet: Sheet, known: Columns, needed: Sequence[str]) -> list[Row]:
+def sheet_rows(
+    given: Reading, file: Path, sheet: RawTable, known: Columns, needed: Sequence[str]
+) -> list[Row]:
     """The same of a table in a file that holds several."""
     columns = _columns(given, file, TableLayout(",", tuple(sheet.names), 0, 0, sheet.line), known)
     units = {meaning: sheet.units[at] for meaning, at in columns.items() if at < len(sheet.units)}
-    header = Header(file, sheet.names, sheet.line, columns, units)
+    header = TableHeader(file, sheet.names, sheet.line, columns, units)
     _require(given, header, needed)
     return [Row(header, line, entries) for line, entries in sheet.rows]
 
@@ -438,7 +391,7 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
     return columns
 
 
-def _require(reading: Reading, header: Header, needed: Sequence[str]) -> None:
+def _require(reading: Reading, header: TableHeader, needed: Sequence[str]) -> None:
     for column in needed:
         if column not in header.columns:
             called = reading.columns.get(column)

@@ -62,7 +62,7 @@ def _texts(array: np.ndarray) -> np.ndarray:
 
 
 def column_values(read: Sequence[tuple[str, list[str], str]], at: int) -> np.ndarray:
-    """(N,) a column of rows (hole, entries, decimal sign): numbers where all of its values are, else texts."""
+    """(N,) a column of rows (hole, entries, decimal sign): numbers where all values are, else texts."""
     entries = [row[at].strip() if at < len(row) else "" for _, row, _ in read]
     decimals = [decimal for _, _, decimal in read]
     lacking = [entry.lower() in NO_VALUE for entry in entries]

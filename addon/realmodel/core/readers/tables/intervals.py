@@ -13,15 +13,8 @@ import numpy as np
 
 from ...base.algebra import norm
 from ...base.errors import InputRefused
-from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT
-from ...settings.data_files import Boreholes
-from .hole_data import HoleTables, read_hole_rows
-from .hole_logs import read_logs
-from .hole_repair import repair
 from .hole_tables import Row
 from .holes import Holes
-from .interval_values import IntervalValues, column_values
 from .observations import LeftOut, Observations, unknown_block
 from .unit_names import UnitNames
 
@@ -222,52 +215,3 @@ def tops_of(observations: Observations) -> list[tuple[str, np.ndarray]]:
     blocks = observations.blocks
     first = [row for row in range(len(blocks)) if row == 0 or blocks[row] != blocks[row - 1]]
     return [(str(blocks[row]), observations.places[row]) for row in first]
-
-
-_PLACES = ("hole", "x", "y", "z", "from", "to", "azimuth", "dip", "inclination")  # columns that say where
-
-
-def read_interval_values(
-    given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step
-) -> IntervalValues:
-    """The columns of the table of intervals of some boreholes that do not say where an interval is, in the
-    order of the table, and the curves of their logs. A column is of numbers where all its values are numbers.
-    Rows without a depth, and of holes without a collar, are left out. Raises InputRefused naming file and
-    line."""
-    tables = read_hole_rows(given, model_unit, step, ("hole", "from", "to"))
-    repair(tables)
-    return interval_values(tables, model_unit)
-
-
-def interval_values(tables: HoleTables, model_unit: str) -> IntervalValues:
-    """The same of tables that are repaired."""
-    holes = Holes(tables)
-    parts = read_logs(tables, holes, model_unit)
-    rows = [row for row in tables.intervals or () if row.has("from") and row.has("to")]
-    if rows:
-        parts.insert(0, _values_of(rows, holes, tables.scale(model_unit)))
-    if not parts:
-        raise InputRefused("there are no intervals in it", file=tables.boreholes.intervals)
-    return IntervalValues.joined(parts)
-
-
-def _values_of(rows: list[Row], holes: Holes, scale: np.ndarray) -> IntervalValues:
-    read, ends, depths = [], [], []
-    for row in rows:
-        between = row.number("from"), row.number("to")
-        ends.append([holes.place(row, depth, scale) for depth in between])
-        depths.append(between)
-        read.append((row.text("hole"), row.entries, row.decimal))
-    columns = {name: column_values(read, at) for at, name in enumerate(_names(rows[0])) if name}
-    places = np.array(ends, np.float64)
-    texts = np.array([hole for hole, _, _ in read], str)
-    return IntervalValues(texts, places[:, 0], places[:, 1], np.array(depths), columns)
-
-
-def _names(row: Row) -> list[str]:
-    """The names of the columns as they are written; empty for those that say where an interval is."""
-    names = [name.strip() for name in row.header.names]
-    for column in _PLACES:
-        if column in row.columns and row.columns[column] < len(names):
-            names[row.columns[column]] = ""
-    return names

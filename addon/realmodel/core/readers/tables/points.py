@@ -26,6 +26,7 @@ from ...base.units import unit_text_of_column
 from ...base.work import NativeError, native_module, on_threads
 from ...settings.data_files import PointFile, list_of
 from .dialects import DIALECTS
+from .dialects.workbook import begins_as_workbook, sheet_text
 from .table_layout import (
     Expected,
     TableLayout,
@@ -36,7 +37,6 @@ from .table_layout import (
     plain_name,
     table_layout,
 )
-from .workbook import begins_as_workbook, sheet_text
 
 _MOST_THREADS = 8
 _GROUPED = r"[+-]?(\d{{1,3}}(?:{0}\d{{3}})+)({1}\d*)?"  # by a sign between thousands, and a decimal mark
@@ -59,11 +59,10 @@ _WORDS = {
     ),
 }
 _BESIDE = (
-    *("utm", "mga", "lv95", "gk", "map", "grid", "coord", "coordinate", "rd"),
-    *("coordinates", "coords", "point", "pos", "position"),
-    *("koordinate", "koord", "coordonnée", "coordonnee", "coordenada", "coordinaat"),
-    *("world", "local", "projected", "nat_grid", "value", "utme", "utmn", "nap", "nn", "nhn", "asl", "amsl"),
-    *("msl", "wert", "l93"),
+    *("utm", "mga", "lv95", "gk", "map", "grid", "coord", "coordinate", "rd", "coordinates", "coords"),
+    *("point", "pos", "position", "koordinate", "koord", "coordonnée", "coordonnee", "coordenada"),
+    *("coordinaat", "world", "local", "projected", "nat_grid", "value", "utme", "utmn", "nap", "nn"),
+    *("nhn", "asl", "amsl", "msl", "wert", "l93"),
 )
 _DEPTHS = (
     *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),

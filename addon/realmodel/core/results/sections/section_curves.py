@@ -11,9 +11,9 @@ import numpy as np
 from ...base.algebra import begins_run, norm
 from ...base.errors import UsageError, number_list
 from ...drawing.charts import TITLE, Axes, color_bar, tick_texts
+from ...drawing.color_scale import colors
 from ...drawing.drawing import BLACK, GRAY, Drawing, text_width
 from ...readers.tables.interval_values import IntervalValues
-from ..layer_values import colors
 from .hole_curves import bars, limits_of, seen_values, shares_of, sides_of
 from .section_holes import near_panel
 

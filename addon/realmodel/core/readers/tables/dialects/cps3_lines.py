@@ -12,7 +12,7 @@ import re
 from pathlib import Path
 
 from ....base.errors import InputRefused
-from .dialect import Header, comment_units
+from .dialect import FileHeader, comment_units
 
 _BEGINNING = re.compile(rb"(?:\s*[!#].*\n)*\s*F[A-RT-Z](?:ASCI|ATTR|LIMI|NROW|XINC)\b")
 NOT_ROWS = re.compile(rb"(?m)^[ \t]*(?=->|[A-Z]{6}\b)")
@@ -23,7 +23,7 @@ def begins_as_cps3_lines(head: bytes, _size: int = 0) -> bool:
     return bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
 
 
-def cps3_lines_header(file: Path, lines: list[str]) -> Header:
+def cps3_lines_header(file: Path, lines: list[str]) -> FileHeader:
     """The header of its first lines. Raises InputRefused where rows have no z."""
     rows = next(
         (n for n, line in enumerate(lines) if line.strip() and line.strip()[0] not in "#!"), len(lines)
@@ -31,4 +31,4 @@ def cps3_lines_header(file: Path, lines: list[str]) -> Header:
     if rows < len(lines) and len(lines[rows].split()) < 3:
         what = "its rows have no z"
         raise InputRefused(what, file=file, line=rows + 1, advice="export the lines with their depths")
-    return Header(rows, ("X", "Y", "Z"), None, comment_units(lines[:rows]))
+    return FileHeader(rows, ("X", "Y", "Z"), None, comment_units(lines[:rows]))

@@ -14,7 +14,7 @@ _HEIGHT = re.compile(r"(?:\b|_)(?:z|depth|vertical|elevation|height|altitude)(?:
 
 
 @dataclass(frozen=True)
-class Header:
+class FileHeader:
     """rows: the line, from 0, where the rows begin. names, name_line, units, nodata: as of a TableLayout,
     lines from 0."""
 
@@ -34,7 +34,7 @@ class Dialect:
     label: str
     endings: tuple[str, ...]
     begins: Callable[[bytes, int], bool]
-    header: Callable[[Path, list[str]], Header]
+    header: Callable[[Path, list[str]], FileHeader]
     not_rows: re.Pattern[bytes] | None = None
 
 

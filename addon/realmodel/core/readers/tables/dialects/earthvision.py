@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 from ....base.errors import InputRefused
-from .dialect import Header, comment_units
+from .dialect import FileHeader, comment_units
 
 _FIELD = re.compile(r"#\s*Field:\s*(\d+)\s+(\S+)(?:\s+(.+?))?\s*$", re.IGNORECASE)
 _TYPES = ("integer", "real", "text", "string", "non-numeric")
@@ -22,7 +22,7 @@ def begins_as_earthvision(head: bytes, _size: int = 0) -> bool:
     return any(_FIELD.match(line.decode("latin-1").strip()) for line in head[:4096].splitlines())
 
 
-def earthvision_header(file: Path, lines: list[str]) -> Header:
+def earthvision_header(file: Path, lines: list[str]) -> FileHeader:
     """The header of its first lines. Raises InputRefused where it has more fields than a row may have."""
     fields = {n: match for n, line in enumerate(lines) if (match := _FIELD.match(line.strip()))}
     name_line = max(fields)
@@ -35,4 +35,4 @@ def earthvision_header(file: Path, lines: list[str]) -> Header:
     behind = range(name_line + 1, len(lines))
     rows = next((n for n in behind if lines[n].strip() and lines[n].strip()[0] != "#"), len(lines))
     listed = tuple(names.get(n, f"column {n + 1}") for n in range(max(names) + 1))
-    return Header(rows, listed, name_line, comment_units(lines[:rows]))
+    return FileHeader(rows, listed, name_line, comment_units(lines[:rows]))

@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 from ....base.errors import InputRefused
-from .dialect import Header, comment_units
+from .dialect import FileHeader, comment_units
 
 _END = "#End_of_Horizon_ASCII_Header_"
 _BEGINNING = re.compile(rb"\s*@\w+ *:|[^\0]*#End_of_Horizon_ASCII_Header_", re.IGNORECASE)
@@ -24,7 +24,7 @@ def begins_as_openworks(head: bytes, _size: int = 0) -> bool:
     return bool(_BEGINNING.match(head[:4096]))
 
 
-def openworks_header(file: Path, lines: list[str]) -> Header:
+def openworks_header(file: Path, lines: list[str]) -> FileHeader:
     """The header of its first lines. Raises InputRefused where a row has neither three nor five numbers."""
     first = next(
         (n for n, line in enumerate(lines) if line.strip() and line.strip()[0] not in "@#"), len(lines)
@@ -35,4 +35,4 @@ def openworks_header(file: Path, lines: list[str]) -> Header:
         raise InputRefused(what, file=file, line=first + 1, advice="remove its header and set columns")
     *others, z = _NAMES[count]
     z = "Z (depth)" if any("depth" in line.lower() for line in lines[:first]) else z
-    return Header(first, (*others, z), None, comment_units(lines[:first]))
+    return FileHeader(first, (*others, z), None, comment_units(lines[:first]))

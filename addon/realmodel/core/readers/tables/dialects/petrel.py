@@ -12,7 +12,7 @@ import re
 from pathlib import Path
 
 from ....base.errors import InputRefused
-from .dialect import Header, comment_units
+from .dialect import FileHeader, comment_units
 
 _BEGINNING = re.compile(rb"^\s*BEGIN HEADER\s*$", re.MULTILINE | re.IGNORECASE)
 _TYPE = re.compile(r"(?:FLOAT|INT|INTEGER|DOUBLE|STRING|BOOL|BOOLEAN|DATETIME|DATE)\s*,\s*", re.IGNORECASE)
@@ -24,11 +24,11 @@ def begins_as_petrel(head: bytes, _size: int = 0) -> bool:
     return bool(_BEGINNING.search(head[:4096].replace(b"\r", b"\n")))
 
 
-def petrel_header(file: Path, lines: list[str]) -> Header:
+def petrel_header(file: Path, lines: list[str]) -> FileHeader:
     """The header of its first lines. Raises InputRefused where it has no end."""
     marks = {line.strip().upper(): n for n, line in reversed(list(enumerate(lines)))}
     first, end = marks["BEGIN HEADER"], marks.get("END HEADER")
     if end is None:
         raise InputRefused("the header has no line END HEADER", file=file, line=first + 1)
     names = [_TYPE.sub("", line.strip(), count=1).strip('"') for line in lines[first + 1 : end]]
-    return Header(end + 1, tuple(filter(None, names)), first + 1, comment_units(lines[:first]), NO_VALUE)
+    return FileHeader(end + 1, tuple(filter(None, names)), first + 1, comment_units(lines[:first]), NO_VALUE)

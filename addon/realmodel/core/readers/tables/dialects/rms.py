@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from .dialect import Header
+from .dialect import FileHeader
 
 _TYPED = re.compile(r"\s*(?:Discrete|String|Int|Float)\s+(\S.*?)\s*$")
 
@@ -20,11 +20,11 @@ def begins_as_rms(head: bytes, _size: int = 0) -> bool:
     return bool(_TYPED.match(head.partition(b"\n")[0].decode("latin-1")))
 
 
-def rms_header(_file: Path, lines: list[str]) -> Header:
+def rms_header(_file: Path, lines: list[str]) -> FileHeader:
     """The header of its first lines."""
     names = []
     for line in lines:
         if not (match := _TYPED.match(line)):
             break
         names.append(match[1])
-    return Header(len(names), ("X", "Y", "Z", *names), 0)
+    return FileHeader(len(names), ("X", "Y", "Z", *names), 0)

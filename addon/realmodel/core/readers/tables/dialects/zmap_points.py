@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 from ....base.errors import InputRefused
-from .dialect import Header, comment_units
+from .dialect import FileHeader, comment_units
 
 _BEGINNING = re.compile(rb"(?:\s*[!+].*\n)*\s*@[^\n]*,\s*DATA\s*,", re.IGNORECASE)
 
@@ -21,7 +21,7 @@ def begins_as_zmap_points(head: bytes, _size: int = 0) -> bool:
     return bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
 
 
-def zmap_points_header(file: Path, lines: list[str]) -> Header:
+def zmap_points_header(file: Path, lines: list[str]) -> FileHeader:
     """The header of its first lines. Raises InputRefused where it has no end."""
     first, end = [*(n for n, line in enumerate(lines) if line.strip().startswith("@")), -1, -1][:2]
     if end < 0:
@@ -29,4 +29,4 @@ def zmap_points_header(file: Path, lines: list[str]) -> Header:
         raise InputRefused(what, file=file, line=first + 1, advice="the file is cut off")
     columns = (line for line in lines[first + 1 : end] if line.strip() and not line.strip().startswith("!"))
     names = tuple(line.split(",")[0].strip() for line in columns)
-    return Header(end + 1, names, first, comment_units(lines[:first]))
+    return FileHeader(end + 1, names, first, comment_units(lines[:first]))

@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ...base.errors import InputRefused, RealModelError
-from ...base.packages import quiet, vendored
-from ...base.text import Step, no_step
+from ....base.errors import InputRefused, RealModelError
+from ....base.packages import quiet, vendored
+from ....base.text import Step, no_step
 
 _MEMBERS = (b"[Content_Types].xml", b"_rels/", b"docProps/", b"xl/")
 _OLD, _OPEN_DOCUMENT = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", b"application/vnd.oasis.opendocument"

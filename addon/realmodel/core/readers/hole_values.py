@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Logs along boreholes, of LAS files: each sample of a curve is an interval, up to the middle between it and
-the next one."""
+the next one.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +11,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import InputRefused, number_list
-from ...base.units import factor, unit_of
-from ..holes.las import begins_as_las, read_las, well_names
-from .hole_data import HoleTables
-from .hole_tables import Header, Row, Sheet, normalized_name
-from .holes import Holes
-from .interval_values import IntervalValues, column_values
+from ..base.errors import InputRefused, number_list
+from ..base.text import Step, no_step
+from ..base.units import MODEL_UNIT, factor, unit_of
+from ..settings.data_files import Boreholes
+from .hole_files import read_hole_files
+from .holes.las import begins_as_las, read_las, well_names
+from .tables.hole_data import HoleTables
+from .tables.hole_repair import repair
+from .tables.hole_tables import RawTable, Row, TableHeader, normalized_name
+from .tables.holes import Holes
+from .tables.interval_values import IntervalValues, column_values
 
 _HEAD = 4096  # bytes that tell what a file is
 _MOST_PLACES = 2000  # along a hole; between them it is straight
@@ -67,7 +72,7 @@ def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[Interva
     return logs
 
 
-def _curves(file: Path) -> Sheet:
+def _curves(file: Path) -> RawTable:
     if not is_log(file):
         raise InputRefused("it is not a LAS file", file=file, advice="export the log as LAS")
     sheet = read_las(file).get("intervals")
@@ -84,7 +89,7 @@ def _rows_of_holes(tables: HoleTables) -> dict[str, Row]:
     return {row.text("hole"): row for row in reversed(rows)}
 
 
-def _hole(file: Path, sheet: Sheet, holes: Mapping[str, Row]) -> str | None:
+def _hole(file: Path, sheet: RawTable, holes: Mapping[str, Row]) -> str | None:
     """The hole that is called as the well of a file; None where none is."""
     alike = {normalized_name(hole): hole for hole in holes}
     for name in (sheet.rows[0][1][0], *well_names(file)):
@@ -95,10 +100,10 @@ def _hole(file: Path, sheet: Sheet, holes: Mapping[str, Row]) -> str | None:
 
 def _named(file: Path, hole: str) -> Row:
     """A row that says of which hole it is."""
-    return Row(Header(file, ("hole", "from"), 1, {"hole": 0, "from": 1}), 1, [hole, ""])
+    return Row(TableHeader(file, ("hole", "from"), 1, {"hole": 0, "from": 1}), 1, [hole, ""])
 
 
-def _bounds(tables: HoleTables, file: Path, sheet: Sheet, model_unit: str) -> np.ndarray:
+def _bounds(tables: HoleTables, file: Path, sheet: RawTable, model_unit: str) -> np.ndarray:
     """(N, 2) the depths of the samples, in the unit of the tables: the file says its own."""
     of_tables = tables.boreholes.units
     of_tables = (of_tables.get("z") if isinstance(of_tables, Mapping) else of_tables) or model_unit
@@ -113,7 +118,7 @@ def _bounds(tables: HoleTables, file: Path, sheet: Sheet, model_unit: str) -> np
     return bounds * (1.0 if unit is None else factor(unit, of_tables))
 
 
-def _columns(sheet: Sheet) -> dict[str, np.ndarray]:
+def _columns(sheet: RawTable) -> dict[str, np.ndarray]:
     read = [("", entries, ".") for _, entries in sheet.rows]
     columns: dict[str, np.ndarray] = {}
     for at, name in enumerate(sheet.names):
@@ -124,3 +129,52 @@ def _columns(sheet: Sheet) -> dict[str, np.ndarray]:
         names_with_units = (f"{name} ({unit})" if unit else name for name in names)
         columns[next(name for name in names_with_units if name not in columns)] = column_values(read, at)
     return columns
+
+
+_PLACES = ("hole", "x", "y", "z", "from", "to", "azimuth", "dip", "inclination")  # columns that say where
+
+
+def read_interval_values(
+    given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step
+) -> IntervalValues:
+    """The columns of the table of intervals of some boreholes that do not say where an interval is, in the
+    order of the table, and the curves of their logs. A column is of numbers where all its values are numbers.
+    Rows without a depth, and of holes without a collar, are left out. Raises InputRefused naming file and
+    line."""
+    tables = read_hole_files(given, model_unit, step, ("hole", "from", "to"))
+    repair(tables)
+    return interval_values(tables, model_unit)
+
+
+def interval_values(tables: HoleTables, model_unit: str) -> IntervalValues:
+    """The same of tables that are repaired."""
+    holes = Holes(tables)
+    parts = read_logs(tables, holes, model_unit)
+    rows = [row for row in tables.intervals or () if row.has("from") and row.has("to")]
+    if rows:
+        parts.insert(0, _values_of(rows, holes, tables.scale(model_unit)))
+    if not parts:
+        raise InputRefused("there are no intervals in it", file=tables.boreholes.intervals)
+    return IntervalValues.joined(parts)
+
+
+def _values_of(rows: list[Row], holes: Holes, scale: np.ndarray) -> IntervalValues:
+    read, ends, depths = [], [], []
+    for row in rows:
+        between = row.number("from"), row.number("to")
+        ends.append([holes.place(row, depth, scale) for depth in between])
+        depths.append(between)
+        read.append((row.text("hole"), row.entries, row.decimal))
+    columns = {name: column_values(read, at) for at, name in enumerate(_names(rows[0])) if name}
+    places = np.array(ends, np.float64)
+    texts = np.array([hole for hole, _, _ in read], str)
+    return IntervalValues(texts, places[:, 0], places[:, 1], np.array(depths), columns)
+
+
+def _names(row: Row) -> list[str]:
+    """The names of the columns as they are written; empty for those that say where an interval is."""
+    names = [name.strip() for name in row.header.names]
+    for column in _PLACES:
+        if column in row.columns and row.columns[column] < len(names):
+            names[row.columns[column]] = ""
+    return names

@@ -10,8 +10,8 @@ from ...core.project.plan_input import region_rings
 from ...core.readers import read_region
 from ...core.surfaces.planar_mesh import triangulate_rings
 from ..host import versions
-from . import project_settings, settings
-from .surface_statistics import plan_area
+from ..project import project_settings, settings
+from ..project.surface_statistics import plan_area
 
 
 def expected_triangles(row):

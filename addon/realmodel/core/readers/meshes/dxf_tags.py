@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tags of a DXF file, text or binary, of any release (Autodesk, "DXF Reference": group codes and their
-types), and the entities that they make."""
+types), and the entities that they make.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +72,7 @@ class Entity:
 
 
 @dataclass
-class Drawing:
+class DxfDrawing:
     """A drawing that is read: its blocks by their names in small letters, which come before its entities, and
     the number of the unit in its header."""
 

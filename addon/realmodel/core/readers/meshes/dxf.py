@@ -21,9 +21,9 @@ import numpy as np
 
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
-from ..meshes.triangle_mesh import mesh_of_corners, object_of_mesh
-from .dxf_tags import BINARY, Drawing, Entity
-from .geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
+from ..objects.geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
+from .dxf_tags import BINARY, DxfDrawing, Entity
+from .triangle_mesh import mesh_of_corners, object_of_mesh
 
 _BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
@@ -76,7 +76,7 @@ def read_dxf(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     of faces at the same place become one vertex. A layer with faces and others has two objects. Raises
     InputRefused naming file and line."""
     file = Path(file)
-    drawing = Drawing()
+    drawing = DxfDrawing()
     layers: dict[str, _Layer] = {}
     inserted: dict[str, _Layer] = {}
     reader = _Shapes(file, drawing.blocks)

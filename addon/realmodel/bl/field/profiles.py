@@ -22,7 +22,7 @@ _read = caches.new(most=4)  # by the stamp of their file
 
 
 @dataclass(frozen=True)
-class Profile:
+class ImportProfile:
     """name. of: which import it is of. header: the names of the columns. columns: {meaning: column}, by name
     or by number from 1. reading: the other import options, by the keys of a project file."""
 
@@ -63,7 +63,7 @@ def read(path):
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         if content["format"] != _FORMAT:
             raise ValueError(f"its format is {content['format']!r}")
-        made = [Profile(**{**entry, "header": tuple(entry["header"])}) for entry in content["profiles"]]
+        made = [ImportProfile(**{**entry, "header": tuple(entry["header"])}) for entry in content["profiles"]]
         for profile in made:
             _check(profile)
     except OSError as error:
@@ -104,7 +104,7 @@ def add(*new):
         taken = {other.name for other in profiles}
         names = (profile.name, *(f"{profile.name} {n}" for n in range(2, len(taken) + 3)))
         name = next(name for name in names if name not in taken)
-        profiles.append(Profile(**{**vars(profile), "name": name}))
+        profiles.append(ImportProfile(**{**vars(profile), "name": name}))
     write(profiles)
 
 
@@ -113,7 +113,7 @@ def rename(old, new):
     profiles = all_of_user()
     if new != old and new in [profile.name for profile in profiles]:
         raise InputRefused(f"there is a profile '{new}' already", advice="choose another name")
-    write([Profile(**{**vars(p), "name": new}) if p.name == old else p for p in profiles])
+    write([ImportProfile(**{**vars(p), "name": new}) if p.name == old else p for p in profiles])
 
 
 def remove(name):

@@ -8,14 +8,14 @@ from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
-from ...base.errors import InputRefused
-from ...base.text import no_step
-from ...base.units import MODEL_UNIT
-from ...settings.data_files import Boreholes
-from ..formats import HOLES, format_of
-from .dips import DIPS, NAMED
-from .hole_data import read_hole_rows
-from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, Row, columns_in, rows
+from ..base.errors import InputRefused
+from ..base.text import no_step
+from ..base.units import MODEL_UNIT
+from ..settings.data_files import Boreholes
+from .formats import HOLES, format_of
+from .hole_files import read_hole_files
+from .tables.dips import DIPS, NAMED
+from .tables.hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, Row, columns_in, rows
 
 _KNOWN = {
     "collars": COLLARS,
@@ -43,7 +43,7 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
     file = Path(file)
     reading = Boreholes(columns=columns or {})
     if format_of(file, HOLES) is not None:
-        whole = read_hole_rows(Boreholes(columns=reading.columns, file=file), MODEL_UNIT)
+        whole = read_hole_files(Boreholes(columns=reading.columns, file=file), MODEL_UNIT)
         if whole.intervals is None and whole.picks is None:
             return "assays"
         return "picks" if whole.intervals is None else "intervals"
@@ -100,7 +100,7 @@ def table_contents(
     reading, kind = Boreholes(columns=columns or {}), table_kind(file, columns)
     first: Iterable[Row]
     if format_of(file, HOLES) is not None:
-        whole = read_hole_rows(replace(reading, file=file), MODEL_UNIT)
+        whole = read_hole_files(replace(reading, file=file), MODEL_UNIT)
         first = (whole.intervals or whole.picks or [])[:_LOOKED_AT]
         header = first[0].header if first else None
         by_meaning = {} if header is None else {key: header.names[at] for key, at in header.columns.items()}

@@ -19,8 +19,18 @@ from ...base.algebra import norm
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step, text_lines
 from ...base.units import unit_of
-from ..meshes.triangle_mesh import UNREADABLE, surface_object
-from .geo_object import HOLE, LINES, POINTS, STICK, GeoObject, ObjectName, Values, point_object, stated_text
+from ..objects.geo_object import (
+    HOLE,
+    LINES,
+    POINTS,
+    STICK,
+    GeoObject,
+    ObjectName,
+    Values,
+    point_object,
+    stated_text,
+)
+from .triangle_mesh import UNREADABLE, surface_object
 
 _WORD = re.compile(r'"([^"]*)"|(\S+)')
 _NAME = re.compile(r"\*?name\s*:\s*(.*?)\s*(?:\}.*)?$", re.IGNORECASE)

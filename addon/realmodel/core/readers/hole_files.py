@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rows of tables of boreholes, also of files that hold all of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ..base.errors import InputRefused
+from ..base.text import Step, no_step
+from ..settings.data_files import Boreholes
+from .formats import HOLES, format_of
+from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
+from .tables.hole_tables import RawTable
+
+
+def read_hole_files(
+    boreholes: Boreholes,
+    model_unit: str,
+    step: Step = no_step,
+    needed: tuple[str, ...] | None = None,
+) -> HoleTables:
+    """read_hole_rows of tables and of files that hold all of them. Raises InputRefused naming file and
+    line."""
+    boreholes, sheets = _whole_files(boreholes)
+    return read_hole_rows(boreholes, model_unit, step, needed, sheets)
+
+
+def _whole_files(boreholes: Boreholes) -> tuple[Boreholes, dict[str, RawTable]]:
+    """The same with the tables of files that hold all of them in the places of those that are not named, and
+    these tables by their kind."""
+    sheets: dict[str, RawTable] = {}
+    for file in dict.fromkeys(boreholes.files[len(boreholes.log_files) :]):
+        file_format = format_of(file, HOLES)
+        if file_format is None:
+            if file == boreholes.file:
+                what = "it does not hold all tables of boreholes"
+                advice = "name its tables: collars = ..., intervals = ..., picks = ..."
+                raise InputRefused(what, file=file, advice=advice)
+            continue
+        read = file_format.read(file)
+        said = {kind: getattr(boreholes, kind) for kind in MEANINGS}
+        others: dict[str, Any] = {
+            kind: table for kind, table in said.items() if table is not None and Path(table) != file
+        }
+        here = [kind for kind in read if kind not in others]
+        sheets |= {kind: read[kind] for kind in here}
+        tables: dict[str, Any] = dict.fromkeys(MEANINGS) | others | dict.fromkeys(here, file)
+        boreholes = replace(boreholes, file=None, **tables)
+        if boreholes.downward_dip is None and "survey" in sheets:
+            boreholes = replace(boreholes, downward_dip=file_format.downward_dip)
+    return boreholes, sheets
