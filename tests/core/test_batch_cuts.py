@@ -102,7 +102,7 @@ def test_the_unit_of_a_cutter_counts_and_its_content_says_what_it_is(layers, out
     (out.parent / "plane.surface").write_text(f"<LandXML>{units}<Surfaces>{surface}</Surfaces></LandXML>")
     done = run(layers([0, 1, 3]), "--cut", f"{out.parent / 'plane.surface'}={out / 'b.npz'},{out / 'a.npz'}")
     assert done.returncode == 0, done.stderr
-    assert "its lengths are in cm, according to the file" in done.stdout
+    assert "the header says cm for 'x and y' and 'z', converted to m" in done.stdout
     below = arrays(out / "b.npz")
     assert below["vertices"][:, 2].max() == pytest.approx(2.0)
 

@@ -284,7 +284,7 @@ def test_nothing_to_propose_from_is_refused(tmp_path):
     with pytest.raises(UsageError, match="boreholes or a map"):
         propose_project()
     with pytest.raises(UsageError, match="unexpected"):
-        propose_project(boreholes={"logs": "x.csv"})
+        propose_project(boreholes={"log": "x.csv"})
 
 
 def write_map(folder, features, ground=None):

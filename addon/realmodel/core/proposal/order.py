@@ -166,8 +166,9 @@ def _exact(weights: np.ndarray) -> list[int]:
     cost = np.full(1 << count, np.inf)
     last = np.zeros(1 << count, int)
     cost[0] = 0.0
-    members = (np.arange(1 << count)[:, None] >> np.arange(count)) & 1
-    against = members @ weights  # (sets, U): by how much the set should lie over the unit
+    against = np.zeros((1 << count, count))  # (sets, U): by how much the set should lie over the unit
+    for number in range(count):
+        against[1 << number : 2 << number] = against[: 1 << number] + weights[number]
     for chosen in range(1 << count):
         for number in range(count):
             if chosen >> number & 1:

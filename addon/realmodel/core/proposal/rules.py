@@ -15,12 +15,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.algebra import principal_axes
+from ..heights.interpolate import interpolate
 from .logs import Log
 from .order import UnitOrder
 
 _MOST_HOLES = 120  # on which rules are tried
 _GROUPS = 10  # in which holes are left out
 _BETTER = 0.002  # of the length in the right unit: less is no reason to change a rule
+_STRAIGHT = 100.0  # the range of a variogram that is straight, in widths of the area
 _ROUNDS = 3  # in which bounds are imposed
 CUTS, ENDS = "erosional", "conformable"
 
@@ -206,17 +209,10 @@ def _heights(
 
 
 def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Universal kriging with a linear variogram; the drift is a plane where places show one."""
-    scale = max(float(np.ptp(places, axis=0).max()), 1e-12)
-    origin = places.mean(axis=0)
-    places, at = (places - origin) / scale, (at - origin) / scale
-    has_plane = len(places) > 4 and np.linalg.svd(places - places.mean(axis=0))[1][-1] > 0.1
-    drift, drift_at = (np.column_stack([np.ones(len(p)), *(p.T if has_plane else ())]) for p in (places, at))
-    count, terms = len(places), drift.shape[1]
-    system = np.zeros((count + terms, count + terms))
-    system[:count, :count] = -np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
-    system[:count, count:], system[count:, :count] = drift, drift.T
-    system[:count, :count] += 1e-9 * np.eye(count)  # two holes at one place
-    weights = np.linalg.solve(system, np.append(values, np.zeros(terms)))
-    apart = np.hypot(*(at[:, None] - places[None]).transpose(2, 0, 1))
-    return drift_at @ weights[count:] - apart @ weights[:count]
+    """Kriging whose variogram is straight over the places; the drift is a plane where places show one."""
+    extent = max(float(np.ptp(places, axis=0).max()), 1e-12)
+    has_plane = len(places) > 4 and principal_axes(places / extent)[0][-1] > 0.1
+    method = "universal_kriging" if has_plane else "kriging"
+    straight = {"model": "spherical", "range": _STRAIGHT * extent, "sill": _STRAIGHT}
+    points = np.column_stack([places, values])
+    return interpolate(points, at, method, variogram=straight, neighbours=0).z

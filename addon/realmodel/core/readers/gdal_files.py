@@ -28,8 +28,10 @@ SHAPE_ENDINGS = (
     *(".kml", ".kmz", ".gml", ".fgb", ".gdb.zip", ".tab", ".mif", ".gpx", ".dgn", ".sqlite", ".e00"),
 )
 # How the files begin that can be told so; a text may come after blanks and the declaration of XML.
-_RASTERS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"EHFA_HEADER_TAG", b"GRID1.", b"UHL1", b"\0\0\0\x0cjP  ")
-_RASTERS += (b"HF2\0", b"binterr1", b"<VRTDataset", b"DatasetHeader Begin")
+_RASTERS = (
+    *(b"CDF\x01", b"CDF\x02", b"CDF\x05", b"EHFA_HEADER_TAG", b"GRID1.", b"UHL1", b"\0\0\0\x0cjP  "),
+    *(b"HF2\0", b"binterr1", b"<VRTDataset", b"DatasetHeader Begin"),
+)
 _SHAPES = (b"fgb\x03", b"!table", b"Version 300", b"Version 450", b"EXP  0 ")
 _ZIP, _ZIPPED = b"PK\x03\x04", (b".gdb/", b".kml")  # a file geodatabase, KMZ
 _ROOTS = (

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.algebra import dot
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
 from ..objects.geo_object import LINES, POINTS, STICK, SURFACE, GeoObject, ObjectName, point_object
@@ -188,7 +189,7 @@ def _insert_changes(insert: Entity, block: Entity) -> Iterator[np.ndarray]:
     axes = _axes(insert)
     columns, rows = max(insert.whole(70, 1), 1), max(insert.whole(71, 1), 1)
     base, at = np.array(block.place()), np.array(insert.place())
-    linear = axes @ turn @ np.diag(scales)
+    linear = dot(axes[:, None], turn.T[None]) * scales
     if not np.isfinite(linear).all():
         raise ValueError
     for row in range(rows):
