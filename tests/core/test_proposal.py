@@ -92,7 +92,7 @@ def test_a_unit_within_another_becomes_a_body_as_thick_as_it_was_seen(tmp_path):
     lens = [("Soil", 2), ("Clay", 6), ("Sand", 4), ("Clay", 8), ("Rock", 20)]
     project = proposed(tmp_path, [*[plain] * 4, lens, *[plain] * 4])
     assert project.proposal.order == ["Rock", "Clay", "Soil"]
-    assert [body.name for body in project.bodies] == ["Sand"]
+    assert [(body.name, body.has_shape) for body in project.bodies] == [("Sand", False)]
     model = build(project)
     assert model.observed().share == 1.0
     (sand,) = intervals_of(model, "Sand", 100, 100)
@@ -108,6 +108,19 @@ def test_a_lens_of_a_unit_that_is_also_a_bed_has_a_name_of_its_own(tmp_path):
     sand = next(s for s in project.rocks[0].surfaces if s.block == "Sand")
     assert project.bodies[0].property == sand.property
     assert len(intervals_of(build(project), "Sand lens", 100, 100)) == 1
+
+
+def test_lenses_of_one_unit_far_apart_have_meshes(tmp_path):
+    plain = [("Soil", 2), ("Clay", 18), ("Rock", 20)]
+    first, last = ([("Soil", 2), ("Clay", 6), ("Sand", t), ("Clay", 12 - t), ("Rock", 20)] for t in (4, 3))
+    project = proposed(tmp_path, [first, *[plain] * 7, last])
+    names = ["Sand lens 1", "Sand lens 2"]
+    assert [(body.name, body.has_shape) for body in project.bodies] == [(name, True) for name in names]
+    assert any(f"'{names[0]}': one interval shows no dip" in text for text in project.proposal.warnings)
+    project.save(tmp_path / "out")
+    model = build(load_project(tmp_path / "out/project.toml"))
+    (first,), (last,) = (intervals_of(model, name, x, x) for name, x in zip(names, (0, 200), strict=True))
+    assert (first.top, first.bottom, last.top, last.bottom) == pytest.approx((42, 38, 42, 39))
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from ..project.entry import changed_values
 from ..project.project import Project, Rock, Surface
 from ..project.project_file import load_project
 from ..project.project_writer import library_text, off_text, points_text, region_text, toml_value
+from ..project.structure_entries import Body
 from ..readers.map_input import map_companions
 from ..readers.point_input import companions
 from ..settings.data_files import MapLayer, MeshFile, PointFile, is_wkt, list_of
@@ -110,18 +111,24 @@ def _project_lines(project: Project, proposal: Proposal, files: _Files) -> list[
         why = reasons.get(unit) if surface is not rock.surfaces[-1] else proposal.reasons.get("ground")
         lines += ["", *_surface_lines(surface, why, files)]
     for body, lens in zip(project.bodies, proposal.lenses, strict=True):
-        mesh = files.write(files.free("lens", ".off"), off_text(body.vertices, body.triangles))
         holes = ", ".join(f"'{hole}'" for hole, _ in lens.parts)
         lines += [
             "",
             *_comment(f"'{lens.unit}' in hole {holes} lies in '{lens.host}', out of order: a lens"),
             "[[body]]",
             f"name = {toml_value(body.name)}",
-            f'mesh = "{mesh}"',
+            *_body_shape(body, files),
             *([] if body.after is None else [f"after = {toml_value(body.after)}"]),
             f"property = {body.property}",
         ]
     return lines
+
+
+def _body_shape(body: Body, files: _Files) -> list[str]:
+    if body.vertices is None or body.triangles is None:
+        return [f"reach = {toml_value(body.reach)}  # beyond the intervals that bear its name"]
+    mesh = files.write(files.free("lens", ".off"), off_text(body.vertices, body.triangles))
+    return [f'mesh = "{mesh}"']
 
 
 def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:

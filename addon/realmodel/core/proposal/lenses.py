@@ -9,14 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..base.algebra import norm
-from ..surfaces.planar_mesh import mesh_region
 from .logs import HoleLogs, Log, LoggedPart, merged
 from .order import UnitOrder
 
 _MOST = 30  # lenses that become bodies: logs with more are not in beds
-_ROUND = 16  # edges of a lens that one hole has, at least
 _REACH = 2.0  # times the distance of neighboring holes: so far apart holes may be in one lens
-_OFF = 1e-3  # of the thickness: nearer to none a lens has none
 
 
 @dataclass(frozen=True)
@@ -208,86 +205,3 @@ def _named(lenses: list[Lens], data: HoleLogs, logs: list[Log]) -> list[Lens]:
         taken.add(name.casefold())
         named.append(Lens(name, lens.unit, lens.host, lens.parts))
     return named
-
-
-def lens_mesh(lens: Lens, plan: dict[str, np.ndarray], reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """A closed mesh, vertices (V, 3) and triangles (T, 3), as thick as the lens is in its holes, that ends
-    halfway to holes without it. plan: (2,) of all holes. reach: how far it goes where there is none, model
-    units."""
-    inside = np.array([part.top[:2] for _, part in lens.parts])
-    holes = {hole for hole, _ in lens.parts}
-    thick = np.array([part.thickness for _, part in lens.parts])
-    middles = np.array([part.middle for _, part in lens.parts])
-    inside, first = np.unique(inside, axis=0, return_index=True)
-    thick, middles = thick[first], middles[first]
-    low, high = inside.min(axis=0) - reach, inside.max(axis=0) + reach
-    without = np.array([place for hole, place in sorted(plan.items()) if hole not in holes]).reshape(-1, 2)
-    without = without[np.all((without > low) & (without < high), axis=1)]
-    outline = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
-    edge = min(2 * np.pi * _radius(inside, without, reach) / _ROUND, float((high - low).min()) / 6)
-    nodes, triangles = mesh_region(outline, edge_length=edge, constraint_points=inside)
-    border = np.any((nodes <= low) | (nodes >= high), axis=1)
-    ring = nodes[border][:: max(int(border.sum() // 24), 1)]
-    at = np.vstack([inside, without, ring])
-    values = np.concatenate([thick, np.full(len(without) + len(ring), -thick.mean())])
-    thickness = _spread(at, values, nodes)
-    least = _OFF * float(thick.min())
-    thickness[np.abs(thickness) < least] = -least
-    thickness[border] = np.minimum(thickness[border], -least)
-    middle = _spread(inside, middles, nodes)
-    for place, value, height in zip(inside, thick, middles, strict=True):  # exact where it was seen
-        nearest = int(np.argmin(np.hypot(*(nodes - place).T)))
-        thickness[nearest], middle[nearest] = value, height
-    return _closed(nodes, triangles, middle, thickness)
-
-
-def _radius(inside: np.ndarray, without: np.ndarray, reach: float) -> float:
-    apart = [float(np.hypot(*(without - place).T).min()) for place in inside] if len(without) else [reach]
-    return min(reach, *apart) / 2
-
-
-def _spread(places: np.ndarray, values: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-    """Values at nodes (N, 2) by a linear variogram and an unknown mean, through those at places (P, 2)."""
-    count = len(places)
-    apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
-    system = np.ones((count + 1, count + 1))
-    system[:count, :count], system[count, count] = -apart, 0.0
-    weights = np.linalg.lstsq(system, np.append(values, 0.0), rcond=None)[0]
-    to_nodes = np.hypot(*(nodes[:, None] - places[None]).transpose(2, 0, 1))
-    return weights[count] - to_nodes @ weights[:count]
-
-
-def _closed(
-    nodes: np.ndarray, triangles: np.ndarray, middle: np.ndarray, thickness: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """The closed surface around where there is a thickness, half of it above the middle and half below."""
-    vertices: list[tuple[float, float, float]] = []
-    numbers: dict[tuple, int] = {}
-
-    def vertex(key: tuple, place: np.ndarray, height: float) -> int:
-        if key not in numbers:
-            numbers[key] = len(vertices)
-            vertices.append((float(place[0]), float(place[1]), float(height)))
-        return numbers[key]
-
-    def corner(node: int, side: int) -> int:
-        return vertex((node, side), nodes[node], middle[node] + side * thickness[node] / 2)
-
-    def crossing(a: int, b: int) -> int:
-        a, b = min(a, b), max(a, b)
-        share = thickness[a] / (thickness[a] - thickness[b])
-        place = nodes[a] + share * (nodes[b] - nodes[a])
-        return vertex((a, b, "edge"), place, middle[a] + share * (middle[b] - middle[a]))
-
-    faces: list[tuple[int, int, int]] = []
-    for triangle in triangles.tolist():
-        for side in (1, -1):
-            ring = []
-            for a, b in zip(triangle, [*triangle[1:], triangle[0]], strict=True):
-                if thickness[a] > 0:
-                    ring.append(corner(a, side))
-                if (thickness[a] > 0) != (thickness[b] > 0):
-                    ring.append(crossing(a, b))
-            ring = ring[::side]
-            faces += [(ring[0], ring[at], ring[at + 1]) for at in range(1, len(ring) - 1)]
-    return np.array(vertices), np.array(faces, np.int32)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..base.errors import InputRefused, UsageError, counted
 from ..base.named import keyword_only
 from ..base.units import MODEL_UNIT
+from ..base.work import run
 from ..project.library import Library
 from ..project.plan_input import read_rings
 from ..project.project import Project, Rock, Surface
@@ -25,11 +26,12 @@ from ..readers.point_input import read_point_file, read_raster_heights
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, dip_file_of
 from ..settings.method_options import OptionRefused
+from ..structures.shapes.between_walls import Pierced, body_between_walls
 from .choices import Proposal
 from .colors import library_of
 from .extent import base_below, edge_length, region_around
 from .folder import save_folder
-from .lenses import Sorted, lens_mesh, sort_out, spacing
+from .lenses import Lens, Sorted, sort_out, spacing
 from .logs import HoleLogs, Log, read_logs
 from .maps import MapUnits, map_file_of, read_map_units, unconformities
 from .methods import with_methods
@@ -336,16 +338,33 @@ class _Maker:
         if not lenses:
             return []
         numbers = {entry.name: entry.id for entry in library}
-        at = {log.hole: log.plan for log in self._data.logs}
         extent = float(np.ptp(plan, axis=0).max()) or 1.0
-        reach = spacing(plan) or extent
+        reach = (spacing(plan) or extent) / 2
         tops = {surface.block: surface.name for surface in surfaces[:-1]}
         bodies = []
         for lens in lenses:
-            vertices, triangles = lens_mesh(lens, at, reach)
             after = tops.get(lens.host)  # None: the youngest
-            bodies.append(Body(lens.name, vertices, triangles, after=after, property=numbers[lens.unit]))
+            body = Body(lens.name, after=after, property=numbers[lens.unit], reach=reach)
+            bodies.append(body if self._is_all(lens) else self._with_mesh(body, lens))
         return bodies
+
+    def _is_all(self, lens: Lens) -> bool:
+        """Whether the build makes the same of the intervals that bear its name."""
+        units = [part.unit for log in self._data.logs for part in log.parts]
+        return lens.name == lens.unit and units.count(lens.unit) == len(lens.parts)
+
+    def _with_mesh(self, body: Body, lens: Lens) -> Body:
+        """The body with the mesh of a lens that other intervals share their unit with."""
+        holes = {hole for hole, _ in lens.parts}
+        others = [part for log in self._data.logs if log.hole not in holes for part in log.parts]
+        ends, without = (
+            np.array([(part.top, part.bottom) for part in parts]).reshape(-1, 2, 3)
+            for parts in ([part for _, part in lens.parts], others)
+        )
+        met = Pierced(ends, without)
+        (vertices, triangles), texts = run(lambda work: body_between_walls(work, met, body.reach))
+        self._proposal.warnings += [f"{body.item}: {text}" for text in texts]
+        return replace(body, vertices=vertices, triangles=triangles, reach=None)
 
 
 def _free(name: str, taken: set[str]) -> str:
@@ -382,4 +401,4 @@ def _warn(proposal: Proposal, data: _Data) -> None:
             f"hole '{repeat.hole}', depth {repeat.depth:.9g}: {', '.join(repeat.units)} come again, {how}. "
             "Not used"
         )
-    proposal.warnings = found
+    proposal.warnings += found
