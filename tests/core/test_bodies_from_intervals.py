@@ -152,7 +152,7 @@ def test_a_vein_is_built_from_its_intervals(tmp_path):
     inner = seen.goes_on[1:]
     middles = ((seen.places[:-1] + seen.places[1:]) / 2)[inner]
     names = np.array([{"Host": "top"}.get(block.name, block.name) for block in model.blocks])
-    assert (names[model.blocks_at(middles)] == seen.blocks[1:][inner]).all()
+    assert (names[model.block_at(middles)] == seen.blocks[1:][inner]).all()
     assert model.project.bodies[0].vertices is not None and model.project.bodies[0].reach is None
 
 
