@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, build, from_gempy, from_loop, read_boreholes, read_mesh, read_points
-from realmodel.core.readers import read_outlines
 from test_damaged_files import LEAPFROG
 from test_grid_formats import GRIDS, by_height, expected
 from test_hole_files import LAS3, ags3, ags4, diggs, well_tops
@@ -20,6 +19,7 @@ from test_point_formats import CPS3_LINES, EARTHVISION, OPENWORKS, PETREL, SHEET
 
 ROOT = Path(__file__).resolve().parents[2]
 SQUARE = np.array([[0.0, 0, 5], [8, 0, 6], [0, 8, 7], [8, 8, 8]]), np.array([[0, 1, 2], [1, 3, 2]])
+CAKE = {"basement": 160_000_000, "shale": 160_000_000, "sand": 160_000_000}
 TWO = {"Top A": SQUARE, "Top B": (SQUARE[0] - [0, 0, 4], SQUARE[1])}
 
 
@@ -49,12 +49,16 @@ def rows(*lines):
 
 
 def leapfrog(write):
-    assert len(read_mesh(write("top.msh", LEAPFROG + np.array(
-        [[0, 1, 2], [1, 3, 2]], "<i4").tobytes() + SQUARE[0].tobytes())).triangles) == 2
+    mesh = read_mesh(write("top.msh", LEAPFROG))
+    assert mesh.vertices[3].tolist() == [9, 10, 11] and mesh.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
     assert_meshes(write("m.dxf", dxf(TWO)))
     assert_holes(
         write,
-        rows("LocationID,Easting,Northing,GroundLevel,FinalDepth", "H1,5000,9000,120,40", "H2,5100,9000,121.5,40"),
+        rows(
+            "LocationID,Easting,Northing,GroundLevel,FinalDepth",
+            "H1,5000,9000,120,40",
+            "H2,5100,9000,121.5,40",
+        ),
         rows("HoleId,From,To,Simple_Lith", "H1,0,10,CLAY", "H1,10,25,SAND"),
         rows("HoleId,Depth,Dip,Azimuth", "H2,0,60,90"),
     )
@@ -73,7 +77,9 @@ def petrel(write):
 
 
 def rms(write):
-    read = read_points(write("p.rmsattr", "Discrete Zone\nFloat Phi\n1.5 2.5 -1600 3 0.25\n2.5 2.5 -1601 4 UNDEF\n"))
+    read = read_points(
+        write("p.rmsattr", "Discrete Zone\nFloat Phi\n1.5 2.5 -1600 3 0.25\n2.5 2.5 -1601 4 UNDEF\n")
+    )
     assert read.xyz.tolist() == [[1.5, 2.5, -1600], [2.5, 2.5, -1601]]
     assert read.columns["Zone"].tolist() == [3, 4]
     assert read_points(write("s.dat", EARTHVISION.format(unit="meters"))).xyz[1, 2] == -1598.5
@@ -154,7 +160,7 @@ def vulcan(write):
 
 def civil_3d(write):
     assert_meshes(write("m.xml", landxml(TWO)))
-    feet = landxml(TWO).replace(b"<Metric linearUnit=\"meter\"/>", b"<Imperial linearUnit=\"foot\"/>")
+    feet = landxml(TWO).replace(b'<Metric linearUnit="meter"/>', b'<Imperial linearUnit="foot"/>')
     in_feet = read_mesh(write("f.xml", feet), layer="Top A")
     np.testing.assert_allclose(in_feet.vertices[:, 2], SQUARE[0][:, 2] * 0.3048)
     read = read_points(write("c.dxf", drawing(CONTOUR + SPOT)))
@@ -178,7 +184,11 @@ def shapes(write):
     ring = [[5000, 9000], [5010, 9000], [5010, 9020], [5000, 9000]]
     features = [
         {"type": "Feature", "properties": {"ELEV": 120, "bed": "A"}, "geometry": line},
-        {"type": "Feature", "properties": {"ELEV": 1, "bed": "B"}, "geometry": {"type": "Polygon", "coordinates": [ring]}},
+        {
+            "type": "Feature",
+            "properties": {"ELEV": 1, "bed": "B"},
+            "geometry": {"type": "Polygon", "coordinates": [ring]},
+        },
     ]
     path = write("m.geojson", json.dumps({"type": "FeatureCollection", "features": features}))
     read = read_points(path, height="ELEV", where={"bed": "A"})
@@ -187,7 +197,11 @@ def shapes(write):
     assert read_points(write("g.asc", grid)).xyz.tolist() == [[1, 1, 3], [3, 1, 4]]
     with pytest.raises(InputRefused, match="degrees of longitude and latitude"):
         crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
-        point = {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [8, 45, 9]}}
+        point = {
+            "type": "Feature",
+            "properties": {},
+            "geometry": {"type": "Point", "coordinates": [8, 45, 9]},
+        }
         content = {"type": "FeatureCollection", "crs": crs, "features": [point]}
         read_points(write("d.geojson", json.dumps(content)))
 
