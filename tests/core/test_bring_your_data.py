@@ -7,8 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, build, from_gempy, from_loop, read_boreholes, read_mesh, read_points
-from test_damaged_files import LEAPFROG
+from realmodel.core import (
+    InputRefused,
+    PointFile,
+    build,
+    from_gempy,
+    from_loop,
+    read_boreholes,
+    read_mesh,
+    read_points,
+)
+from realmodel.core.readers.fault_input import read_fault_points
+from test_damaged_files import LEAPFROG, STICKS
 from test_grid_formats import GRIDS, by_height, expected
 from test_hole_files import LAS3, ags3, ags4, diggs, well_tops
 from test_mesh_dialects import CONTOUR, DTM, GOCAD, SPOT, STRINGS, datamine, drawing
@@ -73,6 +83,8 @@ def petrel(write):
     assert read.columns["Name"].tolist() == ["Well 1", "B", "B"]
     picks = read_boreholes(write("tops.txt", well_tops())).picks
     np.testing.assert_allclose(picks["elevation"], [-25, -10] * 5)
+    sticks, _ = read_fault_points(PointFile(write("f.pol", STICKS)))
+    assert [stick[:, 2].tolist() for stick in sticks] == [[3, 5.5], [6, 7]]
     assert read_points(write("f.cps", CPS3_LINES)).xyz[1].tolist() == [451334.5, 6782345, -2340.6]
 
 
