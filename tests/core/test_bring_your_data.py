@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from large_files import FORMATS, write_points
 from realmodel.core import (
     InputRefused,
     PointFile,
@@ -25,6 +26,7 @@ from test_mesh_dialects import CONTOUR, DTM, GOCAD, SPOT, STRINGS, datamine, dra
 from test_mesh_dialects import WELL as GOCAD_WELL
 from test_named_objects import dxf, glb, landxml, obj, stl
 from test_peer_projects import BOUNDS, BOX, layer_cake, loop_beds
+from test_peer_projects import write as write_rows
 from test_point_formats import CPS3_LINES, EARTHVISION, OPENWORKS, PETREL, SHEET, workbook
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -205,8 +207,10 @@ def shapes(write):
     path = write("m.geojson", json.dumps({"type": "FeatureCollection", "features": features}))
     read = read_points(path, height="ELEV", where={"bed": "A"})
     assert read.xyz.tolist() == [[5000, 9000, 120], [5010, 9000, 120]]
-    grid = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 2\nNODATA_value -9999\n3 4\n"
-    assert read_points(write("g.asc", grid)).xyz.tolist() == [[1, 1, 3], [3, 1, 4]]
+    for name in ("strip.tif", "g.asc", "c.shp", "c.gpkg"):
+        if name in FORMATS:
+            file, places = write_points(name, 9, 7, path.parent)
+            np.testing.assert_array_equal(read_points(file).xyz, places)
     with pytest.raises(InputRefused, match="degrees of longitude and latitude"):
         crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
         point = {
@@ -245,11 +249,13 @@ def assert_cake(project):
 
 def gempy(write):
     points, dips, stack = layer_cake()
-    assert_cake(from_gempy(points, dips, stack=stack, extent=BOX))
+    files = write_rows(write("points.csv", ""), points), write_rows(write("orientations.csv", ""), dips)
+    assert_cake(from_gempy(*files, stack=stack, extent=BOX))
 
 
 def loop(write):
-    assert_cake(from_loop(loop_beds(), [["sand", "shale"], ["basement"]], bounds=BOUNDS))
+    file = write_rows(write("data.csv", ""), loop_beds())
+    assert_cake(from_loop(file, [["sand", "shale"], ["basement"]], bounds=BOUNDS))
 
 
 def excel(write):
