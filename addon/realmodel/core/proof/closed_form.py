@@ -225,7 +225,7 @@ def grid(model: ModelData, shape: Sequence[int], *, threads: int = 0) -> np.ndar
     shape: how many cells along x, y and z. threads: 0 for all that there are. Raises UsageError.
 
     >>> model.grid((2, 1, 3))[:, 0].tolist()
-    [[0, 0, 2], [0, 0, 2]]
+    [[0, -1, -1], [0, 1, -1]]
     """
     if not len(model.vertices):
         box = np.zeros((2, 3))
