@@ -268,6 +268,7 @@ class RealModelFault(
     """A fault: where its surface comes from, and what it displaces."""
 
     stored_trace = ArraysProperty()
+    dips = ArraysProperty()  # of realmodel.core.SpaceDips, of the file of its points
     filters: CollectionProperty(type=RealModelFilter)
     ends_at: CollectionProperty(type=RealModelFaultEnd)
     rocks: CollectionProperty(type=RealModelFaultRock)

@@ -205,6 +205,12 @@ elevation = -3.3
 name = "F5"
 trace = "MULTILINESTRING Z ((440 0 1, 440 30 2), (440 35 2, 440 80 2))"
 dip = 90
+
+[[fault]]
+name = "F6"
+points = "scattered.csv"
+dips = "of_fault.csv"
+extend = 4.4
 """
 
 BODIES = """
@@ -232,6 +238,9 @@ def write_files(folder: Path):
     (folder / "project.toml").write_text(EVERY_KEY + FAULTS + BODIES)
     sticks = [(450 + z / 9, y, z, y) for y in (0, 40, 80) for z in (-90, 0, 90)]
     (folder / "sticks.csv").write_text("x,y,z,s\n" + "".join(f"{x!r},{y},{z},{y}\n" for x, y, z, _ in sticks))
+    scattered = "".join(f"{400 + y},{y},{y * y % 7}\n" for y in range(0, 90, 10))
+    (folder / "scattered.csv").write_text("x,y,z\n" + scattered)
+    (folder / "of_fault.csv").write_text("x,y,z,dip,strike,polarity\n440,40,1,70.5,45,1\n470,70,2,61,44,1\n")
     feature = {"type": "Feature", "properties": {"NAME": "F4", "dip": 50.5, "strike": 1}}
     feature["geometry"] = {"type": "LineString", "coordinates": [[1450, 0], [1460.1, 260]]}
     (folder / "faults.geojson").write_text(json.dumps(feature))

@@ -143,6 +143,15 @@ class RoundTrip(PanelCase):
         self.assertEqual([part.model for part in surface.structures], ["spherical", "gaussian"])
         self.assertTrue(surface.structures[1].use_anisotropy)
 
+    def test_the_dips_of_a_fault_are_removed(self):
+        write_files(self.folder)
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        self.model.active_fault = self.model.faults.find("F6")
+        self.assertEqual(self.model.faults["F6"].dips.count("positions"), 2)
+        ops.fault_dips_remove()
+        self.assertFalse(self.model.faults["F6"].dips)
+        self.refused(ops.fault_dips_remove, "has no dips")
+
     def test_copies_say_the_same(self):
         write_files(self.folder)
         ops.open_project(filepath=str(self.folder / "project.toml"))

@@ -6,6 +6,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ..bl import changes
 from ..bl.objects import shapes
 from ..bl.project import library_rows, project_settings, series_settings, settings, surface_dips
 from ..bl.scene import built_scene, data_objects, live
@@ -375,6 +376,23 @@ def a_series(context):
     rock = settings.active_rock(context.scene)
     has_series = rock is not None and len(rock.series)
     return None if has_series else "the rock mass has no series; add one first (Series, +)"
+
+
+def dips_of_fault(context):
+    row = settings.active_structure(context.scene)
+    return None if settings.kind_of(row) == "fault" and row.dips else "the fault has no dips"
+
+
+class REALMODEL_OT_fault_dips_remove(Reporting, bpy.types.Operator):
+    """Remove the dips of the active fault"""
+
+    bl_label = "Remove Dips of Fault"
+    needs = (a_fault, dips_of_fault)
+
+    def act(self, context):
+        row = settings.active_structure(context.scene)
+        surface_dips.keep(row, None)
+        changes.reading(row, context)
 
 
 def dips_of_series(context):

@@ -9,7 +9,7 @@ from ..core.settings.data_files import MESH_READING, READING
 from . import panel
 from .lists import OfRows, draw_swatch
 from .panel import FoldedPanel, OfAModel, file_field, hint, right_label
-from .surfaces import draw_drawing, draw_figures, draw_filters, draw_property
+from .surfaces import draw_drawing, draw_figures, draw_filters, draw_property, draw_removable
 
 _EMPTY = {
     "FAULT": "Faults displace the layers. Select open meshes or lines on the ground, import meshes, fault "
@@ -71,6 +71,8 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
 
 def _draw_fault(layout, context, fault):
     draw_drawing(layout, context, "realmodel.draw_stick")
+    if fault.source == "POINTS_FILE" and fault.dips:
+        draw_removable(layout, "Dips of the fault", "realmodel.fault_dips_remove")
     if fault.source in settings.TRACES:
         for key, setting in FAULT.items():
             if setting.shapes == OF_TRACES:

@@ -50,9 +50,9 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
             )
         _draw_adding(layout)
         if rock.observations:
-            _draw_removable(layout, "Observations of blocks", "realmodel.observations_remove")
+            draw_removable(layout, "Observations of blocks", "realmodel.observations_remove")
         if rock.dips:
-            _draw_removable(layout, "Dips of the rock mass", "realmodel.rock_dips_remove")
+            draw_removable(layout, "Dips of the rock mass", "realmodel.rock_dips_remove")
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
@@ -81,7 +81,7 @@ def _draw_adding(layout):
     line.operator("realmodel.boreholes_read", text="Import Field Data...", icon="EMPTY_SINGLE_ARROW")
 
 
-def _draw_removable(layout, text, operator):
+def draw_removable(layout, text, operator):
     """Data that are stored in the .blend, and a button that removes them."""
     row = layout.row()
     row.label(text=text)
@@ -106,7 +106,7 @@ def _draw_surface(layout, context, surface):
     if series_settings.is_level_set(surface):
         hint(layout, "A level set of the field of its series.")
         if surface.dips:
-            _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
+            draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
             layout.operator("realmodel.series_take_dips", icon="FORWARD")
     elif surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
@@ -118,7 +118,7 @@ def _draw_surface(layout, context, surface):
             panel.draw(layout, surface, "observed", SURFACE)
         panel.draw(layout, surface, "correlation", SURFACE)
         if surface.dips:
-            _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
+            draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
         _draw_dips_unused(layout, surface)
     elif len(context.scene.realmodel.faults):
         line = layout.row(heading="Continue By")

@@ -7,7 +7,7 @@ from ...core import Body, Fault, Project
 from ...core.base import work
 from ...core.project.structure_entries import FAULT
 from ...core.structures.shapes.reading import read_structures
-from . import method_settings, settings
+from . import method_settings, settings, surface_dips
 
 
 def entry_of(place, row):
@@ -17,7 +17,9 @@ def entry_of(place, row):
         if body.void:
             body.property = 0
         return body
-    return Fault(**method_settings.values(row, Fault, "points" if row.source == "POINTS_FILE" else "mesh"))
+    if row.source == "POINTS_FILE":
+        return Fault(**method_settings.values(row, Fault, "points"), dips=surface_dips.of_row(row))
+    return Fault(**method_settings.values(row, Fault, "mesh"))
 
 
 def set_trace(fault, row, trace):
@@ -50,7 +52,7 @@ def mesh_arrays(entry):
 def clear_extension(entry):
     """The mesh of a fault was made from its file, as its settings say: they are not to be applied again."""
     if isinstance(entry, Fault):
-        entry.extend, entry.stick = 0.0, None
+        entry.extend, entry.stick, entry.dips = 0.0, None, None
 
 
 def forget_extension(row):
@@ -84,6 +86,8 @@ def _fill_shape(row, entry, units):
         row.source = "POINTS_FILE" if points else "TRACE_FILE" if trace else "MESH_FILE"
         row.filepath = str(entry.input_file)
         method_settings.fill_reading(row, points or trace or entry.mesh_file)
+        if points:
+            surface_dips.keep(row, entry.dips)
         return
     if isinstance(entry, Body) and not entry.has_shape:
         row.source = "INTERVALS"

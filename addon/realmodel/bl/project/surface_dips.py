@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dips of a surface, a series or a rock mass, stored in its row."""
+"""The dips of a surface, a series, a rock mass or a fault, stored in its row."""
 
 from dataclasses import replace
 

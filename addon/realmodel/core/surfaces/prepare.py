@@ -19,6 +19,7 @@ from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from ..project.project import Project, Rock, surface_item
 from ..project.series import Series
+from ..project.structure_entries import Fault
 from ..readers import read_dips, read_space_dips
 from ..readers.rasters.geotiff import geotiff_system
 from ..readers.tables.dips import DIPS
@@ -194,7 +195,16 @@ def with_arrays(project: Project) -> Project:
             rocks.append(replace(field.rock, surfaces=surfaces, series=series, dips=dips))
         return rocks
 
-    return replace(project, rocks=run(task))
+    return replace(
+        project, rocks=run(task), faults=[_with_dips(fault, project.units) for fault in project.faults]
+    )
+
+
+def _with_dips(fault: Fault, units: str) -> Fault:
+    if fault.dip_file is None:
+        return fault
+    with naming(fault.item):
+        return replace(fault, dips=read_space_dips(fault.dip_file, units))
 
 
 def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWarning]]:
