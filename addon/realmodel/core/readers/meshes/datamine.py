@@ -84,6 +84,8 @@ def _table(file: Path) -> dict[str, np.ndarray]:
     try:
         size = _word_size(raw)
         return _binary_table(raw, size) if size else _text_table(file)
+    except InputRefused:
+        raise
     except UNREADABLE as error:
         raise unreadable(file, "Datamine", error) from error
 
