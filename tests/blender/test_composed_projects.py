@@ -113,7 +113,7 @@ class Written(PanelCase):
         next(surface for surface in rock.surfaces if surface.name == "distance").name = "moved"
         seen = self.composed().observations
         self.assertEqual(sorted(set(seen.blocks)), ["in holes only", "kriged", "lens", "moved", "smooth"])
-        self.assertEqual(len(seen), 26)
+        self.assertEqual(len(seen), 32)
 
     def test_a_map_becomes_observations(self):
         write_files(self.folder)
