@@ -112,8 +112,8 @@ class Written(PanelCase):
         self.assertIn("distance", self.composed().observations.blocks)
         next(surface for surface in rock.surfaces if surface.name == "distance").name = "moved"
         seen = self.composed().observations
-        self.assertEqual(sorted(set(seen.blocks)), ["in holes only", "kriged", "moved", "smooth"])
-        self.assertEqual(len(seen), 26)
+        self.assertEqual(sorted(set(seen.blocks)), ["in holes only", "kriged", "lens", "moved", "smooth"])
+        self.assertEqual(len(seen), 32)
 
     def test_a_map_becomes_observations(self):
         write_files(self.folder)
@@ -135,7 +135,7 @@ class Written(PanelCase):
         ops.boreholes_read(
             filepath=str(self.folder / "picks.csv"), collars="collars.csv", columns="hole = BHID"
         )
-        self.assertEqual([len(s.points) for s in self.composed().surfaces], [6, 6])
+        self.assertEqual([len(s.points) for s in self.composed().surfaces], [3, 3])  # in their place
         for surface in rock.surfaces:
             surface.method = "plane"
         ops.build()

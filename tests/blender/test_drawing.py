@@ -5,6 +5,7 @@ import sys
 import unittest
 
 import bpy
+import numpy as np
 from blender_state import empty_file, inventory
 from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
@@ -282,6 +283,13 @@ class States(PanelCase):
         ops.fault_body_add(empty=True, kind="FAULT")
         ops.fault_list_add(of="ENDS_AT")
         drawn |= self.draw().operators
+        fault = self.model.faults[-1]
+        with settings.filling():
+            source, fault.source = fault.source, "POINTS_FILE"
+            fault.dips = {"positions": np.zeros((1, 3)), "normals": np.ones((1, 3))}
+        drawn |= self.draw().operators
+        with settings.filling():
+            fault.source, fault.dips = source, {}
         ops.fault_body_add(empty=True, kind="BODY")
         activity.problem, activity.problem_object = "a problem", "field"
         drawn |= self.draw().operators

@@ -53,14 +53,15 @@ def forget(rock, holes):
     """Takes the picks of some holes away from the surfaces of a rock mass that have them."""
     earlier = borehole_picks.of_rock(rock)
     places = {tuple(place) for hole in holes if hole in earlier for _, place in earlier[hole][1]}
-    for row in rock.surfaces if places else ():
-        if row.source != "POINTS_FILE" or row.filepath or not row.stored:
-            continue
-        points = row.stored["points"]
-        others = np.array([tuple(point) not in places for point in points.tolist()], bool)
-        if not others.all():
-            keep_points(row, points[others])
-            row.source = "POINTS_FILE" if others.any() else "NONE"
+    with settings.filling():  # drawn again once, by what gives points in their place
+        for row in rock.surfaces if places else ():
+            if row.source != "POINTS_FILE" or row.filepath or not row.stored:
+                continue
+            points = row.stored["points"]
+            others = np.array([tuple(point) not in places for point in points.tolist()], bool)
+            if not others.all():
+                keep_points(row, points[others])
+                row.source = "POINTS_FILE" if others.any() else "NONE"
 
 
 def _tops(picks, name):
@@ -81,10 +82,12 @@ def own_points(scene, row):
 
 def keep_points(row, points):
     """Gives a surface points that are stored in the .blend."""
-    row.source, row.filepath = "POINTS_FILE", ""
-    method_settings.fill_reading(row)
-    row.stored, row.stored_stamp = {"points": points}, ""
-    row.interface_digest = ""
+    with settings.filling():
+        row.filepath = ""
+        method_settings.fill_reading(row)
+        row.stored, row.stored_stamp = {"points": points}, ""
+        row.interface_digest = ""
+    row.source = "POINTS_FILE"  # last and alone: the data are drawn again once, not for each setting
 
 
 def left_out(row):
