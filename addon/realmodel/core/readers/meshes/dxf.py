@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...base.algebra import dot
 from ...base.errors import InputRefused, number_list
@@ -174,8 +175,20 @@ class _Shapes:
             if self._inserts > _MOST_INSERTS:
                 what = f"blocks are inserted more than {_MOST_INSERTS:,} times"
                 raise InputRefused(what, file=self._file, line=insert.line)
-            whole = own if change is None else change @ np.vstack([own, [0.0, 0.0, 0.0, 1.0]])
+            whole = own if change is None else _after(own, change)
             yield from self.shapes(block.parts, whole, layer, named)
+
+
+def _turned(places: ArrayLike, axes: np.ndarray) -> np.ndarray:
+    """(N, 3) places by other axes, the columns of (3, 3)."""
+    return dot(np.reshape(places, (-1, 1, 3)), axes)
+
+
+def _after(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(3, 4) one change of places, then another."""
+    moved = _turned(first.T, second[:, :3])
+    moved[3] += second[:, 3]
+    return moved.T
 
 
 def _insert_changes(insert: Entity, block: Entity) -> Iterator[np.ndarray]:
@@ -189,26 +202,26 @@ def _insert_changes(insert: Entity, block: Entity) -> Iterator[np.ndarray]:
     axes = _axes(insert)
     columns, rows = max(insert.whole(70, 1), 1), max(insert.whole(71, 1), 1)
     base, at = np.array(block.place()), np.array(insert.place())
-    linear = dot(axes[:, None], turn.T[None]) * scales
+    linear = _turned(axes, turn.T) * scales
     if not np.isfinite(linear).all():
         raise ValueError
     for row in range(rows):
         for column in range(columns):
             step = np.array([column * insert.number(44), row * insert.number(45), 0.0])
-            yield np.column_stack([linear, axes @ (at + turn @ step) - linear @ base])
+            yield np.column_stack([linear, dot(axes, at + dot(turn, step)) - dot(linear, base)])
 
 
 def _axes(entity: Entity) -> np.ndarray:
     """(3, 3) the axes, as columns, of the places of a plane entity, by the direction in which it is extruded:
     the "arbitrary axis algorithm" of the reference. Raises ValueError."""
     normal = np.array([entity.number(code, default) for code, default in ((210, 0), (220, 0), (230, 1))])
-    length = math.sqrt(float(normal @ normal))
+    length = math.sqrt(float(dot(normal, normal)))
     if not length > 0.0 or ((normal[:2] == 0).all() and normal[2] > 0):
         return np.eye(3)
     normal /= length
     beside = [0.0, 1.0, 0.0] if (np.abs(normal[:2]) < 1 / 64).all() else [0.0, 0.0, 1.0]
     x = np.cross(beside, normal)
-    x /= math.sqrt(float(x @ x))
+    x /= math.sqrt(float(dot(x, x)))
     return np.column_stack([x, np.cross(normal, x), normal])
 
 
@@ -216,7 +229,7 @@ def _moved(shape: _Shape, change: np.ndarray) -> _Shape:
     def moved(places: list[_Place]) -> list[_Place]:
         if not places:
             return []
-        return list(map(tuple, (np.array(places) @ change[:, :3].T + change[:, 3]).tolist()))
+        return list(map(tuple, (_turned(places, change[:, :3]) + change[:, 3]).tolist()))
 
     return shape._replace(faces=[moved(face) for face in shape.faces], places=moved(shape.places))
 
@@ -226,7 +239,7 @@ def _in_plane(entity: Entity, places: list[_Place]) -> list[_Place]:
     axes = _axes(entity)
     if (axes == np.eye(3)).all():
         return places
-    return list(map(tuple, (np.array(places).reshape(-1, 3) @ axes.T).tolist()))
+    return list(map(tuple, _turned(places, axes).tolist()))
 
 
 def _without_repeats(corners: list) -> list:

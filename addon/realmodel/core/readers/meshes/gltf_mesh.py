@@ -13,6 +13,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from ...base.algebra import dot
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step, read_bytes
 from ..objects.geo_object import SURFACE, GeoObject, ObjectName
@@ -115,14 +116,15 @@ class _Content:
             if depth > _DEEPEST:
                 raise ValueError("its nodes are parts of one another")
             node = nodes[number]
-            change = change @ _change(node)
+            change = dot(change[:, None], _change(node).T[None])
             waiting += [(child, change, depth + 1) for child in reversed(node.get("children", []))]
             if "mesh" in node:
                 mesh = self._json["meshes"][node["mesh"]]
                 corners = [self._corners(primitive) for primitive in mesh["primitives"]]
                 with np.errstate(invalid="ignore"):  # what is not finite is refused when it is read
-                    places = np.concatenate([np.empty((0, 3)), *corners]) @ change[:3, :3].T + change[:3, 3]
-                if np.linalg.det(change[:3, :3]) < 0:  # a mirror turns faces
+                    places = np.concatenate([np.empty((0, 3)), *corners])
+                    places = dot(places[:, None], change[:3, :3]) + change[:3, 3]
+                if dot(change[0, :3], np.cross(change[1, :3], change[2, :3])) < 0:  # a mirror turns faces
                     places = places.reshape(-1, 3, 3)[:, ::-1].reshape(-1, 3)
                 if len(places):
                     yield str(node.get("name") or mesh.get("name") or ""), places

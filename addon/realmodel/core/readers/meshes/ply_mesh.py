@@ -48,7 +48,7 @@ def begins_as_ply(head: bytes, _size: int = 0) -> bool:
 
 def begins_as_ply_points(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one without faces."""
-    header, end, _ = head.partition(_END)
+    header, end, _ = head.replace(b"\r", b"\n").partition(_END)
     return begins_as_ply(head) and bool(end) and not _FACES.search(header)
 
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...base.algebra import dot
 from ...readers.tables.interval_values import IntervalValues
 
 _MOST = 500  # intervals of a hole that meet, of which no more can be seen
@@ -61,7 +62,7 @@ def sides_of(
     _, first, number = np.unique(holes, return_index=True, return_inverse=True)
     last = len(holes) - 1 - np.unique(holes[::-1], return_index=True)[1]
     ways = ends[last] - begins[first]
-    is_steep = np.abs(ways @ up) >= np.abs(ways @ right)
+    is_steep = np.abs(dot(ways, up)) >= np.abs(dot(ways, right))
     return np.where(is_steep[:, None], right, up)[number.reshape(-1)]
 
 
