@@ -3,6 +3,7 @@
 
 import sys
 import unittest
+from unittest import mock
 
 import bpy
 import numpy as np
@@ -10,6 +11,7 @@ from blender_state import empty_file, inventory
 from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
 from realmodel.bl.display import ensembles
+from realmodel.bl.field import profiles
 from realmodel.bl.project import settings
 from realmodel.bl.scene import quality, samples
 from realmodel.core.settings.methods import METHODS
@@ -305,6 +307,10 @@ class States(PanelCase):
         ops.edit_surface()
         drawn |= self.draw().operators
         ops.edit_done()
+        problem = settings.active_rock(self.scene).hole_problems.add()
+        problem.kind, problem.hole, problem.action = "gap", "B1", "repaired"
+        drawn |= self.draw().operators
+        drawn |= drawn_preferences().operators
         known = {
             cls.bl_idname
             for cls in bpy.types.Operator.__subclasses__()
@@ -313,18 +319,28 @@ class States(PanelCase):
         self.assertEqual(known - drawn, BY_SCRIPT)
 
 
-class Preferences(PanelCase):
-    def test_preferences(self):
-        addons = bpy.context.preferences.addons
-        addons.new().module = "realmodel"
-        self.addCleanup(lambda: addons.remove(addons["realmodel"]))
+def drawn_preferences():
+    """What the preferences of the add-on draw, with a profile of imports."""
+    addons = bpy.context.preferences.addons
+    addons.new().module = "realmodel"
+    try:
         drawing = Drawing()
         owner = addons["realmodel"].preferences
         me = type("Me", (), {"layout": Layout(drawing, bpy.context)})()
         me.bl_rna = owner.bl_rna
         for name in preferences.RealModelPreferences.__annotations__:
             setattr(me, name, getattr(owner, name))
-        preferences.RealModelPreferences.draw(me, bpy.context)
+        profile = profiles.ImportProfile("tops", "points", ("E", "N"), {"x": "E"})
+        with mock.patch.object(profiles, "all_of_user", lambda: [profile]):
+            preferences.RealModelPreferences.draw(me, bpy.context)
+        return drawing
+    finally:
+        addons.remove(addons["realmodel"])
+
+
+class Preferences(PanelCase):
+    def test_preferences(self):
+        drawing = drawn_preferences()
         wanted = {f"RealModelPreferences.{name}" for name in preferences.RealModelPreferences.__annotations__}
         self.assertEqual(drawing.properties, wanted)
 
