@@ -201,7 +201,7 @@ check_tidy() {
 in_time() { timeout --kill-after=10 "$1" env --default-signal=INT "${@:2}"; } # LIMIT COMMAND...
 
 test_core() { # on all processors; a test that hangs fails after ten minutes, and the others go on
-    in_time 45m "$venv/bin/python" -m pytest tests/core --numprocesses "$(nproc)" --dist worksteal --timeout 600 \
+    in_time 60m "$venv/bin/python" -m pytest tests/core --numprocesses "$(nproc)" --dist worksteal --timeout 600 \
         --junitxml="$logs/core.xml"
 }
 
