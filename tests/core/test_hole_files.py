@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Boreholes, InputRefused, build, load_project, read_boreholes
+from realmodel.core import Boreholes, InputRefused, UsageError, build, load_project, read_boreholes
 from realmodel.core.readers import read_boreholes as read_picks
 from realmodel.core.readers import table_contents, table_kind
 from realmodel.core.readers.hole_values import read_interval_values
@@ -425,3 +425,11 @@ def test_diggs(write, unit, by):
 def test_damaged_diggs(write, text, words):
     with pytest.raises(InputRefused, match=words):
         read_boreholes(write("site.xml", text))
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"), [({"units": "furlong"}, "unknown unit"), ({"colars": "c"}, "no key")]
+)
+def test_keys_of_a_call_are_checked_as_those_of_points(tmp_path, keys, words):
+    with pytest.raises(UsageError, match=words):
+        read_boreholes(tmp_path / "a.ags", **keys)

@@ -3,19 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..base.errors import UsageError
 from ..base.table import Table
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
-from ..settings.method_options import OptionRefused
 from .borehole_input import read_repaired
 from .hole_values import read_logs
+from .point_input import reading_keys
 from .tables.hole_data import HoleTables
 from .tables.hole_problems import HoleProblem
 from .tables.hole_tables import Row
@@ -31,8 +31,8 @@ class BoreholeTables:
     north), inclination (degrees from the vertical), dip (from the horizontal). intervals: hole, from, to,
     block. picks: hole, surface, depth, elevation. logs: hole, from, to, and the curves of LAS files by their
     names with units, "GR (GAPI)": a row for each sample, up to the middle between it and the next one.
-    problems: of rows that were repaired, left out, or are
-    used although something is wrong. warnings: sentences.
+    problems: of rows that were repaired, left out, or are used although something is wrong. warnings:
+    sentences.
     """
 
     collars: Table
@@ -44,16 +44,22 @@ class BoreholeTables:
     warnings: list[str] = field(default_factory=list)
 
 
-def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **keys: Any) -> BoreholeTables:
+def read_boreholes(
+    file: str | Path | None = None,
+    units: str = MODEL_UNIT,
+    *,
+    file_units: str | Mapping | None = None,
+    **keys: Any,
+) -> BoreholeTables:
     """Boreholes as a project reads them, repaired.
 
     file: of a format that holds all tables; else keys say which there are: collars, survey, intervals, picks,
     and the other keys of Boreholes. units: of the model; file_units: of the files where they do not say it.
-    Raises InputRefused naming file and line, UsageError for an unknown key.
+    Raises InputRefused naming file and line, UsageError for an unknown unit or key.
 
     >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
     """
-    boreholes = _boreholes(file, keys)
+    boreholes = reading_keys(Boreholes, file, units, file_units, keys)
     tables = read_repaired(boreholes, units)
     scale = tables.scale(units)
     height = scale[2]
@@ -66,20 +72,6 @@ def read_boreholes(file: str | Path | None = None, units: str = MODEL_UNIT, **ke
         tables.problems,
         tables.warnings,
     )
-
-
-def _boreholes(file: str | Path | None, keys: dict[str, Any]) -> Boreholes:
-    if "file_units" in keys:
-        keys = keys | {"units": keys["file_units"]}
-        del keys["file_units"]
-    if file is not None:
-        keys = keys | {"file": file}
-    try:
-        boreholes = Boreholes(**keys)
-        boreholes.check()
-    except (TypeError, OptionRefused) as error:
-        raise UsageError(f"read_boreholes: {error}") from error
-    return boreholes
 
 
 def _texts(rows: list[Row], column: str) -> np.ndarray:

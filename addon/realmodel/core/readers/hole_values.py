@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.errors import InputRefused, number_list
-from ..base.text import Step, no_step
+from ..base.text import Step, no_step, reading
 from ..base.units import MODEL_UNIT, factor, unit_of
 from ..settings.data_files import Boreholes
 from .hole_files import read_hole_files
@@ -29,11 +29,8 @@ _MOST_PLACES = 2000  # along a hole; between them it is straight
 
 def is_log(file: Path) -> bool:
     """Whether a file is one of logs. Raises InputRefused where it cannot be read."""
-    try:
-        with Path(file).open("rb") as opened:
-            return begins_as_las(opened.read(_HEAD))
-    except OSError as error:
-        raise InputRefused(f"it cannot be read: {error.strerror or error}", file=file) from error
+    with reading(file), Path(file).open("rb") as opened:
+        return begins_as_las(opened.read(_HEAD))
 
 
 def read_logs(tables: HoleTables, holes: Holes, model_unit: str) -> list[IntervalValues]:

@@ -152,13 +152,13 @@ def read_points(
 
 
 def reading_keys(of: type, file: Any, units: str, file_units: Any, keys: Mapping[str, Any]) -> Any:
-    """A PointFile or MeshFile with the reading keys of a call. Raises UsageError."""
+    """A PointFile, MeshFile or Boreholes with the reading keys of a call. Raises UsageError."""
     known = [key for key in settings_of(of) if key not in ("file", "units")]
     if unknown := [key for key in keys if key not in known]:
         raise UsageError(f"there is no key '{unknown[0]}'; there are {', '.join([*known, 'file_units'])}")
     try:
         checked_unit("units", units)
-        given = of(file, units=file_units, **keys)
+        given = of(file=file, units=file_units, **keys)
         given.check()
     except OptionRefused as error:
         raise UsageError(str(error)) from error
