@@ -368,7 +368,7 @@ REALMODEL_FH_faults_and_bodies = drop_handler(
     "REALMODEL_FH_faults_and_bodies",
     "Meshes and fault sticks that are dropped into the viewport become faults and bodies",
     "RealModel faults and bodies",
-    ("realmodel.fault_body_add", endings(MESH, STICKS)),
+    ("realmodel.fault_body_add", endings(MESH, OBJECTS, STICKS)),
 )
 
 

@@ -42,7 +42,7 @@ def block_volumes():
 def exact_volumes():
     """{block: volume} of the same example, built without Blender's meshes."""
     core = installed.part("core")
-    model = core.build(core.load_project(installed.part("bl.project.samples").project_file(SAMPLE)))
+    model = core.build(core.load_project(installed.part("bl.scene.samples").project_file(SAMPLE)))
     check(model.validate().passed, "the model is not a valid one")
     return {block.name: block.volume for block in model.blocks if block.cells}
 
