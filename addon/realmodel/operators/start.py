@@ -48,6 +48,7 @@ def _begin(scene, name, interfaces=()):
         group.active_rock = group.stage = group.active_property = group.active_result = 0
         group.explode = 0.0
         group.show_data = False
+        group.proposal.clear()
     data_objects.update(scene)
 
 
@@ -162,8 +163,13 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
 
 
 def _open(scene, path):
-    file_project = load_project(path)
-    project = with_arrays(file_project)
+    project = load_project(path)
+    show(scene, project, with_arrays(project))
+
+
+def show(scene, file_project, project):
+    """Shows a project in place of the model of a scene. project: the same with its data read into arrays, see
+    `with_arrays`."""
     _begin(scene, project.name)
     project_settings.fill(scene, project)
     map_settings.keep_of_project(scene, file_project)

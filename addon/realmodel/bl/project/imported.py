@@ -69,6 +69,12 @@ def names(rock):
     return {row.name: row.unit for row in rock.codes if row.unit != row.name}
 
 
+def unit_text(rock, row):
+    """What a code means, as people say it: the block beneath its surface, or a body; "nothing"."""
+    surface = rock.surfaces.get(row.unit)
+    return (surface is not None and surface.block) or row.unit or "nothing"
+
+
 def fitting(rock, pattern):
     """The codes that a pattern fits, whatever the capitals: several, with commas, of * and ?."""
     parts = [part.strip().casefold() for part in pattern.split(",") if part.strip()]

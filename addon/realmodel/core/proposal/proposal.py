@@ -381,7 +381,7 @@ def _warn(proposal: Proposal, data: _Data) -> None:
     for other in proposal.alternatives:
         found.append(
             f"nothing decides whether '{other.younger}' is younger than '{other.older}': taken so; "
-            f"{'; '.join(other.reasons)}. If it is not, exchange their surfaces in project.toml"
+            f"{'; '.join(other.reasons)}. If it is not, exchange their surfaces"
         )
     for conflict in proposal.conflicts:
         found.append(
