@@ -4,7 +4,7 @@
 import bpy
 
 from .lists import OfRows
-from .panel import TabPanel, message
+from .panel import TabPanel, message, right_label
 
 _ICONS = {
     **dict.fromkeys(("alternative", "lens", "repeat", "warning"), "QUESTION"),
@@ -16,9 +16,8 @@ class REALMODEL_UL_proposal(OfRows, bpy.types.UIList):
     """What a proposal has decided, and what it could not decide."""
 
     def draw_row(self, _context, row, item):
-        split = row.split(factor=0.45)
-        split.label(text=item.name, icon=_ICONS.get(item.kind, "CHECKMARK"))
-        split.label(text=f"{item.hole} {item.depth}".strip() or item.text)
+        row.label(text=item.name, icon=_ICONS.get(item.kind, "CHECKMARK"))
+        right_label(row, f"{item.hole} {item.depth}".strip())
 
 
 class REALMODEL_PT_proposal(TabPanel, bpy.types.Panel):
