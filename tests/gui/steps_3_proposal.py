@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From three tables to a proposed project in four clicks: the button of the panel, all files, the button of the
-browser, that of the dialog. Then undo, and Esc while it works."""
+"""From three tables to a proposed project in four clicks: the button of the panel, all files, the buttons of
+the browser and of the dialog. Then undo, and Esc while it works."""
 
 import shutil
 
