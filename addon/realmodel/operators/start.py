@@ -227,7 +227,8 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
     def act(self, context):
         path = chosen_path(self, "the project")
         depsgraph = context.evaluated_depsgraph_get()
-        project = project_settings.read_project(project_settings.compose(context.scene, depsgraph))
+        composed = project_settings.compose(context.scene, depsgraph)
+        project = project_settings.read_as_given(context.scene, composed)
         written = save_project(project, path)
         context.scene.realmodel.project_file = str(path)
         self.report({"INFO"}, f"Saved {path.name} and {counted(len(written) - 1, 'file')} beside it")
