@@ -92,6 +92,12 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
+    only_try: BoolProperty(
+        name="Only Try",
+        description="Read the files, and change nothing",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+
     _browses = False
 
     def invoke(self, context, event):
@@ -121,6 +127,8 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
         surface = _surface_for_dips(scene).name if tables.dips and series is None else ""
         rock = settings.active_rock(scene)
         data = field_tables.read(scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces)
+        if self.only_try:
+            return
         rock = rock or add_rock(scene)
         field_tables.forget(rock, data)
         warnings = [*data.picks.warnings, *data.warnings, *left_out_texts(data.left_out).values()]

@@ -150,7 +150,7 @@ class ChosenTables(TableDialog, FilesImportHelper):
 
     def called(self):
         """The properties of an operator for the same files, but for what codes mean."""
-        ignored = ("filter_glob", "check_existing", "headings", "names", "files", "propose")
+        ignored = ("filter_glob", "check_existing", "headings", "names", "files", "propose", "only_try")
         properties = self.as_keywords(ignore=ignored)
         paths = [str(path) for path in self.paths()]
         if paths:
