@@ -285,3 +285,20 @@ def test_a_point_in_another_column_is_no_decimal_comma(tmp_path):
     file.write_text("hole;x;y;z;surface;depth\nB1;100.5;200.5;7;Top;1,5\n")
     with pytest.raises(InputRefused, match="depth is not a number: '1,5'"):  # as all that there are
         read_boreholes(Boreholes(picks=file))
+
+
+@pytest.mark.parametrize("meaning", ["z", "surface"])
+def test_a_column_that_is_not_to_be_read(tmp_path, meaning):
+    """It is as if the table had none, whatever it holds."""
+    columns = {"hole": "B1", "x": "0", "y": "0", "z": "7", "surface": "Top", "depth": "2"}
+    whole, without = tmp_path / "whole.csv", tmp_path / "without.csv"
+    for file, left in ((whole, ()), (without, (meaning,))):
+        shown = {name: text for name, text in columns.items() if name not in left}
+        file.write_text(f"{','.join(shown)}\n{','.join(shown.values())}\n")
+    assert read_boreholes(Boreholes(picks=whole)).points["Top"].tolist() == [[0, 0, 5]]
+    said = []
+    for file, named in ((whole, {meaning: False}), (without, {})):
+        with pytest.raises(InputRefused) as refused:
+            read_boreholes(Boreholes(picks=file, columns=named))
+        said.append(refused.value.what)
+    assert said[0] == said[1]

@@ -103,7 +103,7 @@ class ChosenTables(TableDialog, FilesImportHelper):
     columns: StringProperty(
         name="Columns",
         description="Columns with other names, in any of the tables, such as hole = BHID; "
-        "depth = FROM. There are " + ", ".join(field_tables.ALL_COLUMNS),
+        "depth = FROM; dip = (nothing: not read). There are " + ", ".join(field_tables.ALL_COLUMNS),
     )
     units: EnumProperty(
         name="Unit",
@@ -160,13 +160,17 @@ class ChosenTables(TableDialog, FilesImportHelper):
 
     def named_columns(self):
         """{meaning: column} of those that are called otherwise than usually, as they were typed or chosen in
-        the menus. Raises InputRefused where tables contradict one another."""
+        the menus; False for what is ignored. Raises InputRefused where tables contradict one another."""
         columns = reading_text.named_columns(self.columns)
         chosen = [(self.columns_of(p.file), self.understood(p)) for p in self._previews]
         for of_table, usual in chosen:
             columns |= {m: name for m, name in of_table.items() if usual.get(m) != name}
+        columns |= {m: False for of_table, usual in chosen for m in usual if m not in of_table}
         for of_table, _ in chosen:
             for meaning, column in of_table.items():
+                if columns.get(meaning) is False:
+                    what = f"'{meaning}' is column {column} in one table, and ignored in another"
+                    raise InputRefused(what, advice="import the tables one after another")
                 if columns.get(meaning, column) != column and "azimuth" not in of_table:
                     what = f"'{meaning}' is column {column} in one table and {columns[meaning]} in another"
                     raise InputRefused(what, advice="give the column the same name in all tables")

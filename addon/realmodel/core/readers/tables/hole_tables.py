@@ -373,7 +373,7 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
     as_written = [name.strip().lower() for name in names]
     columns: dict[str, int] = {}
     for column, called in reading.columns.items():  # first, so that no other column takes what they name
-        if column not in meanings:
+        if column not in meanings or called is False:
             continue
         if isinstance(called, int):
             columns[column] = called - 1
@@ -383,7 +383,8 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
             columns[column] = at
     for column, aliases in meanings.items():
         # depths of picks are often called otherwise than a survey's
-        if column in columns or (reading.columns.get(column) is not None and meanings is not SURVEY):
+        called = reading.columns.get(column)
+        if column in columns or called is False or (called is not None and meanings is not SURVEY):
             continue
         at = _named(names, aliases)
         if at is not None and at not in columns.values():
