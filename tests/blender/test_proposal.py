@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A project proposed in the panel: in the scene with its reasons, or nothing changes; undone in one step."""
 
+import json
+
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops
@@ -99,3 +101,28 @@ class Proposals(PanelCase):
         self.assertEqual(set(observed.blocks), {row.name for row in rock.surfaces})
         ops.build()
         self.assertEqual(len([row for row in self.model.results if row.cells]), 3)
+
+    def test_of_a_map_on_its_ground(self):
+        """Its units, the ground as the youngest surface; without a ground it is refused."""
+        shapes = []
+        for number, (age, unit) in enumerate(((3, "Marl"), (2, "Sand"), (1, "Clay"))):
+            west, east = 100.0 * number, 100.0 * (number + 1)
+            ring = [[west, 0.0], [east, 0.0], [east, 200.0], [west, 200.0], [west, 0.0]]
+            shapes.append(
+                {
+                    "type": "Feature",
+                    "properties": {"unit": unit, "age": age},
+                    "geometry": {"type": "Polygon", "coordinates": [ring]},
+                }
+            )
+        maps = self.folder / "map.geojson"
+        maps.write_text(json.dumps({"type": "FeatureCollection", "features": shapes}))
+        places = [f"{x},{y},{100 - 0.1 * x}" for x in range(0, 301, 20) for y in range(0, 201, 20)]
+        (self.folder / "ground.csv").write_text("\n".join(["x,y,z", *places]) + "\n")
+        self.refused(ops.propose_project, "no heights", filepath=str(maps), map_block="unit")
+        self.assertFalse(self.model.exists)
+        ops.propose_project(filepath=str(maps), map_block="unit", map_ground="ground.csv")
+        self.assertEqual(sorted(self.blocks()), ["Clay", "Marl", "Sand"])
+        self.assertEqual(self.model.rocks[0].surfaces[-1].name, "ground")
+        self.assertTrue(self.model.view.show_map)
+        ops.build()

@@ -14,9 +14,9 @@ from .panel import FoldedPanel, hint, message, right_label
 
 def _columns(layout):
     """Of the table: a tick and the code, holes, length, unit."""
-    split = layout.split(factor=0.34)
-    code, rest = split.row(), split.split(factor=0.22)
-    holes, rest = rest.row(), rest.split(factor=0.42)
+    split = layout.split(factor=0.3)
+    code, rest = split.row(), split.split(factor=0.25)
+    holes, rest = rest.row(), rest.split(factor=0.55)
     return code, holes, rest.row(), rest.row()
 
 

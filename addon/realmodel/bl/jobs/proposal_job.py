@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A project proposed from field data alone, in a thread; the main thread puts it into the scene."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...core import InputRefused, propose_project
 from ...core.proposal import ProposedProject
@@ -41,9 +41,11 @@ class ProposalJob(ThreadJob):
             raise InputRefused("a project is proposed from boreholes or a map", advice=advice)
         if tables.boreholes is None and not tables.maps[0].ground:
             raise InputRefused("a map alone has no heights", advice="choose a Ground beside it")
+        ground = tables.maps[0].ground if tables.maps else None
         self._given = {
             "boreholes": tables.boreholes,
-            "map": next(iter(tables.maps), None),
+            "map": replace(tables.maps[0], ground=None) if tables.maps else None,
+            "ground": ground or None,
             "dips": next(iter(dips), None),
         }
 
