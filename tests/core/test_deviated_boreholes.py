@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, build, load_project
-from realmodel.core.readers import read_boreholes
+from realmodel.core.readers import read_picks
 from realmodel.core.readers.tables.holes import WellTrajectory, direction, dogleg_angles
 
 NEAR = {"rtol": 0, "atol": 1e-9}
@@ -96,7 +96,7 @@ SURVEY = f"hole,depth,azimuth,dip\nB1,{100 + 50 * math.pi},90,0\nB1,0,90,-90\nB1
 
 
 def read(write, survey=SURVEY, collars=COLLARS, picks=PICKS, **keys):
-    return read_boreholes(
+    return read_picks(
         Boreholes(
             picks=write("p.csv", picks),
             collars=collars and write("c.csv", collars),

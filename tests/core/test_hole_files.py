@@ -4,8 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused, UsageError, build, load_project, read_boreholes
-from realmodel.core.readers import read_boreholes as read_picks
-from realmodel.core.readers import table_contents, table_kind
+from realmodel.core.readers import read_picks, table_contents, table_kind
 from realmodel.core.readers.hole_values import read_interval_values
 from test_reported_boreholes import LOG, PLACES, assert_layers
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, PointFile, read_mesh, read_points
-from realmodel.core.readers import UnitNames, is_mesh_file, read_boreholes
+from realmodel.core.readers import UnitNames, is_mesh_file, read_picks
 from realmodel.core.readers.contents import layer_names
 from realmodel.core.readers.fault_input import read_fault_points
 from realmodel.core.readers.meshes.triangle_mesh import mesh_of_faces
@@ -387,7 +387,7 @@ END
 def test_wells_of_gocad(put):
     """Below its path a well goes straight on."""
     path = put("w.wl", WELL)
-    picks = read_boreholes(Boreholes(picks=path))
+    picks = read_picks(Boreholes(picks=path))
     collar, places = picks.holes["W1"]
     assert np.allclose(collar, [100, 200, 50])
     assert [(name, place.tolist()) for name, place in places] == [
@@ -395,11 +395,11 @@ def test_wells_of_gocad(put):
         ("B", pytest.approx([160, 200, -30])),
     ]
     feet = WELL.replace("ZPOSITIVE", 'AXIS_UNIT "ft" "ft" "ft"\nZPOSITIVE')
-    in_feet = read_boreholes(Boreholes(picks=put("f.wl", feet)))
+    in_feet = read_picks(Boreholes(picks=put("f.wl", feet)))
     assert np.allclose(in_feet.holes["W1"][0], np.array([100, 200, 50]) * 0.3048)
     assert any("ft" in text and "units" in text for text in in_feet.warnings)
     units = UnitNames(["sand", "clay"], ["sand", "clay"])
-    logged = read_boreholes(Boreholes(intervals=path), units=units, plan_step=1000.0)
+    logged = read_picks(Boreholes(intervals=path), units=units, plan_step=1000.0)
     assert [(name, place.tolist()) for name, place in logged.holes["W1"][1]] == [
         ("sand", pytest.approx([100, 200, 50])),
         ("clay", pytest.approx([115, 200, 30])),
