@@ -270,3 +270,16 @@ def test_a_project(write, tmp_path):
             load_project(path)
         assert words in str(raised.value)
         assert (raised.value.file, raised.value.line) == (path, 8)
+
+
+def test_angles_in_other_units_are_degrees(write):
+    """Angles in any unit that the header names, beside others in degrees."""
+    expected = read(write).points["clay"]
+    for unit, factor in (("gon", 1 / 0.9), ("rad", math.pi / 180), ("Radians", math.pi / 180)):
+        head, *lines = SURVEY.splitlines()
+        rows = [line.split(",") for line in lines]
+        rows = [[*row[:3], repr(float(row[3]) * factor)] for row in rows]
+        text = "\n".join([head.replace("dip", f"dip ({unit})"), *map(",".join, rows)]) + "\n"
+        met = read(write, text)
+        np.testing.assert_allclose(met.points["clay"], expected)
+        assert any("converted to degrees" in text for text in met.warnings)

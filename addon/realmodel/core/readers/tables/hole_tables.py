@@ -48,7 +48,18 @@ PICKS = {
     ),
     "z": (
         *("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height", "ground_level", "loca_gl"),
-        *("hole_gl", "gl", "ground_elevation", "surface_elevation", "z_collar", "collar_z", "collar_rl"),
+        *(
+            "gse",
+            "ground_surface_elevation",
+            "land_surface_elevation",
+            "hole_gl",
+            "gl",
+            "ground_elevation",
+            "surface_elevation",
+            "z_collar",
+            "collar_z",
+            "collar_rl",
+        ),
         *("collar_elevation", "elevation_z", "location_z", "z_coordinate", "z_coordinaat", "z_koordinate"),
         *("Ansatzhöhe", "Ansatzhoehe", "Ansatzpunkt", "Geländehöhe", "Gelaendehoehe", "GOK"),
         *("Maaiveld", "Maaiveldhoogte", "Cota boca", *_HEIGHT, *AXES["z"]),
@@ -130,6 +141,8 @@ _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
+_ANGLES = frozenset(("azimuth", "dip", "inclination", "dip_direction", "strike"))
+_DEGREES = {"rad": 180 / np.pi, "radian": 180 / np.pi, "radians": 180 / np.pi, "gon": 0.9, "grad": 0.9}
 LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
@@ -306,8 +319,8 @@ def header_factors(
     header: TableHeader, units: str | Mapping | None, model_unit: str
 ) -> tuple[dict[str, float], list[str]]:
     """The factors of columns to the unit in which they are read, that of the key `units` or else of the
-    model, by their meaning, where the header says another; and warnings. Raises InputRefused for a unit that
-    is not known."""
+    model, and degrees, by their meaning, where the header says another; and warnings. Raises InputRefused for
+    a unit of length that is not known."""
     of_key = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     written = {
         meaning: (header.names[at].strip(), header.units.get(meaning, ""))
@@ -324,6 +337,15 @@ def header_factors(
     }
     if "z" in factors:
         factors["error"] = factors["z"]
+    for meaning in _ANGLES & header.columns.keys():
+        text = header.units.get(meaning, "").strip().lower()
+        if text in _DEGREES:
+            factors[meaning] = _DEGREES[text]
+            name = header.names[header.columns[meaning]].strip()
+            warnings.append(
+                f"{header.file}: the header says {text} for '{name}', converted to degrees: correct the "
+                "header if that is wrong"
+            )
     return factors, warnings
 
 
