@@ -12,7 +12,7 @@ import numpy as np
 from ..base.errors import InputRefused
 from ..base.text import no_step
 from ..base.units import MODEL_UNIT
-from ..readers.borehole_input import read_boreholes, read_repaired
+from ..readers.borehole_input import read_picks, read_repaired
 from ..readers.tables.hole_tables import normalized_name
 from ..readers.tables.observations import Observations
 from ..readers.tables.unit_names import UnitNames
@@ -80,7 +80,7 @@ def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
     """The logs and picks of boreholes, read as a project reads them, in order of their names. Raises
     InputRefused naming file and line."""
     names = _unit_names(_codes(given, units))
-    picks = read_boreholes(given, units, no_step, UnitNames(names, names))
+    picks = read_picks(given, units, no_step, UnitNames(names, names))
     logs: list[Log] = []
     for observations in picks.observations:
         for hole in sorted(set(observations.holes.tolist())):
