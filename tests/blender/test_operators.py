@@ -22,6 +22,7 @@ CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a vi
     *(
         "export",
         "export_mesh",
+        "share",
         "estimate",
         "report",
         "save_section",

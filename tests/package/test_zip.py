@@ -65,6 +65,7 @@ def test_all_that_a_user_needs_is_there(unpacked):
         "NOTICE.md",
         "core/model/build.py",
         "bl/host/versions.py",
+        "core/exporters/page/three.min.js",
         "vendor/shapefile.py",
     ):
         assert (folder / name).is_file(), name

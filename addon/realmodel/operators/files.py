@@ -185,6 +185,25 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
         self.report({"INFO"}, f"Wrote {path}")
 
 
+class REALMODEL_OT_share(ExportingInBackground, bpy.types.Operator):
+    """Write the built model as one web page, which anybody can open, and show it. Esc cancels"""
+
+    bl_label = "Share"
+    command = "share"
+    needs = (a_model, not_building)
+
+    format: format_menu([MODEL.format(".html")])
+    filter_glob: format_filter([MODEL.format(".html")])
+
+    def begin(self, context):
+        return ExportJob(self.model(context), self.target())
+
+    def tell_done(self, path):
+        self.report({"INFO"}, f"Wrote {path}")
+        if not bpy.app.background:
+            bpy.ops.wm.url_open(url=Path(path).as_uri())
+
+
 class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     """Export a mesh of the built model for solvers, with limits of edge length and thickness. Esc cancels"""
 

@@ -30,6 +30,7 @@ class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
         line.operator("realmodel.export", text="Export...", icon="EXPORT")
         line.operator("realmodel.report", text="Report...", icon="TEXT").format = "JSON"
         column = layout.column(align=True)
+        column.operator("realmodel.share", text="Share...", icon="URL")
         column.operator("realmodel.export_mesh", text="Simulation Mesh...", icon="MOD_LATTICE")
         column.operator("realmodel.export_scene", text="3D Scene...", icon="SCENE_DATA")
 

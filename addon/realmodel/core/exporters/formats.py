@@ -11,6 +11,7 @@ from .model_arrays import write_npz
 from .objects.geoh5 import write_geoh5
 from .objects.ifc import write_ifc
 from .objects.omf import write_omf
+from .page import write_page
 from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
 from .report import write_report
 from .section_files import (
@@ -147,6 +148,13 @@ FORMATS = (
         write_glb,
         ("origin",),
         has_each=True,
+    ),
+    Format(
+        ".html",
+        "Web Page",
+        ("model",),
+        "One page to share, which any browser shows without a network: turn, cut, explode, volumes",
+        write_page,
     ),
     Format(
         ".dxf",

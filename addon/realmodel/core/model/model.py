@@ -13,6 +13,7 @@ from ..base.work import Cancel, Progress, run
 from ..cells.assembly import build_stage
 from ..cells.model_data import ModelData
 from ..exporters import MODEL, SURFACES, check_tolerance
+from ..exporters.page import page_of
 from ..exporters.report import Report, model_report
 from ..fields import ScalarField
 from ..proof.closed_form import block_at, grid
@@ -75,6 +76,14 @@ class Model(ModelData):
         """
         check_tolerance(path, tolerance)
         MODEL.save(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
+
+    def to_html(self) -> str:
+        """The model as one page of HTML, as `save` writes it to an .html. Browsers show it without a network.
+
+        Coordinates have 32 bits there, from a place near the middle. Raises InputRefused for a model without
+        a project.
+        """
+        return page_of(self)
 
     def save_surfaces(self, path: str | Path) -> None:
         """Writes the surfaces, faults and bodies as they were used, by the file's ending (.obj, .ply, .stl,
