@@ -59,8 +59,8 @@ class JuxtapositionData(SectionData):
         return sums
 
     def unrolled(self, points: np.ndarray | None = None) -> np.ndarray:
-        """(N, 2) float64: distance along strike and elevation of points (N, 3), or of all vertices. The strike
-        line begins at the left end of the fault, seen from the hanging wall."""
+        """(N, 2) float64: distance along strike and elevation of points (N, 3), or of all vertices. The
+        strike line begins at the left end of the fault, seen from the hanging wall."""
         points = self.vertices if points is None else points
         return np.column_stack([self.strike.along(points[:, :2]), points[:, 2]])
 
@@ -85,16 +85,28 @@ def fault_faces(work: Work, model: ModelData, surface: int, shape: FaultShape) -
     vectors, middles = _vectors(model.vertices[corners], offsets)
     size = np.sqrt(np.linalg.norm(vectors, axis=1))[:, None]
     beside = middles + _BESIDE * vectors / np.where(size > 0, size, 1.0)
-    second_is_above = fault_sides(work, beside, shape) > 0
+    cells = model.face_cells[faces]
+    votes = np.where(fault_sides(work, beside, shape) > 0, 1.0, -1.0) * size[:, 0] ** 2
+    second_is_above = _elected(votes, cells)
     offsets, corners = model.face_corners(faces, ~second_is_above)
     used, corners = np.unique(corners, return_inverse=True)
-    cells = model.face_cells[faces]
     return faces, {
         "vertices": model.vertices[used],
         "offsets": offsets,
         "polygon_vertices": corners.reshape(-1).astype(np.int32),
         "cells": np.where(second_is_above[:, None], cells, cells[:, ::-1]),
     }
+
+
+def _elected(votes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """(K,) bool: the second cell of a face is above the fault. votes: (K,) of each face, by its area, above 0
+    for yes. All faces of a cell count, as places beside a sliver may lie anywhere."""
+    sums = np.zeros(int(cells.max()) + 2)  # the last: outside
+    np.add.at(sums, cells[:, 0], votes)
+    np.add.at(sums, cells[:, 1], -votes)
+    sums[-1] = 0.0
+    difference = sums[cells[:, 0]] - sums[cells[:, 1]]
+    return np.where(cells[:, 0] == cells[:, 1], votes, difference) > 0
 
 
 def _vectors(places: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...base.errors import UsageError
 from ...drawing.charts import Axes, legend, legend_size
-from ...drawing.drawing import BLACK, GRAY, Color, Drawing, text_width
+from ...drawing.drawing import GRAY, Color, Drawing, text_width
 from .juxtaposition import FOOTWALL, HANGING_WALL, SIDES, JuxtapositionData
 from .section_drawing import MOST_EXAGGERATION, outlines, page_scale
 
