@@ -23,6 +23,7 @@ from .heights.interpolate import interpolate
 from .model.build import build
 from .model.cutting import Cut, Fence, Section
 from .model.estimate import Estimate, estimate
+from .model.juxtapositions import Juxtaposition
 from .model.model import Model
 from .model.planned_hole import PlannedHole
 from .model.surface_set import SurfaceSet, build_surfaces
@@ -86,6 +87,7 @@ __all__ = [
     "Interpolation",
     "Intersection",
     "Interval",
+    "Juxtaposition",
     "Lattice",
     "LeftOut",
     "LeftOutContact",

@@ -23,6 +23,8 @@ from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
 from ..results.samples import Probabilities, SectionSamples
+from ..results.sections.juxtaposition import JuxtapositionData
+from ..results.sections.juxtaposition_drawing import draw_juxtaposition
 from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
@@ -59,6 +61,10 @@ def _blocks(model: ModelData, options: dict) -> list[Part]:
 def _drawn(section: SectionData, options: dict) -> Drawing:
     names = ("exaggeration", "hole_width", "hole_column")
     return draw_section(section, **{name: options.pop(name) for name in names if name in options})
+
+
+def _drawn_juxtaposition(sides: JuxtapositionData, options: dict) -> Drawing:
+    return draw_juxtaposition(sides, options.pop("exaggeration", 1.0))
 
 
 def _drawn_samples(asked: tuple[SectionSamples, Probabilities], options: dict) -> Drawing:
@@ -156,6 +162,7 @@ SECTION = Exporter(
     },
     lambda section: section.unit,
 )
+JUXTAPOSITION = Exporter("juxtaposition diagrams are not written as {}", {"drawing": _drawn_juxtaposition})
 FIELDS = Exporter("fields are not written as {}", {"fields": _as_it_is})
 REPORT = Exporter("reports are not written as {}", {"report": _as_it_is, "block table": _as_it_is})
 BOREHOLE = Exporter("boreholes are not written as {}", {"borehole": _as_it_is})

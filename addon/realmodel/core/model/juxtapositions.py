@@ -11,7 +11,7 @@ from ..base.errors import UsageError
 from ..base.named import number_of
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
-from ..drawing import save_drawing
+from ..exporters import JUXTAPOSITION
 from ..results.displacements import displacements
 from ..results.sections.juxtaposition import (
     JuxtapositionData,
@@ -19,7 +19,6 @@ from ..results.sections.juxtaposition import (
     dip_direction,
     fault_faces,
 )
-from ..results.sections.juxtaposition_drawing import draw_juxtaposition
 from ..results.sections.strike_line import StrikeLine
 from .cutting import section_arrays
 
@@ -30,7 +29,7 @@ class Juxtaposition(JuxtapositionData):
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
         """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .dxf or .png. It
         appears whole or not at all. exaggeration: of elevations. Raises UsageError, OutputFailed."""
-        save_drawing(draw_juxtaposition(self, exaggeration), path)
+        JUXTAPOSITION.save(self, path, exaggeration=exaggeration)
 
 
 def juxtaposition(model: ModelData, fault: int | str) -> Juxtaposition:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...base.triangles import edge_numbers
-from ...base.work import Work
+from ...base.work import Work, run
 from ...cells.model_data import ModelData
 from ...surfaces.rock_structure import FaultShape, fault_sides
 from ..displacements import Displacement
@@ -19,6 +19,9 @@ from .strike_line import StrikeLine
 FOOTWALL, HANGING_WALL = 0, 1  # columns of `blocks` and `cells`
 SIDES = ("footwall", "hanging wall")
 _BESIDE = 1e-4  # of the size of a face: how far from it a place is looked at
+
+
+PairAreas = dict[tuple[str | None, str | None], float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,17 +49,10 @@ class JuxtapositionData(SectionData):
     throws: list[Displacement] = field(kw_only=True)
 
     @property
-    def areas(self) -> dict[tuple[str | None, str | None], float]:
+    def areas(self) -> PairAreas:
         """The area on the fault, in space, model units squared, of each pair of blocks (footwall, hanging
         wall) by their names; None where there is no rock on a side."""
-        names = [*self.block_names, None]
-        sums: dict[tuple[str | None, str | None], float] = {}
-        pairs, pair = np.unique(self.blocks, axis=0, return_inverse=True)
-        for (low, high), area in zip(
-            pairs.tolist(), np.bincount(pair.reshape(-1), self.polygon_areas).tolist(), strict=True
-        ):
-            sums[names[low], names[high]] = sums.get((names[low], names[high]), 0.0) + area
-        return sums
+        return _areas_by_pair(self.block_names, self.blocks, self.polygon_areas)
 
     def unrolled(self, points: np.ndarray | None = None) -> np.ndarray:
         """(N, 2) float64: distance along strike and elevation of points (N, 3), or of all vertices. The
@@ -74,6 +70,27 @@ class JuxtapositionData(SectionData):
         ]
         rows = np.concatenate([np.empty((0, 2)), *parts])
         return rows[np.argsort(rows[:, 0], kind="stable")]
+
+
+def _areas_by_pair(names: list[str], blocks: np.ndarray, areas: np.ndarray) -> PairAreas:
+    """The sums of areas (K,) by pairs of blocks (K, 2), -1: none."""
+    pairs, pair = np.unique(blocks, axis=0, return_inverse=True)
+    of_pairs = np.bincount(pair.reshape(-1), areas, len(pairs)).tolist()
+    sums: PairAreas = {}
+    for (low, high), area in zip(pairs.tolist(), of_pairs, strict=True):
+        key = (names[low] if low >= 0 else None, names[high] if high >= 0 else None)
+        sums[key] = sums.get(key, 0.0) + area
+    return sums
+
+
+def fault_areas(model: ModelData, number: int) -> PairAreas:
+    """As JuxtapositionData.areas, of one of the model's faults by its number; none where it is not there."""
+    surface = int(np.flatnonzero(model.surface_kind == 1)[number])
+    shape = model.structures.fault_shapes()[number]
+    _, arrays = run(lambda work: fault_faces(work, model, surface, shape), threads=model.threads)
+    vectors, _ = _vectors(arrays["vertices"][arrays["polygon_vertices"]], arrays["offsets"])
+    blocks = np.append(model.cell_block, np.int32(-1))[arrays["cells"]]
+    return _areas_by_pair(model.blocks.names, blocks, np.linalg.norm(vectors, axis=1))
 
 
 def fault_faces(work: Work, model: ModelData, surface: int, shape: FaultShape) -> tuple[np.ndarray, dict]:
@@ -101,7 +118,7 @@ def fault_faces(work: Work, model: ModelData, surface: int, shape: FaultShape) -
 def _elected(votes: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """(K,) bool: the second cell of a face is above the fault. votes: (K,) of each face, by its area, above 0
     for yes. All faces of a cell count, as places beside a sliver may lie anywhere."""
-    sums = np.zeros(int(cells.max()) + 2)  # the last: outside
+    sums = np.zeros(int(cells.max(initial=-1)) + 2)  # the last: outside
     np.add.at(sums, cells[:, 0], votes)
     np.add.at(sums, cells[:, 1], -votes)
     sums[-1] = 0.0
