@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
-from ..core.exporters import BOREHOLE, JUXTAPOSITION, MODEL, PLANNED_HOLE, SECTION, Exporter
+from ..core.exporters import BOREHOLE, JUXTAPOSITION, MODEL, PLANNED_HOLE, SECTION, STEREONET, Exporter
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.model.cutting import Section
 from ..core.readers import read_mesh
@@ -95,6 +95,35 @@ class JuxtapositionRequest:
             for (low, high), area in sides.areas.items()
         )
         return "\n  ".join([head, *pairs])
+
+
+@dataclass
+class StereonetRequest:
+    """The stereonet of the dips of the project, or of those of the surface, block, series, rock mass or fault
+    `of`, and its file. net: as of Stereonet.save."""
+
+    file: Path
+    of: str | None
+    net: str = "equal_area"
+    exporter = STEREONET
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return []
+
+    def read(self) -> None:
+        pass
+
+    def run(self, model, outputs, _threads: int, progress) -> str:
+        """Stages the file. Returns the numbers for the terminal."""
+        progress(1.0, f"writing {self.file.name}")
+        dips = model.stereonet(self.of)
+        self.exporter.write(dips, self.file, outputs, net=self.net)
+        return "\n  ".join([f"stereonet {self.file.name}: {dips.name}", *dips.lines()])
 
 
 @dataclass
@@ -237,6 +266,13 @@ def juxtaposition_request(text: str) -> JuxtapositionRequest:
     fault, file = _divided("--juxtaposition", text, "FAULT=FILE")
     JUXTAPOSITION.format(file)
     return JuxtapositionRequest(Path(file), fault)
+
+
+def stereonet_request(text: str) -> StereonetRequest:
+    """FILE or NAME=FILE. Raises UsageError."""
+    of, file = _divided("--stereonet", text, "NAME=FILE") if "=" in text else (None, text)
+    STEREONET.format(file)
+    return StereonetRequest(Path(file), of)
 
 
 def borehole_request(text: str, exporter: Exporter | None = None) -> BoreholeRequest:

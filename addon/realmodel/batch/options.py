@@ -209,6 +209,19 @@ OPTIONS = (
         default=[],
     ),
     Option(
+        "stereonet",
+        "[NAME=]F",
+        "draw the dips of the project, or those of a surface, block, series, rock mass or fault, to F "
+        "({drawing}), with their mean plane and fold axis; any number of times",
+        default=[],
+    ),
+    Option(
+        "net",
+        ("equal_area", "equal_angle"),
+        "of --stereonet: equal area (Schmidt, default) or equal angle (Wulff)",
+        needs=("stereonet",),
+    ),
+    Option(
         "borehole",
         "X,Y=F",
         "write what a vertical borehole at a position in plan meets to F ({borehole}); "

@@ -32,6 +32,7 @@ from .cuts import (
     fence_request,
     juxtaposition_request,
     section_request,
+    stereonet_request,
 )
 from .sources import OpenedFile
 from .table import (
@@ -257,7 +258,7 @@ def _validation(options: argparse.Namespace, model, progress):
 
 
 def _requests(options: argparse.Namespace) -> list:
-    """Sections, fences, juxtapositions, boreholes and cuts, in this order. Raises UsageError."""
+    """Sections, fences, juxtapositions, stereonets, boreholes and cuts, in this order. Raises UsageError."""
     drawn = {name: getattr(options, name) for name in ("exaggeration", "hole_width", "hole_column")}
     return [
         *(replace(section_request(text), **drawn) for text in options.section),
@@ -266,6 +267,7 @@ def _requests(options: argparse.Namespace) -> list:
             replace(juxtaposition_request(text), exaggeration=options.exaggeration)
             for text in options.juxtaposition
         ),
+        *(replace(stereonet_request(text), net=options.net or "equal_area") for text in options.stereonet),
         *(borehole_request(text) for text in options.borehole),
         *(
             replace(

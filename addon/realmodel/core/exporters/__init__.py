@@ -22,6 +22,7 @@ from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
+from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, draw_stereonet
 from ..results.samples import Probabilities, SectionSamples
 from ..results.sections.juxtaposition import JuxtapositionData
 from ..results.sections.juxtaposition_drawing import draw_juxtaposition
@@ -65,6 +66,10 @@ def _drawn(section: SectionData, options: dict) -> Drawing:
 
 def _drawn_juxtaposition(sides: JuxtapositionData, options: dict) -> Drawing:
     return draw_juxtaposition(sides, options.pop("exaggeration", 1.0))
+
+
+def _drawn_net(dips: StereonetData, options: dict) -> Drawing:
+    return draw_stereonet(dips, options.pop("net", EQUAL_AREA))
 
 
 def _drawn_samples(asked: tuple[SectionSamples, Probabilities], options: dict) -> Drawing:
@@ -163,6 +168,7 @@ SECTION = Exporter(
     lambda section: section.unit,
 )
 JUXTAPOSITION = Exporter("juxtaposition diagrams are not written as {}", {"drawing": _drawn_juxtaposition})
+STEREONET = Exporter("stereonets are not written as {}", {"drawing": _drawn_net})
 FIELDS = Exporter("fields are not written as {}", {"fields": _as_it_is})
 REPORT = Exporter("reports are not written as {}", {"report": _as_it_is, "block table": _as_it_is})
 BOREHOLE = Exporter("boreholes are not written as {}", {"borehole": _as_it_is})

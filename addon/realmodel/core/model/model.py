@@ -32,6 +32,7 @@ from . import cutting, notebook_view
 from .juxtapositions import juxtaposition
 from .model_file import read_model
 from .planned_hole import planned_hole
+from .stereonets import stereonet
 
 
 class Model(ModelData):
@@ -192,6 +193,7 @@ class Model(ModelData):
     fence = cutting.fence
     fence_through_holes = cutting.fence_through_holes
     juxtaposition = juxtaposition
+    stereonet = stereonet
     borehole = borehole
     block_at = block_at
     grid = grid
