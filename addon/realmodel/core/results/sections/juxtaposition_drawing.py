@@ -44,9 +44,9 @@ def draw_juxtaposition(fault: JuxtapositionData, exaggeration: float = 1.0) -> D
     entries = [(fault.block_names[block], tuple(fault.block_colors[block])) for block in present]
     surfaces = list(dict.fromkeys(line.surface for line in fault.cutoffs))
     colors = [(name, _LINES[k % len(_LINES)]) for k, name in enumerate(surfaces)]
-    keys = ("Block", entries), ("Cutoff line, throw", colors)
-    key_width = max(legend_size(*key, _SIZE)[0] for key in keys)
-    key_height = sum(legend_size(*key, _SIZE)[1] + _SIZE for key in keys)
+    keys = (("Block", entries), ("Cutoff line, throw", colors))
+    key_width = max(legend_size(title, entry, _SIZE)[0] for title, entry in keys)
+    key_height = sum(legend_size(title, entry, _SIZE)[1] + _SIZE for title, entry in keys)
     texts = (
         f"Scale 1 : {ratio:,.0f}, vertical exaggeration {exaggeration:g}, seen from the hanging wall",
         "Footwall: filled, solid cutoff lines. Hanging wall: hatched, dashed cutoff lines.",
