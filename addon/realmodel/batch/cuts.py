@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
-from ..core.exporters import BOREHOLE, MODEL, PLANNED_HOLE, SECTION, Exporter
+from ..core.exporters import BOREHOLE, JUXTAPOSITION, MODEL, PLANNED_HOLE, SECTION, STEREONET, Exporter
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.model.cutting import Section
 from ..core.readers import read_mesh
@@ -62,6 +62,68 @@ class SectionRequest:
         self.exporter.write(section, self.file, outputs, **drawn)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(section)} polygons, area {section.area:.2f}"
+
+
+@dataclass
+class JuxtapositionRequest:
+    """The juxtaposition diagram of a fault, by its name, and its file. exaggeration: of elevations."""
+
+    file: Path
+    fault: str
+    exaggeration: float = 1.0
+    exporter = JUXTAPOSITION
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return []
+
+    def read(self) -> None:
+        pass
+
+    def run(self, model, outputs, _threads: int, progress) -> str:
+        """Stages the file. Returns the areas for the terminal."""
+        progress(1.0, f"writing {self.file.name}")
+        sides = model.juxtaposition(self.fault)
+        self.exporter.write(sides, self.file, outputs, exaggeration=self.exaggeration)
+        head = f"juxtaposition {self.file.name}: fault '{self.fault}', area {sides.area:.2f}"
+        pairs = (
+            f"{low or 'no rock'} against {high or 'no rock'}: {area:.2f}"
+            for (low, high), area in sides.areas.items()
+        )
+        return "\n  ".join([head, *pairs])
+
+
+@dataclass
+class StereonetRequest:
+    """The stereonet of the dips of the project, or of those of the surface, block, series, rock mass or fault
+    `of`, and its file. net: as of Stereonet.save."""
+
+    file: Path
+    of: str | None
+    net: str = "equal_area"
+    exporter = STEREONET
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return []
+
+    def read(self) -> None:
+        pass
+
+    def run(self, model, outputs, _threads: int, progress) -> str:
+        """Stages the file. Returns the numbers for the terminal."""
+        progress(1.0, f"writing {self.file.name}")
+        dips = model.stereonet(self.of)
+        self.exporter.write(dips, self.file, outputs, net=self.net)
+        return "\n  ".join([f"stereonet {self.file.name}: {dips.name}", *dips.lines()])
 
 
 @dataclass
@@ -197,6 +259,20 @@ def fence_request(text: str, exporter: Exporter = SECTION) -> SectionRequest:
         raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
     line = _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError)
     return SectionRequest("--fence", Path(file), line, exporter)
+
+
+def juxtaposition_request(text: str) -> JuxtapositionRequest:
+    """FAULT=FILE. Raises UsageError."""
+    fault, file = _divided("--juxtaposition", text, "FAULT=FILE")
+    JUXTAPOSITION.format(file)
+    return JuxtapositionRequest(Path(file), fault)
+
+
+def stereonet_request(text: str) -> StereonetRequest:
+    """FILE or NAME=FILE. Raises UsageError."""
+    of, file = _divided("--stereonet", text, "NAME=FILE") if "=" in text else (None, text)
+    STEREONET.format(file)
+    return StereonetRequest(Path(file), of)
 
 
 def borehole_request(text: str, exporter: Exporter | None = None) -> BoreholeRequest:

@@ -88,9 +88,10 @@ class _Parser(argparse.ArgumentParser):
     """Fills endings from the table of formats into the help, for which alone the table is imported."""
 
     def print_help(self, file=None):
-        from ..core.exporters import BOREHOLE, MESH, MODEL, SECTION
+        from ..core.exporters import BOREHOLE, JUXTAPOSITION, MESH, MODEL, SECTION
 
         exporters = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE}
+        exporters["drawing"] = JUXTAPOSITION
         endings = {name: [f.ending for f in exporter.formats()] for name, exporter in exporters.items()}
         for option in ("cell_size", "contour_interval", "tolerance", "origin"):
             endings[option] = MODEL.endings(option)
@@ -202,6 +203,25 @@ OPTIONS = (
         default=[],
     ),
     Option(
+        "juxtaposition",
+        "FAULT=F",
+        "draw what lies on both sides of a fault, and its throw, to F ({drawing}); any number of times",
+        default=[],
+    ),
+    Option(
+        "stereonet",
+        "[NAME=]F",
+        "draw the dips of the project, or those of a surface, block, series, rock mass or fault, to F "
+        "({drawing}), with their mean plane and fold axis; any number of times",
+        default=[],
+    ),
+    Option(
+        "net",
+        ("equal_area", "equal_angle"),
+        "of --stereonet: equal area (Schmidt, default) or equal angle (Wulff)",
+        needs=("stereonet",),
+    ),
+    Option(
         "borehole",
         "X,Y=F",
         "write what a vertical borehole at a position in plan meets to F ({borehole}); "
@@ -211,10 +231,10 @@ OPTIONS = (
     Option(
         "exaggeration",
         "X",
-        "exaggerate the heights of drawings by --section and --fence X times",
+        "exaggerate the heights of drawings by --section, --fence and --juxtaposition X times",
         _factor,
         1.0,
-        needs=("section", "fence"),
+        needs=("section", "fence", "juxtaposition"),
     ),
     Option(
         "hole-width",

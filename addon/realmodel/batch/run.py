@@ -24,7 +24,16 @@ from ..core.exporters.report import hole_entries, model_report, write_report
 from ..core.exporters.surface_files import write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from ..core.surfaces.prepare import with_arrays
-from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
+from .cuts import (
+    CutRequest,
+    JuxtapositionRequest,
+    borehole_request,
+    cut_request,
+    fence_request,
+    juxtaposition_request,
+    section_request,
+    stereonet_request,
+)
 from .sources import OpenedFile
 from .table import (
     ProbabilityRequests,
@@ -50,6 +59,7 @@ def run(options: argparse.Namespace) -> None:
     _refuse_overwriting([*source.inputs, *(f for r in requests for f in r.inputs)], targets)
     if project is not None:
         _require_fields(options, project)
+        _require_faults(requests, project)
     by_dask = options.ensemble is not None or options.tiles is not None
     progress = TerminalProgress(sys.stdout, options.quiet, time_left=by_dask)
     if options.estimate:
@@ -110,6 +120,14 @@ def run(options: argparse.Namespace) -> None:
 def _require_fields(options: argparse.Namespace, project) -> None:
     if options.export_field is not None and not any(rock.has_fields for rock in project.rocks):
         raise UsageError("--export-field: none of the series of the project is of the kind 'field'")
+
+
+def _require_faults(requests: list, project) -> None:
+    names = [fault.name for fault in project.faults]
+    for request in requests:
+        if isinstance(request, JuxtapositionRequest) and request.fault not in names:
+            there = f"the project has {', '.join(names)}" if names else "the project has none"
+            raise UsageError(f"--juxtaposition: no fault is called '{request.fault}'; {there}")
 
 
 def _print(options: argparse.Namespace, warnings: list, lines: list[str]) -> None:
@@ -240,11 +258,16 @@ def _validation(options: argparse.Namespace, model, progress):
 
 
 def _requests(options: argparse.Namespace) -> list:
-    """Sections, fences, boreholes and cuts, in this order. Raises UsageError."""
+    """Sections, fences, juxtapositions, stereonets, boreholes and cuts, in this order. Raises UsageError."""
     drawn = {name: getattr(options, name) for name in ("exaggeration", "hole_width", "hole_column")}
     return [
         *(replace(section_request(text), **drawn) for text in options.section),
         *(replace(fence_request(text), **drawn) for text in options.fence),
+        *(
+            replace(juxtaposition_request(text), exaggeration=options.exaggeration)
+            for text in options.juxtaposition
+        ),
+        *(replace(stereonet_request(text), net=options.net or "equal_area") for text in options.stereonet),
         *(borehole_request(text) for text in options.borehole),
         *(
             replace(

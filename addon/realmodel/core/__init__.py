@@ -23,8 +23,10 @@ from .heights.interpolate import interpolate
 from .model.build import build
 from .model.cutting import Cut, Fence, Section
 from .model.estimate import Estimate, estimate
+from .model.juxtapositions import Juxtaposition
 from .model.model import Model
 from .model.planned_hole import PlannedHole
+from .model.stereonets import Stereonet
 from .model.surface_set import SurfaceSet, build_surfaces
 from .project.library import Library, Property
 from .project.peers.from_gempy import from_gempy
@@ -86,6 +88,7 @@ __all__ = [
     "Interpolation",
     "Intersection",
     "Interval",
+    "Juxtaposition",
     "Lattice",
     "LeftOut",
     "LeftOutContact",
@@ -121,6 +124,7 @@ __all__ = [
     "Series",
     "SimulationMesh",
     "SpaceDips",
+    "Stereonet",
     "Strata",
     "Structure",
     "SubBlock",

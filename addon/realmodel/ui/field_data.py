@@ -43,6 +43,7 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
         if group.view.show_boreholes or group.view.show_contacts or group.view.show_dips:
             column.prop(group.view, "hole_width", text="Within")
         _draw_datum(layout, context)
+        layout.operator("realmodel.save_stereonet", text="Save Stereonet...", icon="FILE_TICK")
 
 
 def _draw_datum(layout, context):

@@ -82,6 +82,7 @@ def _draw_fault(layout, context, fault):
     panel.draw(layout, fault, "extend", FAULT)
     _draw_names(layout, fault, "ends_at")
     _draw_names(layout, fault, "rocks")
+    layout.operator("realmodel.save_juxtaposition", text="Save Juxtaposition...", icon="FILE_TICK")
 
 
 def _draw_names(layout, fault, key):

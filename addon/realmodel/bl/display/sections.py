@@ -26,7 +26,7 @@ def by_plane(scene, location, normal):
     the coordinates of the scene (to which the model origin is added), the normal of any length. Raises
     UsageError for a plane that is none, InputRefused for one that does not meet the model, BuildFailed."""
     point = np.asarray(location, np.float64) + project_settings.model_origin(scene)
-    return _colored(scene, shown_models.at_stage(scene, scene.realmodel.stage).section(point, normal))
+    return colored(scene, shown_models.at_stage(scene, scene.realmodel.stage).section(point, normal))
 
 
 def along(scene, item, depsgraph):
@@ -43,10 +43,10 @@ def line_of(item):
 def through(scene, line):
     """The core's Fence of a scene's model, at its stage, along a line (N, 2) in model coordinates. Raises
     InputRefused, BuildFailed."""
-    return _colored(scene, shown_models.at_stage(scene, scene.realmodel.stage).fence(line))
+    return colored(scene, shown_models.at_stage(scene, scene.realmodel.stage).fence(line))
 
 
-def _colored(scene, section):
+def colored(scene, section):
     """A section in the colors that the library has now."""
     if not len(section):
         raise InputRefused(

@@ -16,7 +16,7 @@ from .dxf_file import write_dxf
 from .png import write_png
 from .svg import write_svg
 
-_OPTIONS = ("exaggeration", "hole_width", "hole_column")
+_OPTIONS = ("exaggeration", "hole_width", "hole_column", "net")
 DRAWINGS = (
     Format(".svg", "SVG", ("drawing",), "Scalable drawing, for documents and web pages", write_svg, _OPTIONS),
     Format(".dxf", "DXF", ("drawing",), "Lines on layers, for CAD programs", write_dxf, _OPTIONS),

@@ -22,7 +22,10 @@ from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
+from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, draw_stereonet
 from ..results.samples import Probabilities, SectionSamples
+from ..results.sections.juxtaposition import JuxtapositionData
+from ..results.sections.juxtaposition_drawing import draw_juxtaposition
 from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
@@ -59,6 +62,14 @@ def _blocks(model: ModelData, options: dict) -> list[Part]:
 def _drawn(section: SectionData, options: dict) -> Drawing:
     names = ("exaggeration", "hole_width", "hole_column")
     return draw_section(section, **{name: options.pop(name) for name in names if name in options})
+
+
+def _drawn_juxtaposition(sides: JuxtapositionData, options: dict) -> Drawing:
+    return draw_juxtaposition(sides, options.pop("exaggeration", 1.0))
+
+
+def _drawn_net(dips: StereonetData, options: dict) -> Drawing:
+    return draw_stereonet(dips, options.pop("net", EQUAL_AREA))
 
 
 def _drawn_samples(asked: tuple[SectionSamples, Probabilities], options: dict) -> Drawing:
@@ -156,6 +167,8 @@ SECTION = Exporter(
     },
     lambda section: section.unit,
 )
+JUXTAPOSITION = Exporter("juxtaposition diagrams are not written as {}", {"drawing": _drawn_juxtaposition})
+STEREONET = Exporter("stereonets are not written as {}", {"drawing": _drawn_net})
 FIELDS = Exporter("fields are not written as {}", {"fields": _as_it_is})
 REPORT = Exporter("reports are not written as {}", {"report": _as_it_is, "block table": _as_it_is})
 BOREHOLE = Exporter("boreholes are not written as {}", {"borehole": _as_it_is})

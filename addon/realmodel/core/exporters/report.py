@@ -21,6 +21,7 @@ from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
 from ..results.displacements import displacements
+from ..results.sections.juxtaposition import fault_areas
 from ..results.tables import block_entry
 from ..results.volumes import Erosion, volume_deviations
 from ..simulation import cleaned_entry, mesh_entry
@@ -202,7 +203,8 @@ def _compartments(model: ModelData) -> list[dict]:
 
 def _faults(model: ModelData) -> list[dict]:
     """Throw and heave along each fault: their means, and the largest values; whether a throw is found; and
-    the length of the cutoff lines below it along which the surface is on both sides."""
+    the length of the cutoff lines below it along which the surface is on both sides; and the areas on it by
+    pair of blocks."""
     all_displacements = displacements(model)
     return [
         {
@@ -220,8 +222,12 @@ def _faults(model: ModelData) -> list[dict]:
                 for displacement in all_displacements
                 if displacement.fault == fault.name
             ],
+            "juxtaposition": [
+                {"footwall": low, "hanging_wall": high, "area": area}
+                for (low, high), area in fault_areas(model, number).items()
+            ],
         }
-        for fault in model.structures.faults
+        for number, fault in enumerate(model.structures.faults)
     ]
 
 

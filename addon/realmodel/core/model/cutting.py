@@ -242,7 +242,7 @@ def section(
                 normal,
             )
         return Section(
-            **_section_arrays(model, arrays),
+            **section_arrays(model, arrays),
             plane=(point, normal),
             faults=traces_on_plane(model, point, normal),
             holes=hole_lines(model),
@@ -352,7 +352,7 @@ def fence(
                 )
         numbers = [np.full(len(panel["cells"]), k, np.int32) for k, panel in enumerate(panels)]
         return Fence(
-            **_section_arrays(model, _joined(panels)),
+            **section_arrays(model, _joined(panels)),
             polyline=polyline,
             panel=np.concatenate(numbers),
             faults=traces_on_fence(model, polyline),
@@ -414,8 +414,8 @@ def _plane(
     return vectors[0], vectors[1]
 
 
-def _section_arrays(model: ModelData, arrays: dict) -> dict:
-    """The arrays of a Section."""
+def section_arrays(model: ModelData, arrays: dict) -> dict:
+    """The arrays of a Section. arrays: vertices, offsets, polygon_vertices, and cells below and above."""
     cells = arrays["cells"]
     blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
     block = np.where(blocks[:, 0] >= 0, blocks[:, 0], blocks[:, 1])
@@ -440,7 +440,7 @@ def _section_arrays(model: ModelData, arrays: dict) -> dict:
 
 def _assembled(work: Work, model: SomeModel, halves: dict, began: float) -> Cut[SomeModel]:
     with work.phase(_CUT_SHARE, 1.0, "assembling the halves"):
-        plane_section = Section(**_section_arrays(model, halves["section"]))
+        plane_section = Section(**section_arrays(model, halves["section"]))
         above = _half(work, model, halves["above"], halves["above_touches"])
         work.step(0.5)
         below = _half(work, model, halves["below"], halves["below_touches"])

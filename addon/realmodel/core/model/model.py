@@ -30,8 +30,10 @@ from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
 from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
 from . import cutting, notebook_view
+from .juxtapositions import juxtaposition
 from .model_file import read_model
 from .planned_hole import planned_hole
+from .stereonets import stereonet
 
 
 class Model(ModelData):
@@ -199,6 +201,8 @@ class Model(ModelData):
     clip = cutting.clip
     fence = cutting.fence
     fence_through_holes = cutting.fence_through_holes
+    juxtaposition = juxtaposition
+    stereonet = stereonet
     borehole = borehole
     block_at = block_at
     grid = grid

@@ -72,13 +72,17 @@ def contours(model: ModelData, interval: float | None = None, ground: Ground | N
         if len(corners):
             own_low, own_high = corners[:, :, 2].min(), corners[:, :, 2].max()
             for k in range(math.ceil(own_low / step), math.floor(own_high / step) + 1):
-                lines = _lines(corners, vertices, solid, k * step)
+                lines = level_lines(corners, vertices, solid, k * step)
                 contour_lines += [Contour(name, k * step, line) for line in lines]
     return contour_lines
 
 
-def _lines(corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: float) -> list[np.ndarray]:
-    """The lines (N, 2) of a level. A vertex at the level counts as higher, so a line never divides."""
+def level_lines(
+    corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: float
+) -> list[np.ndarray]:
+    """The lines (N, 2) of a level on triangles (T, 3, 3), with higher ground to the left; the last point is
+    the first of a closed one. A vertex at the level counts as higher, so a line never divides. vertices,
+    solid: (T, 3) numbers of the corners in plan and in space."""
     is_high = corners[:, :, 2] >= level
     rows = np.flatnonzero(is_high.any(axis=1) & ~is_high.all(axis=1))
     if not len(rows):

@@ -56,14 +56,17 @@ def _mean(values: np.ndarray, length: np.ndarray) -> float:
     return float((values * length).sum() / length.sum())
 
 
-def displacements(model: ModelData) -> list[Displacement]:
-    """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
-    return run(lambda work: _displacements(work, model), threads=model.threads)
+def displacements(model: ModelData, only: str | None = None) -> list[Displacement]:
+    """The displacements of each fault of a model, or of the one of a name, for each surface that it displaces
+    where it meets it."""
+    return run(lambda work: _displacements(work, model, only), threads=model.threads)
 
 
-def _displacements(work: Work, model: ModelData) -> list[Displacement]:
+def _displacements(work: Work, model: ModelData, only: str | None) -> list[Displacement]:
     measurements = []
     for number, fault in enumerate(model.structures.faults):
+        if only not in (None, fault.name):
+            continue
         for entry in model.rock_inputs:
             structure = entry.structure
             if structure is None or number not in structure.faults.numbers:

@@ -73,12 +73,12 @@ def draw_section(
         high[1] += _SKY * (high[1] - low[1])
     least = 1e-9 * max(np.abs(flat).max(), 1.0)
     extent = np.maximum(high - low, least)
-    ratio, scale = _scale(extent * (1.0, exaggeration), section.unit)
+    ratio, scale = page_scale(extent * (1.0, exaggeration), section.unit)
     if holes:  # room for a line of names over them, within the frame
         sky = high[1] - max(line[:, 1].max() for _, line in holes)
         high[1] += max(0.0, (_NAME_ABOVE + _SIZE) / (scale * exaggeration) - sky)
         extent = np.maximum(high - low, least)
-        ratio, scale = _scale(extent * (1.0, exaggeration), section.unit)
+        ratio, scale = page_scale(extent * (1.0, exaggeration), section.unit)
     width, height = extent * (1.0, exaggeration) * scale
     present = [int(block) for block in np.unique(section.block)[::-1]]
     entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
@@ -257,7 +257,11 @@ def block_outlines(section: SectionData, flat: np.ndarray, block: int) -> list[n
 
     flat: (V, 2), where the vertices are drawn.
     """
-    chosen = np.flatnonzero(section.block == block)
+    return outlines(section, flat, np.flatnonzero(section.block == block))
+
+
+def outlines(section: SectionData, flat: np.ndarray, chosen: np.ndarray) -> list[np.ndarray]:
+    """As block_outlines, of chosen polygons, (N,) their numbers."""
     counts = np.diff(section.offsets)[chosen]
     begins = np.cumsum(counts) - counts
     corner = np.arange(counts.sum()) + np.repeat(section.offsets[chosen] - begins, counts)
@@ -311,7 +315,7 @@ def directions(section: SectionData) -> tuple[np.ndarray | None, np.ndarray | No
     return right, np.cross(normal, right)
 
 
-def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
+def page_scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
     """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
     least = float((extent * float(METERS[unit]) / (np.array(_PLOT) * _POINT)).max())
     power = 10.0 ** np.floor(np.log10(least))

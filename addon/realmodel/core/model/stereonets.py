@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stereonets of the dips that a model was built from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..cells.model_data import ModelData
+from ..exporters import STEREONET
+from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, normals_of
+
+
+class Stereonet(StereonetData):
+    """Dips on the lower hemisphere."""
+
+    def save(self, path: str | Path, net: str = EQUAL_AREA) -> None:
+        """Draws the stereonet to a .svg, .dxf or .png, which appears whole or not at all. net: "equal_area"
+        (Schmidt) or "equal_angle" (Wulff). Raises UsageError, OutputFailed."""
+        STEREONET.save(self, path, net=net)
+
+
+def stereonet(model: ModelData, of: str | None = None) -> Stereonet:
+    """The dips that the model was built from, those that are switched off left out.
+
+    of: the name of a surface, a block, a series, a rock mass, or a fault; None: all but those of faults.
+    Raises UsageError where there are none; InputRefused for a model without its project.
+    """
+    model.require_project("a stereonet")
+    return Stereonet(normals_of(model.project, of), of or model.project.name)
