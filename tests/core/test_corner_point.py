@@ -95,6 +95,28 @@ def test_a_fault_is_a_step_along_its_pillars():
     assert grid.zcorn == pytest.approx(np.broadcast_to(expected, (4, 20, 20)), abs=1e-9)
 
 
+@pytest.mark.parametrize("throw", [7.0, 25.0, 39.0])
+def test_cells_meet_across_a_fault_where_the_blocks_of_the_model_do(throw):
+    model = faulted(throw)
+    grid = model.corner_point_grid(10.0)
+    tops, bases = grid.zcorn[::2, 0], grid.zcorn[1::2, 0]
+    pairs = {
+        tuple(sorted((grid.fipnum[a, 0, 4], grid.fipnum[b, 0, 5])))
+        for a, b in np.ndindex(grid.shape[2], grid.shape[2])
+        if min(bases[a, 9], bases[b, 10]) - max(tops[a, 9], tops[b, 10]) > 1e-6
+        and grid.actnum[a, 0, 4]
+        and grid.actnum[b, 0, 5]
+    }
+    wall = (model.face_cells >= 0).all(axis=1)
+    x = model.vertices[:, 0]
+    on_fault = [
+        face
+        for face in np.flatnonzero(wall)
+        if (x[model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]] == 50).all()
+    ]
+    assert pairs == {tuple(sorted(model.face_blocks[face] + 1)) for face in on_fault}
+
+
 def test_a_layer_ends_where_its_block_is_eroded():
     model = eroded()
     grid = model.corner_point_grid(10.0)
