@@ -38,7 +38,7 @@ def write_grdecl(grid: CornerPointGrid, file: BinaryIO, step: Step, unit: str = 
         lines.append(f"--   volume {volumes}: {100 * float(grid.difference[number]):+.3g} %")
     lines += [f"-- {warning.text}" for warning in grid.warnings if "volume" not in warning.kind]
     # identity: the coordinates are those of the map
-    lines += [f"MAPUNITS\n  {word} /\nMAPAXES\n  0 1 0 0 1 0 /\nGRIDUNIT\n  {word} MAP /"]
+    lines += [f"MAPUNITS\n  {word} /\nMAPAXES\n  0 1 0 0 1 0 /\nGRIDUNIT\n  {word} /"]
     lines += [f"SPECGRID\n  {nx} {ny} {nz} 1 F /\nPINCH\n/\nCOORD\n"]
     file.write("\n".join(lines).encode())
     write_wrapped(file, " %r", (grid.coord * to_file).ravel(), 6)
