@@ -14,7 +14,7 @@ bpy=(libegl1 libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libx
 test=(clang-format=clang-format shellcheck=shellcheck git=git chromium=chromium)
 tidy=(clang-tidy=clang-tidy)
 versions=(debootstrap)
-solvers=(openfoam=checkMesh calculix-ccx=ccx libegl1)
+solvers=(openfoam=checkMesh calculix-ccx=ccx libopm-simulators-bin=flow libegl1)
 benchmark=(libmpfr-dev blender=blender python3-numpy)
 heights=(gmt=gmt r-cran-gstat)
 clang=(clang=clang++ libomp-dev)

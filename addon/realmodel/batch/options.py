@@ -77,6 +77,17 @@ def _whole(text: str) -> int:
     return int(text)
 
 
+def _layers(text: str) -> int:
+    number = _whole(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of layers from 1")
+    return number
+
+
+def _angle(text: str) -> float:
+    return _number(text, math.isfinite, "a number of degrees")
+
+
 def _groups(text: str) -> int:
     number = _whole(text)
     if number < 2:
@@ -93,7 +104,7 @@ class _Parser(argparse.ArgumentParser):
         exporters = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE}
         exporters["drawing"] = JUXTAPOSITION
         endings = {name: [f.ending for f in exporter.formats()] for name, exporter in exporters.items()}
-        for option in ("cell_size", "contour_interval", "tolerance", "origin"):
+        for option in ("cell_size", "contour_interval", "tolerance", "origin", "grid_layers", "grid_azimuth"):
             endings[option] = MODEL.endings(option)
         texts = {name: ", ".join(listed) for name, listed in endings.items()}
         for action in self._actions:
@@ -166,6 +177,20 @@ OPTIONS = (
         "X[,Y[,Z]]",
         "the cells of regular grids by --export and --cut ({cell_size})",
         _sizes,
+    ),
+    Option(
+        "grid-layers",
+        "N",
+        "the layers of each block in corner-point grids by --export ({grid_layers}); default: 1",
+        _layers,
+        needs=("export",),
+    ),
+    Option(
+        "grid-azimuth",
+        "A",
+        "the direction of their columns, degrees clockwise from north ({grid_azimuth}); default: 0",
+        _angle,
+        needs=("export",),
     ),
     Option(
         "contour-interval",

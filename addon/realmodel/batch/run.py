@@ -85,7 +85,8 @@ def run(options: argparse.Namespace) -> None:
             holes = _left_out_holes(options, model, progress)
             mesh = mesh_requests[0].make(model, options.threads, progress) if mesh_requests else None
             cells = _cleaned_cells(options, model, progress)
-            _export(options, model, outputs, progress, cells)
+            grid = _corner_point(options, model, progress)
+            _export(options, model, outputs, progress, cells, grid)
             if options.export_field is not None:
                 fields = [entry.fields for entry in model.rock_inputs]
                 FIELDS.write(fields, options.export_field, outputs)
@@ -93,7 +94,7 @@ def run(options: argparse.Namespace) -> None:
                 _write_with_blender(options, project, model, outputs, progress)
             if options.report is not None:
                 with outputs.file(options.report) as file:
-                    report = model_report(model, options.stage, validation, erosion, mesh, cells)
+                    report = model_report(model, options.stage, validation, erosion, mesh, cells, grid)
                     write_report(report if holes is None else report | hole_entries(holes), file)
             for wanted in mesh_requests:
                 wanted.write(mesh, outputs, model.project.units, progress)
@@ -113,7 +114,7 @@ def run(options: argparse.Namespace) -> None:
     lines += [wanted.line(mesh) for wanted in mesh_requests]
     if cells is not None:
         lines.append(cleaned_line(cells))
-    made = [result for result in (model, mesh, cells) if result is not None]
+    made = [result for result in (model, mesh, cells, grid) if result is not None]
     _print(options, [warning for result in made for warning in result.warnings], lines)
 
 
@@ -298,6 +299,14 @@ def _cleaned_cells(options: argparse.Namespace, model, progress):
     )
 
 
+def _corner_point(options: argparse.Namespace, model, progress):
+    """The corner-point grid of --export, or None."""
+    if not _with_option(options.export, "grid_layers"):
+        return None
+    progress(1.0, "making the corner-point grid")
+    return model.corner_point_grid(options.cell_size, options.grid_layers or 1, options.grid_azimuth or 0.0)
+
+
 def _mesh_requests(options: argparse.Namespace) -> list[MeshRequest]:
     """The files of --mesh: of one mesh."""
     return [
@@ -323,6 +332,11 @@ def _checked_targets(options: argparse.Namespace, requests: list, meshes: list[M
         if not _with_option([*options.export, *cut], "tolerance"):
             able = ", ".join(MODEL.endings("tolerance"))
             raise UsageError(f"--cell-tolerance goes with --export or --cut to a file with cells: {able}")
+    for name in ("grid_layers", "grid_azimuth"):
+        is_able = not options.surfaces_only and _with_option(exported, name)
+        if getattr(options, name) is not None and not is_able:
+            option, able = name.replace("_", "-"), ", ".join(MODEL.endings(name))
+            raise UsageError(f"--{option} goes with --export to a corner-point grid: {able}")
     if options.origin is not None and (options.surfaces_only or not _with_option(exported, "origin")):
         raise UsageError(f"--origin goes with --export of blocks to {', '.join(MODEL.endings('origin'))}")
     single = (options.export_field, options.report, options.blend, options.render)
@@ -344,7 +358,7 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
             raise UsageError(f"{target}: this is a file that is read; choose another name")
 
 
-def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
+def _export(options: argparse.Namespace, model, outputs, progress, cells, grid) -> None:
     for path in options.export:
         MODEL.write(
             model,
@@ -354,6 +368,7 @@ def _export(options: argparse.Namespace, model, outputs, progress, cells) -> Non
             cell_size=options.cell_size,
             contour_interval=options.contour_interval,
             cells=cells,
+            grid=grid,
             origin=options.origin,
         )
 

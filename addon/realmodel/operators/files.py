@@ -140,12 +140,25 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(MODEL.formats())
     cell_size: FloatVectorProperty(
         name="Cell Size",
-        description="Of regular grids (block models, GeoTIFF, ESRI ASCII; OMF and geoh5), in model units; 0: "
-        "automatic, and no cells in OMF and geoh5",
+        description="Of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF and geoh5), in model "
+        "units; 0: automatic, and no cells in OMF and geoh5",
         size=3,
         min=0.0,
         default=(0.0, 0.0, 0.0),
         subtype="XYZ",
+    )
+
+    grid_layers: IntProperty(
+        name="Grid Layers",
+        description="Layers of each block in corner-point grids (GRDECL)",
+        default=1,
+        min=1,
+    )
+
+    grid_azimuth: FloatProperty(
+        name="Grid Azimuth",
+        description="Direction of the columns of corner-point grids (GRDECL), degrees clockwise from north",
+        default=0.0,
     )
 
     contour_interval: FloatProperty(
@@ -179,6 +192,8 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
             cell_size=tuple(map(settings.plain, self.cell_size)) if any(self.cell_size) else None,
             contour_interval=settings.plain(self.contour_interval) or None,
             tolerance=settings.plain(self.cell_tolerance) or None,
+            grid_layers=self.grid_layers,
+            grid_azimuth=settings.plain(self.grid_azimuth),
         )
 
     def tell_done(self, path):

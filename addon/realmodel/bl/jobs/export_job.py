@@ -9,7 +9,8 @@ from ..host.thread_job import ThreadJob
 class ExportJob(ThreadJob):
     """Writes a model, or its surfaces alone, whole or not at all, and returns the path.
 
-    model: core.Model. options: cell_size, contour_interval, tolerance, as of Model.save.
+    model: core.Model. options: cell_size, contour_interval, tolerance, grid_layers and
+    grid_azimuth, as of Model.save.
     """
 
     def __init__(self, model, path, surfaces_only=False, **options):

@@ -30,6 +30,7 @@ from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
 from ..simulation.cleaned_cells import cleaned_cells
+from ..simulation.corner_point import CornerPointGrid, corner_point_grid
 from ..simulation.elements import ElementFaces
 from ..simulation.patches import solver_names
 from .formats import FORMATS
@@ -51,6 +52,13 @@ def _polyhedra(model: ModelData, options: dict) -> PolyhedralMesh:
     if tolerance is not None:
         return cleaned_cells(model, tolerance, threads=model.threads)
     return PolyhedralMesh.of_model(model)
+
+
+def _corner_point(model: ModelData, options: dict) -> CornerPointGrid:
+    """The corner-point grid of a model; `grid` is one that is made already."""
+    size, layers, azimuth = (options.pop(name, None) for name in ("cell_size", "grid_layers", "grid_azimuth"))
+    grid = options.pop("grid", None)
+    return corner_point_grid(model, size, layers or 1, azimuth or 0.0) if grid is None else grid
 
 
 def _blocks(model: ModelData, options: dict) -> list[Part]:
@@ -150,7 +158,7 @@ class Exporter:
 
 MODEL = Exporter(
     "files ending in {} are not supported",
-    {"model": _as_it_is, "polyhedra": _polyhedra, "parts": _blocks},
+    {"model": _as_it_is, "polyhedra": _polyhedra, "parts": _blocks, "corner point": _corner_point},
     lambda model: model.project.units,
 )
 SURFACES = Exporter(

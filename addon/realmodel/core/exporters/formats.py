@@ -36,6 +36,7 @@ from .solvers.cdb import write_cdb
 from .solvers.exodus import write_exodus
 from .solvers.f3grid import write_f3grid
 from .solvers.gmsh import write_msh
+from .solvers.grdecl import write_grdecl
 from .solvers.inp import write_inp
 from .solvers.modflow import write_disu, write_disv
 from .solvers.openfoam import POLY_MESH, write_openfoam
@@ -111,6 +112,14 @@ FORMATS = (
         write_disv,
         ("unit",),
         has_files=True,
+    ),
+    Format(
+        ".grdecl",
+        "Corner-Point Grid",
+        ("corner point",),
+        "Layers of columns that follow the blocks, for reservoir simulators (Eclipse, OPM Flow)",
+        write_grdecl,
+        ("cell_size", "grid_layers", "grid_azimuth", "grid", "unit"),
     ),
     Format(".obj", "Wavefront OBJ", ("section",), "Triangles, a group for each block", write_section_obj),
     Format(

@@ -24,7 +24,7 @@ from ..results.displacements import displacements
 from ..results.sections.juxtaposition import fault_areas
 from ..results.tables import block_entry
 from ..results.volumes import Erosion, volume_deviations
-from ..simulation import cleaned_entry, mesh_entry
+from ..simulation import CornerPointGrid, cleaned_entry, corner_point_entry, mesh_entry
 from ..simulation.cleaned_cells import CleanedCells
 from ..simulation.simulation_mesh import SimulationMesh
 from ..surfaces.surface_heights import used_vertices
@@ -79,12 +79,13 @@ def model_report(
     erosion: Erosion | None = None,
     mesh: SimulationMesh | None = None,
     cells: CleanedCells | None = None,
+    grid: CornerPointGrid | None = None,
 ) -> Report:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
     validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
-    found; mesh: a SimulationMesh of it; cells: its CleanedCells; without them the report says nothing of
-    that.
+    found; mesh: a SimulationMesh of it; cells: its CleanedCells; grid: its CornerPointGrid; without them the
+    report says nothing of that.
     """
     model.require_project("the report")
     validation = validation or validate(model, PLACES_OF_REPORT, threads=model.threads)
@@ -135,6 +136,8 @@ def model_report(
         report["mesh"] = mesh_entry(mesh)
     if cells is not None:
         report["cleaned_cells"] = cleaned_entry(cells)
+    if grid is not None:
+        report["corner_point_grid"] = corner_point_entry(grid)
     return report
 
 

@@ -28,7 +28,7 @@ from ..results.model_holes import borehole
 from ..results.tables import block_table, borehole_table, map_dataset
 from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
-from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
+from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, corner_point_grid, simulation_mesh
 from . import cutting, notebook_view
 from .juxtapositions import juxtaposition
 from .model_file import read_model
@@ -65,6 +65,8 @@ class Model(ModelData):
         cell_size: float | Sequence[float] | None = None,
         contour_interval: float | None = None,
         tolerance: float | None = None,
+        grid_layers: int | None = None,
+        grid_azimuth: float | None = None,
     ) -> None:
         """Writes the model to a file or folder, by its ending (docs/reference/output_files.md). It appears
         whole or not at all.
@@ -73,11 +75,20 @@ class Model(ModelData):
         None: a hundredth of the longest side; in .omf and .geoh5 there are cells only where it is given.
         contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen levels. tolerance: of formats
         with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as cleaned_cells does; None: the
-        exact cells. Raises UsageError for an ending that is not known, or whose library is missing,
-        OutputFailed where it cannot be written.
+        exact cells. grid_layers, grid_azimuth: of corner-point grids (.grdecl), the layers of each block and
+        the direction of their columns, as of corner_point_grid. Raises UsageError for an
+        ending that is not known, or whose library is missing, OutputFailed where it cannot be written.
         """
         check_tolerance(path, tolerance)
-        MODEL.save(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
+        MODEL.save(
+            self,
+            path,
+            cell_size=cell_size,
+            contour_interval=contour_interval,
+            tolerance=tolerance,
+            grid_layers=grid_layers,
+            grid_azimuth=grid_azimuth,
+        )
 
     def to_html(self) -> str:
         """The model as one page of HTML, as `save` writes it to an .html. Browsers show it without a network.
@@ -191,6 +202,7 @@ class Model(ModelData):
     plot = notebook_view.plot
     simulation_mesh = simulation_mesh
     cleaned_cells = cleaned_cells
+    corner_point_grid = corner_point_grid
     geological_map = geological_map
     contours = contours
     cut_by_plane = cutting.cut_by_plane

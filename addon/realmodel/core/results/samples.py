@@ -255,7 +255,7 @@ def plan_grids(model: ModelData, size: CellSize = None) -> PlanGrids:
     upper = np.full((len(model.blocks), ny * nx), -np.inf)
     for block in range(len(model.blocks)):
         triangles = (_triangles(model, block) - origin) / cell_size
-        for cell, z, sign in _over_centers(triangles, nx, ny):
+        for cell, z, sign, _ in over_centers(triangles, nx, ny):
             np.add.at(thickness[block], cell, z * sign)
             np.maximum.at(upper[block], cell, z)
     upper = np.where(np.isfinite(upper), upper * cell_size[2] + origin[2], np.nan)
@@ -299,16 +299,16 @@ def _true_thickness(
     return result
 
 
-def _over_centers(
+def over_centers(
     triangles: np.ndarray, nx: int, ny: int
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """In pieces: numbers of cells whose center lies under or over a triangle, the triangle's height there,
-    and 1
-    where it is seen from above, else -1. A center on an edge that two triangles share belongs to one of
-    them."""
+    1 where it is seen from above, else -1, and the number of the triangle. triangles: (T, 3, 3), plan
+    coordinates in cells. A center on an edge that two triangles share belongs to one of them."""
     a, b = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
     twice = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    triangles, twice = triangles[twice != 0], twice[twice != 0]
+    number = np.flatnonzero(twice)
+    triangles, twice = triangles[number], twice[number]
     low = np.ceil(triangles[:, :, :2].min(axis=1) - 0.5).astype(np.int64)
     high = np.floor(triangles[:, :, :2].max(axis=1) - 0.5).astype(np.int64)
     low, high = np.maximum(low, 0), np.minimum(high, [nx - 1, ny - 1])
@@ -338,4 +338,4 @@ def _over_centers(
             inside &= (side * sign > 0) | ((side == 0) & ((sign > 0) != turned[:, 0]))
         weights = np.stack(sides, axis=1)[inside]
         z = (weights * corners[inside, :, 2]).sum(axis=1) / weights.sum(axis=1)
-        yield (y * nx + x)[inside], z, sign[inside]
+        yield (y * nx + x)[inside], z, sign[inside], number[of[inside]]
