@@ -63,7 +63,7 @@ def browse(page, script, folder, size=(1200, 800), view=""):
             [*command, f"{file.as_uri()}{view}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         try:
-            assert has_answer.wait(120), "the page gave no answer within two minutes"
+            assert has_answer.wait(300), "the page gave no answer within five minutes"
         finally:
             process.terminate()
             process.wait()

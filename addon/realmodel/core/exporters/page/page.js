@@ -42,7 +42,7 @@ function closedMaterial(side, operation) {
 function makeBlock(record, at) {
   const position = new THREE.BufferAttribute(positions, 3);
   const geometry = new THREE.BufferGeometry(), closed = new THREE.BufferGeometry();
-  for (const each of [geometry, closed]) each.setAttribute("position", position);
+  for (const mesh of [geometry, closed]) mesh.setAttribute("position", position);
   const block = { record, triangles: trianglesOf(record.number), group: new THREE.Group() };
   closed.setIndex(new THREE.BufferAttribute(indexOf(block, () => true), 1));
   const box = new THREE.Box3();
@@ -473,11 +473,19 @@ async function copyLink() {
   setTimeout(() => { byId("link").textContent = "Copy link"; }, 1500);
 }
 
+// Without a graphics card smooth edges take most of the time.
+function drawsInSoftware() {
+  const context = document.createElement("canvas").getContext("webgl");
+  const info = context && context.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? context.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 // ------------------------------------------------------------------ begin
 async function begin() {
   if (typeof DecompressionStream === "undefined") throw new Error("This browser is too old to unpack the model: open the page in a current one.");
   try {
-    renderer = new THREE.WebGLRenderer({ canvas: byId("canvas"), antialias: true, stencil: true });
+    renderer = new THREE.WebGLRenderer({ canvas: byId("canvas"), antialias: !drawsInSoftware(), stencil: true });
   } catch (error) {
     throw new Error("This browser draws no 3D (WebGL is off or missing): switch on hardware acceleration, or open the page in another browser.");
   }
