@@ -207,8 +207,8 @@ class REALMODEL_OT_share(ExportingInBackground, bpy.types.Operator):
     command = "share"
     needs = (a_model, not_building)
 
-    format: format_menu([MODEL.format(".html")])
-    filter_glob: format_filter([MODEL.format(".html")])
+    format: format_menu([MODEL.format("model.html")])
+    filter_glob: format_filter([MODEL.format("model.html")])
 
     def begin(self, context):
         return ExportJob(self.model(context), self.target())
