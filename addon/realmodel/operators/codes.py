@@ -26,17 +26,12 @@ def require_files(rock):
             require_file(file)
 
 
-def read_again(rock, changed=None):
+def read_again(rock, changed=None, only_try=False):
     """Reads the files of the imports of a rock mass again, with the present meanings of its codes. changed:
-    {code: unit} of others; then nothing but whether the files can be read is tried. Raises BuildFailed."""
+    {code: unit} of others. only_try: nothing is changed. Raises BuildFailed."""
     for entry in imported.imports(rock):
         names = reading_text.of_named(imported.names(rock, changed or {}))
-        run(
-            bpy.ops.realmodel.boreholes_read,
-            **entry["properties"],
-            names=names,
-            only_try=changed is not None,
-        )
+        run(bpy.ops.realmodel.boreholes_read, **entry["properties"], names=names, only_try=only_try)
 
 
 class _Regrouping(Reporting):
@@ -62,7 +57,7 @@ class _Regrouping(Reporting):
         before = {row.unit for row in rock.codes}
         known, count = observed_blocks.units_of(context.scene, rock), len(rows)
         changed = {row.name: known.surface(self.unit_of(row)) for row in rows}
-        read_again(rock, changed)
+        read_again(rock, changed, only_try=True)
         for row in rows:
             row.unit, row.chosen = changed[row.name], False
         borehole_points.forget(rock, borehole_picks.of_rock(rock))
@@ -215,7 +210,7 @@ class REALMODEL_OT_hole_problem_decide(_OfAProblem, bpy.types.Operator):
         require_files(rock)
         imported.decide(rock, problem.file, row, self.decision)
         try:
-            read_again(rock, {})
+            read_again(rock, only_try=True)
         except BuildFailed:
             rock.imports = before
             raise

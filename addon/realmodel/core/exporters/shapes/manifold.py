@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.algebra import ascending, atan2, begins_run, dot, norm
+
 
 def separated(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The vertices (N,) and triangles (T, 3) of a shape in which each edge is between two triangles, and the
@@ -33,8 +35,8 @@ def _twins(vertices: np.ndarray, corners: np.ndarray, after: np.ndarray, before:
     ends = np.column_stack([corners, corners[after]])
     keys = np.sort(ends, axis=1)
     is_forward = ends[:, 0] == keys[:, 0]
-    order = np.lexsort((~is_forward, keys[:, 1], keys[:, 0]))
-    begins = np.flatnonzero(np.append(True, (np.diff(keys[order], axis=0) != 0).any(axis=1)))
+    order = ascending(keys[:, 0], keys[:, 1], ~is_forward)
+    begins = np.flatnonzero(begins_run(keys[order]))
     counts = np.diff(np.append(begins, len(order)))
     twin = np.empty(len(corners), np.int64)
     pairs = order[begins[counts == 2][:, None] + [0, 1]]
@@ -52,10 +54,10 @@ def _angles(vertices: np.ndarray, edge: np.ndarray, opposite: np.ndarray) -> np.
     """(N,) the angles around an edge (2,) at which its triangles stand, by their third vertices (N,): growing
     counter-clockwise as seen from the edge's end."""
     begin, end = vertices[edge]
-    axis = (end - begin) / np.linalg.norm(end - begin)
+    axis = (end - begin) / norm(end - begin)
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     arms = vertices[opposite] - begin
-    return np.arctan2(arms @ np.cross(axis, across), arms @ across)
+    return atan2(dot(arms, np.cross(axis, across)), dot(arms, across))
 
 
 def _pair(twin: np.ndarray, around: list[int], is_forward: np.ndarray) -> None:

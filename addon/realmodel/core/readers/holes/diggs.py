@@ -37,18 +37,12 @@ def read_diggs(file: Path) -> dict[str, RawTable]:
             names[_attribute(hole, "id")] = name
             point = next(_all(hole, "referencePoint"), None)
             place = [] if point is None else _numbers(point)
-            system, labels_text = (
-                next(
-                    (text for e in (() if point is None else point.iter()) if (text := _attribute(e, name))),
-                    "",
-                )
-                for name in ("srsName", "uomLabels")
-            )
+            system = _first_attribute(point, "srsName")
             if any(system.endswith(code) for code in _GEOGRAPHIC):
                 what = f"hole '{name}' is placed by longitude and latitude ({system})"
                 advice = "give a table of collars in meters or feet beside it: collars = ..."
                 raise InputRefused(what, file=file, advice=advice)
-            labels = labels_text.split()
+            labels = _first_attribute(point, "uomLabels").split()
             unit_of_plan, unit_of_height = (
                 (labels[0], labels[-1]) if labels else (unit_of_plan, unit_of_height)
             )
@@ -100,6 +94,12 @@ def _text(element: Element, name: str) -> str:
 
 def _attribute(element: Element, name: str) -> str:
     return next((value for key, value in element.attrib.items() if key.rpartition("}")[2] == name), "")
+
+
+def _first_attribute(element: Element | None, name: str) -> str:
+    """An attribute of the first of an element and those in it that have it; "" where none does."""
+    elements = () if element is None else element.iter()
+    return next((text for entry in elements if (text := _attribute(entry, name))), "")
 
 
 def _numbers(element: Element) -> list[str]:

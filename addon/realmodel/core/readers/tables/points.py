@@ -393,7 +393,7 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     """(P,) the values of each further column, by its name, or by its number from 1 where it has none: numbers
     (NaN where there is none), or texts if not all are numbers."""
     table, mark = rows.table, rows.decimal
-    has_lines = _BEGINS_LINE in table.raw[table.layout.body :]
+    has_lines = table.raw.find(_BEGINS_LINE, table.layout.body) >= 0
     if (
         not has_lines
         and max(map(len, head_rows(table, 2000)), default=0) <= 3
