@@ -55,7 +55,8 @@ def four_clicks(walk):
     """The fourth is OK: an empty scene proposes by itself."""
     _write(walk.folder / "tables")
     bpy.ops.wm.read_homefile(use_factory_startup=True)
-    bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
+    view = bpy.context.preferences.view
+    walk.browser, view.filebrowser_display_type = view.filebrowser_display_type, "SCREEN"
     yield walk.redrawn()
     for item in list(bpy.data.objects):
         bpy.data.objects.remove(item)
@@ -87,6 +88,7 @@ def escape_while_it_works(walk):
     yield walk.redrawn(3)
     walk.shot("escaped")
     assert not model().exists and not len(model().proposal)
+    bpy.context.preferences.view.filebrowser_display_type = walk.browser
     shutil.rmtree(walk.folder / "tables")
     for cls in walk.panels:
         if not cls.is_registered:

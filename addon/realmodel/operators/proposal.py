@@ -5,8 +5,8 @@ import bpy
 
 from ..bl.field import hole_validation
 from ..bl.jobs.proposal_job import ProposalJob
-from ..bl.project import imported, observed_blocks, proposals, settings
-from ..bl.scene import live
+from ..bl.project import imported, observed_blocks, settings
+from ..bl.scene import live, proposed
 from ..core import BuildFailed, InputRefused
 from ..core.base.errors import counted
 from .chosen_tables import ChosenTables
@@ -31,18 +31,16 @@ class REALMODEL_OT_propose_project(InBackground, ChosenTables, bpy.types.Operato
         live.postpone_work()
         return job
 
-    def tell_done(self, proposed):
+    def tell_done(self, done):
         scene = bpy.context.scene
         if scene.name != self._scene:
             raise BuildFailed("another scene is shown now; nothing was changed")
-        show(scene, proposed.project, proposed.arrays)
-        proposal = proposed.project.proposal
-        proposals.keep(scene, proposal)
+        show(scene, done.project, done.arrays)
+        proposal = done.project.proposal
+        proposed.keep(scene, proposal)
         rock = settings.active_rock(scene)
         known = observed_blocks.units_of(scene, rock)
-        imported.record(
-            rock, self.called() | {"add_surfaces": True}, proposed.counts, proposed.problems, known
-        )
+        imported.record(rock, self.called() | {"add_surfaces": True}, done.counts, done.problems, known)
         with settings.filling():
             scene.realmodel.view.show_boreholes = bool(rock.hole_picks)
             scene.realmodel.view.show_map = bool(rock.map)

@@ -3,7 +3,7 @@
 
 import math
 
-from . import settings
+from ..project import settings
 
 
 def keep(scene, proposal):
