@@ -111,7 +111,9 @@ class SectionPlot:
             raise UsageError("there is nothing to draw: the section does not meet the model")
         self.section, self._cells, self._flat = section, cells, flattened(section)
         self.exaggeration = exaggeration if is_vertical(section) else 1.0
-        self.curves = None if hole_column is None else HoleCurves(section.hole_values, hole_column, hole_width)
+        self.curves = (
+            None if hole_column is None else HoleCurves(section.hole_values, hole_column, hole_width)
+        )
         self._holes = holes_on(section, hole_width) if hole_width > 0 else []
         shown = [self._flat, *([] if cells is None else [cells[0].reshape(-1, 2)])]
         places = np.concatenate([*shown, *(line for _, line in self._holes)])
@@ -149,9 +151,7 @@ class SectionPlot:
     def _are_beside(self, width: float) -> bool:
         return width > sum(text_width(text, _SIZE - 1) for text in self.ends) + 40
 
-    def draw(
-        self, drawing: Drawing, at: tuple[float, float], scale: float, letters: tuple[str, str]
-    ) -> None:
+    def draw(self, drawing: Drawing, at: tuple[float, float], scale: float, letters: tuple[str, str]) -> None:
         """Draws it with its lower left corner at a place in points. scale: points for a unit. letters: over
         its ends, where it is vertical."""
         section = self.section
@@ -159,7 +159,9 @@ class SectionPlot:
         ranges = [(low, high) for low, high in zip(self.low.tolist(), self.high.tolist(), strict=True)]
         axes = Axes(drawing, (*at, width, height), *ranges, _SIZE)
         for corners, color in zip(*(self._cells or ((), ())), strict=True):
-            drawing.polygon(axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells")
+            drawing.polygon(
+                axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells"
+            )
         for block, (name, color) in zip(self.present, self.entries(), strict=True):
             rings = [axes.at(ring) for ring in block_outlines(section, self._flat, block)]
             drawing.polygon(rings, color if self._cells is None else None, BLACK, 0.35, layer=name)
