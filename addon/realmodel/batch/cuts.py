@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts, sections, fences and boreholes of the command line: WHAT=FILE."""
+"""Cuts, sections, fences, sheets of them and boreholes of the command line: WHAT=FILE."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ import numpy as np
 
 from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
-from ..core.exporters import BOREHOLE, MODEL, PLANNED_HOLE, SECTION, Exporter
+from ..core.exporters import BOREHOLE, MODEL, PLANNED_HOLE, SECTION, SHEETS, Exporter
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.model.cutting import Section
 from ..core.readers import read_mesh
 from ..core.readers.formats import MESH, endings
 from ..core.results.model_holes import HoleAxis, HoleInterval, Interval
+from ..core.results.sheets import draw_sheets
 from ..core.settings.data_files import MeshFile
 from .sources import ENDINGS, OpenedFile
 
@@ -34,6 +35,7 @@ class SectionRequest:
     exaggeration: float = 1.0
     hole_width: float = 0.0
     hole_column: str | None = None
+    made: Section | None = None
 
     @property
     def outputs(self) -> list[Path]:
@@ -49,9 +51,14 @@ class SectionRequest:
             self.what = read_polyline(self.what)
 
     def cut(self, model, threads: int = 0) -> Section:
-        if self.option == "--fence":
-            return model.fence(self.what, threads=threads)
-        return model.section(self.what[:3], self.what[3:], threads=threads)
+        """The section of a model, which is made once."""
+        if self.made is None:
+            self.made = (
+                model.fence(self.what, threads=threads)
+                if self.option == "--fence"
+                else model.section(self.what[:3], self.what[3:], threads=threads)
+            )
+        return self.made
 
     def run(self, model, outputs, threads: int, progress) -> str:
         """Makes the section and stages its file. Returns the summary for the terminal."""
@@ -62,6 +69,39 @@ class SectionRequest:
         self.exporter.write(section, self.file, outputs, **drawn)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(section)} polygons, area {section.area:.2f}"
+
+
+@dataclass
+class SheetRequest:
+    """Sheets to print, and their file. size, scale: as of draw_sheets. sections: what they show beside the
+    map; the first says how they are drawn."""
+
+    file: Path
+    size: str
+    scale: float | None
+    sections: list[SectionRequest]
+    exporter = SHEETS
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return []
+
+    def read(self) -> None:
+        pass
+
+    def run(self, model, outputs, threads: int, progress) -> str:
+        """Draws the sheets and stages their file. Returns the summary for the terminal."""
+        progress(1.0, f"drawing {self.file.name}")
+        sections = [request.cut(model, threads) for request in self.sections]
+        first = self.sections[0] if self.sections else None
+        drawn = () if first is None else (first.exaggeration, first.hole_width, first.hole_column)
+        sheets = draw_sheets(model, sections, self.size, self.scale, *drawn)
+        self.exporter.write(sheets, self.file, outputs)
+        return f"{self.file.name}: {counted(len(sheets), 'sheet')} on {self.size}"
 
 
 @dataclass

@@ -156,6 +156,7 @@ SECTION = Exporter(
     },
     lambda section: section.unit,
 )
+SHEETS = Exporter("sheets are not written as {}", {"sheets": _as_it_is})
 FIELDS = Exporter("fields are not written as {}", {"fields": _as_it_is})
 REPORT = Exporter("reports are not written as {}", {"report": _as_it_is, "block table": _as_it_is})
 BOREHOLE = Exporter("boreholes are not written as {}", {"borehole": _as_it_is})

@@ -20,6 +20,7 @@ from .section_data import FenceData, SectionData
 from .section_holes import UNKNOWN, HoleLine, parts_near
 
 MOST_EXAGGERATION = 1000.0
+SCALES = (1.0, 2.0, 2.5, 5.0)  # round ones, times a power of ten
 _POINT = 0.0254 / 72  # meters
 _PLOT = (560.0, 360.0)  # maximal size of the section on the page, in points
 _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
@@ -62,12 +63,12 @@ def draw_section(
     legend_width, legend_height = legend_size(_LEGEND, entries, _SIZE)
     bar_width, bar_height = (0.0, 0.0) if curves is None else curves.key_size(_SIZE)
     legend_width = max(legend_width, bar_width)
-    subtitle = _subtitle(section, ratio, plot.exaggeration)
+    below_title = subtitle(section, ratio, plot.exaggeration)
     title = title or section.name
     above = _ABOVE + plot.height_of_ends(width)
     page = max(
         _LEFT + width + _GAP + legend_width,
-        *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle)),
+        *(20 + text_width(text, _SIZE + 3) for text in (title, below_title)),
         *(_LEFT + 20 + text_width(text, _SIZE - 1) for text in plot.ends),
     )
     plot_height = max(height, legend_height + bar_height)
@@ -83,7 +84,7 @@ def draw_section(
         curves.draw_key(drawing, (_LEFT + width + _GAP, base + height - legend_height), _SIZE)
     top = drawing.height - 20
     drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
-    drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")
+    drawing.text(_LEFT, top - 1.6 * _SIZE, below_title, _SIZE, layer="Text")
     return drawing
 
 
@@ -122,6 +123,7 @@ class SectionPlot:
             self.low[0], self.high[0] = 0.0, section.length
         if is_vertical(section):
             self.high[1] += _SKY * (self.high[1] - self.low[1])
+        self._top = float(self.high[1])
         self.present = [int(block) for block in np.unique(section.block)[::-1]]
         self.ends = _end_texts(section, self._flat)
 
@@ -139,8 +141,9 @@ class SectionPlot:
         """Makes it higher, so that a line of names over the holes is within the frame. scale: points for a
         unit. Returns whether there are holes."""
         if self._holes:
-            sky = self.high[1] - max(line[:, 1].max() for _, line in self._holes)
-            self.high[1] += max(0.0, (_NAME_ABOVE + _SIZE) / (scale * self.exaggeration) - sky)
+            sky = self._top - max(line[:, 1].max() for _, line in self._holes)
+            room = (_NAME_ABOVE + _SIZE) / (scale * self.exaggeration)
+            self.high[1] = self._top + max(0.0, room - sky)
         return bool(self._holes)
 
     def height_of_ends(self, width: float) -> float:
@@ -360,17 +363,27 @@ def directions(section: SectionData) -> tuple[np.ndarray | None, np.ndarray | No
     return right, np.cross(normal, right)
 
 
+def points_for_unit(ratio: float, unit: str) -> float:
+    """How long a unit is on paper at a scale 1 : ratio, in points."""
+    return float(METERS[unit]) / ratio / _POINT
+
+
 def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
     """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
     least = float((extent * float(METERS[unit]) / (np.array(_PLOT) * _POINT)).max())
     power = 10.0 ** np.floor(np.log10(least))
-    ratio = next(f * power for f in (1.0, 2.0, 2.5, 5.0, 10.0) if f * power >= least * (1 - 1e-9))
-    return ratio, float(METERS[unit]) / ratio / _POINT
+    ratio = next(f * power for f in (*SCALES, 10.0) if f * power >= least * (1 - 1e-9))
+    return ratio, points_for_unit(ratio, unit)
 
 
-def _subtitle(section: SectionData, ratio: float, exaggeration: float) -> str:
-    denominator = f"{ratio:,.0f}" if ratio >= 10 else f"{ratio:g}"
-    text = f"Scale 1 : {denominator}"
+def scale_text(ratio: float) -> str:
+    """A scale as it is written."""
+    return f"1 : {ratio:,.0f}" if ratio >= 10 else f"1 : {ratio:g}"
+
+
+def subtitle(section: SectionData, ratio: float, exaggeration: float) -> str:
+    """What a section is drawn at: its scale, and its exaggeration or its plane."""
+    text = f"Scale {scale_text(ratio)}"
     if is_vertical(section):
         return f"{text}, vertical exaggeration {exaggeration:g}"
     normal = _unit_normal(section)
