@@ -220,9 +220,9 @@ FORMATS = (
         ".gpkg",
         "GeoPackage",
         ("model",),
-        "The geological map of the top, and contours, for GIS",
+        "The geological map of the top, contours, and maps of tops, thickness and uncertainty, for GIS",
         write_geopackage,
-        ("contour_interval",),
+        ("contour_interval", "cell_size"),
         has_files=True,
     ),
     Format(
