@@ -68,8 +68,9 @@ class Model(ModelData):
         """Writes the model to a file or folder, by its ending (docs/reference/output_files.md). It appears
         whole or not at all.
 
-        cell_size: of regular grids (.csv, .vti, .tif, .asc) and maps of values (.gpkg), one number, two (in plan, in height) or three;
-        None: a hundredth of the longest side; in .omf and .geoh5 there are cells only where it is given.
+        cell_size: of regular grids (.csv, .vti, .tif, .asc) and maps of values (.gpkg), one number, two (in
+        plan, in height) or three; None: a hundredth of the longest side; in .omf and .geoh5 there are cells
+        only where it is given.
         contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen levels. tolerance: of formats
         with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as cleaned_cells does; None: the
         exact cells. Raises UsageError for an ending that is not known, or whose library is missing,
