@@ -152,20 +152,12 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
     def clicked(self, context, area, at, is_held):
         if is_held:
             return None
-        name = self._nearest(context, area, at)
+        name = _nearest(context, self._lines, area, at)
         if name is None:
             return "There is no borehole here"
         if name not in self._names[-1:]:
             self._names.append(name)
         return ", ".join(self._names)
-
-    def _nearest(self, context, area, at):
-        best = _PIXELS, None
-        for name, line in self._lines.items():
-            seen = viewports.pixels(area, project_settings.in_world(context.scene, line))
-            seen = seen[np.isfinite(seen).all(axis=1)]
-            best = min(best, (_distance(np.array(at, float), seen), name), key=lambda pair: pair[0])
-        return best[1]
 
     def remove_last(self):
         del self._names[-1:]
@@ -178,6 +170,48 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
         if not self._names:
             raise InputRefused("no borehole was picked", advice="click boreholes, then press Enter")
         section_holes.choose(context.scene, self._names)
+
+
+class REALMODEL_OT_hole_log(InViewport, bpy.types.Operator):
+    """Click a borehole in the viewport: its log stands beside the model, with intervals, picks and curves"""
+
+    bl_label = "Hole Log"
+    bl_options = {"UNDO"}
+    needs = (some_holes,)
+    keys = "Click a borehole"
+
+    hole: StringProperty(
+        name="Hole", description="Name of the borehole; empty: no log is shown", options={"SKIP_SAVE"}
+    )
+
+    def clicked(self, context, area, at, _is_held):
+        self.hole = _nearest(context, section_holes.paths(context.scene), area, at) or ""
+        return None if self.hole else "There is no borehole here"
+
+    def _take(self, context, event):
+        result = super()._take(context, event)
+        if not self.hole:
+            return result
+        self.leave(context, {})
+        return self.execute(context)
+
+    def marks(self, _context):
+        return np.empty((0, 3))
+
+    def act(self, context):
+        if self.hole and self.hole not in section_holes.paths(context.scene):
+            raise InputRefused(f"there is no borehole '{self.hole}'")
+        context.scene.realmodel.view.log_hole = self.hole
+
+
+def _nearest(context, lines, area, at):
+    """The name of the borehole at a position in a viewport, or None. lines: {name: its line}."""
+    best = _PIXELS, None
+    for name, line in lines.items():
+        seen = viewports.pixels(area, project_settings.in_world(context.scene, line))
+        seen = seen[np.isfinite(seen).all(axis=1)]
+        best = min(best, (_distance(np.array(at, float), seen), name), key=lambda pair: pair[0])
+    return best[1]
 
 
 def _distance(at, line):
