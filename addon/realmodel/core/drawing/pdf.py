@@ -156,7 +156,8 @@ def _text(item: Text, words: _Words) -> str:
     angle = np.radians(item.angle)
     c, s = float(np.cos(angle)), float(np.sin(angle))
     back = ANCHORS[item.anchor] * text_width(item.text, item.size)
-    shown, font = [], ""
+    shown: list[str] = []
+    font = ""
     for name, code in words.codes(item.text):
         if name != font:
             shown.append(f"{'> Tj ' if shown else ''}{name} {item.size:g} Tf <")

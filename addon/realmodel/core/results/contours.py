@@ -67,7 +67,8 @@ def contours(model: ModelData, interval: float | None = None, ground: Ground | N
         return []
     low, high = min(z.min() for z in heights), max(z.max() for z in heights)
     step = checked_interval(interval, float(low), float(high))
-    return [line for name, *shape in shapes for line in _of_shape(name, *shape, step)]
+    lines = (_of_shape(name, corners, plan, solid, step) for name, corners, plan, solid in shapes)
+    return [line for of_shape in lines for line in of_shape]
 
 
 def ground_contours(ground: Ground) -> list[Contour]:

@@ -50,8 +50,8 @@ class MapPlot:
         self.low, self.high = places.min(axis=0), places.max(axis=0)
         margin = _AROUND * float((self.high - self.low).max())
         self.low, self.high = self.low - margin, self.high + margin
-        drawn = {"contours": self._contours, "faults": self._faults, "holes": self._holes, "sections": traces}
-        self.signs = [name for name, items in drawn.items() if len(items)]
+        counts = [len(self._contours), len(self._faults), len(self._holes), len(traces)]
+        self.signs = [name for name, count in zip(_LAYERS, counts, strict=True) if count]
 
     def extent(self) -> np.ndarray:
         """(2,) float64: width and height, model units."""
@@ -64,8 +64,8 @@ class MapPlot:
     def draw(self, drawing: Drawing, at: tuple[float, float], scale: float) -> None:
         """Draws it with its lower left corner at a place in points. scale: points for a unit."""
         width, height = (self.extent() * scale).tolist()
-        ranges = [(low, high) for low, high in zip(self.low.tolist(), self.high.tolist(), strict=True)]
-        axes = Axes(drawing, (*at, width, height), *ranges, _SIZE)
+        (left, right), (bottom, top) = zip(self.low.tolist(), self.high.tolist(), strict=True)
+        axes = Axes(drawing, (*at, width, height), (left, right), (bottom, top), _SIZE)
         for area in self._areas:
             color, name = tuple(self._colors[area.block]), self._names[area.block]
             for polygon in area.polygons:

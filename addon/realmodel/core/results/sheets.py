@@ -14,7 +14,7 @@ from ..base.errors import UsageError
 from ..cells.model_data import ModelData
 from ..drawing.charts import TITLE, left_margin, legend, legend_size, scale_bar
 from ..drawing.drawing import BLACK, WHITE, Color, Drawing, text_width
-from .map_plot import CONTOUR, FAULT_WIDTH, HOLE_RADIUS, SECTION_WIDTH, MapPlot
+from .map_plot import CONTOUR, FAULT_WIDTH, HOLE_RADIUS, SECTION_WIDTH, MapPlot, Trace
 from .sections.section_data import FenceData, SectionData
 from .sections.section_drawing import (
     SCALES,
@@ -35,7 +35,6 @@ _MARGIN, _STRIP = 10 * _MM, 58 * _MM  # around the frame; the width of what stan
 _PAD = 4 * _MM  # between the frame and what is in it
 _BELOW, _ABOVE, _RIGHT = 30.0, 46.0, 14.0  # around a map or section, for numbers and titles
 _SIZE = 8.0
-_BLOCK = 5.2 * _SIZE  # height of what stands in the title block below the name
 _NAMES = {"contours": "Contour", "faults": "Fault", "holes": "Borehole", "sections": "Line of a section"}
 _LEGEND = "Legend"
 
@@ -119,7 +118,9 @@ def _figures(
     hole_width: float,
     hole_column: str | None,
 ) -> list[_Figure]:
-    unit, traces, figures = model.project.units, [], []
+    unit = model.project.units
+    traces: list[Trace] = []
+    figures: list[_Figure] = []
     for section in sections:
         plot = SectionPlot(section, exaggeration, hole_width, hole_column)
         if not is_vertical(section):
@@ -302,6 +303,3 @@ def _sign(drawing: Drawing, sign: str, at: tuple[float, float], size: float) -> 
     color = CONTOUR if sign == "contours" else BLACK
     width = {"contours": 0.5, "faults": FAULT_WIDTH, "sections": SECTION_WIDTH}[sign]
     drawing.line([(x, y), (x + 1.6 * size, y)], color, width, layer=layer)
-
-
-__all__ = ["DEFAULT_SIZE", "SHEET_SIZES", "draw_sheets"]

@@ -159,8 +159,8 @@ class SectionPlot:
         its ends, where it is vertical."""
         section = self.section
         width, height = (self.extent() * scale).tolist()
-        ranges = [(low, high) for low, high in zip(self.low.tolist(), self.high.tolist(), strict=True)]
-        axes = Axes(drawing, (*at, width, height), *ranges, _SIZE)
+        (left, right), (bottom, top) = zip(self.low.tolist(), self.high.tolist(), strict=True)
+        axes = Axes(drawing, (*at, width, height), (left, right), (bottom, top), _SIZE)
         for corners, color in zip(*(self._cells or ((), ())), strict=True):
             drawing.polygon(
                 axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells"
