@@ -105,6 +105,9 @@ def csv_dialog(walk):
 
     walk.area.spaces.active.show_region_ui = False
     folder, tables = guide_scenes.SAMPLES / "two_layers", [{"name": "clay.csv"}, {"name": "ground.csv"}]
+    region = walk.region("WINDOW")
+    walk.move(region.x + region.width / 2, region.y + 0.9 * region.height)  # the dialog hangs from it
+    yield walk.redrawn()
     with viewport(walk):
         bpy.ops.realmodel.surface_add(
             "INVOKE_DEFAULT", filepath=str(folder / "clay.csv"), directory=str(folder), files=tables

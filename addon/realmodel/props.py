@@ -114,6 +114,18 @@ class RealModelMisfit(bpy.types.PropertyGroup):
     place = ArraysProperty()  # model coordinates
 
 
+class RealModelReason(bpy.types.PropertyGroup):
+    """A row of the list of what a proposal has decided, and of what it could not decide."""
+
+    kind: StringProperty(
+        name="Kind", description="Choice, rule, alternative, conflict, lens, repeat, warning"
+    )
+    name: StringProperty(name="Of", description="What it is about")
+    text: StringProperty(name="Reason", description="Why it was decided so")
+    hole: StringProperty(name="Hole")
+    depth: StringProperty(name="Depth", description="Along the hole")
+
+
 class RealModelLeftOutHole(bpy.types.PropertyGroup):
     """A row of the table of cross-validation by holes."""
 
@@ -281,6 +293,10 @@ class RealModelSettings(bpy.types.PropertyGroup):
         default=-1,
         update=changes.misfit_chosen,
         options=set(),
+    )
+    proposal: CollectionProperty(type=RealModelReason)
+    active_reason: IntProperty(
+        name="Active Reason", description="The row of the proposal that is shown in full", options=set()
     )
     left_out_holes: CollectionProperty(type=RealModelLeftOutHole)
     active_left_out_hole: IntProperty(

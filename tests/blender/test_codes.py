@@ -86,6 +86,26 @@ class Codes(PanelCase):
         self.assertEqual(self.rock.codes["SA0"].unit, "Marlstone")
         self.assertEqual(self.surfaces()[:2], ["Marlstone", "CL0"])
 
+    def test_nothing_changes_where_a_file_is_refused(self):
+        """Neither codes nor surfaces nor data, also where the second of two imports is refused."""
+        self.import_holes(count=4)
+        (self.folder / "places.csv").write_text("x,y,z,block\n1,2,30,MA0\n5,2,30,SA1\n")
+        ops.boreholes_read(filepath=str(self.folder / "places.csv"))
+
+        def state():
+            rock = self.rock
+            codes = [(row.name, row.unit, row.chosen, row.rows) for row in rock.codes]
+            return codes, self.surfaces(), rock.imports, rock.observations.digest, rock.hole_picks.digest
+
+        (self.folder / "places.csv").write_text("nothing\n")
+        before = state()
+        for operator, arguments in (
+            (ops.codes_assign, {"pattern": "MA*", "unit": "Marl"}),
+            (ops.codes_ignore, {"pattern": "MA*"}),
+        ):
+            self.refused(operator, "places.csv", **arguments)
+            self.assertEqual(state(), before)
+
     def test_undo(self):
         self.import_holes(count=4)
         bpy.ops.ed.undo_push(message="imported")

@@ -38,7 +38,7 @@ BLENDERS_MENUS = (
 )
 COARSER = 4.0
 OF_MORE_CELLS = ("castle_hill", "fault_blocks", "rift_basin")  # where the mesh is coarser
-BY_SCRIPT = {"realmodel.section_update"}  # operators that no button is for
+BY_SCRIPT = {"realmodel.section_update", "realmodel.propose_project"}  # operators that no button is for
 
 
 def settings_of(group):
@@ -309,6 +309,8 @@ class States(PanelCase):
         ops.edit_done()
         problem = settings.active_rock(self.scene).hole_problems.add()
         problem.kind, problem.hole, problem.action = "gap", "B1", "repaired"
+        self.model.proposal.add().hole = "B1"
+        self.model.active_reason = 0
         drawn |= self.draw().operators
         drawn |= drawn_preferences().operators
         known = {

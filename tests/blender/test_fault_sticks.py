@@ -7,7 +7,7 @@ from panel_case import ops, select, sheet
 from realmodel.bl.objects import viewports
 from realmodel.bl.project import compartments, project_settings, settings
 from realmodel.bl.scene import data_objects
-from realmodel.core import load_project
+from realmodel.core import load_project, read_points
 from structure_case import StructureCase, wall
 
 
@@ -163,3 +163,33 @@ class Sticks(StructureCase):
         before = self.volumes()
         ops.build()
         self.assertEqual(self.volumes(), before)
+
+
+class FaultOfPoints(StructureCase):
+    """A fault from points with dips."""
+
+    def test_its_points_and_dips_are_saved(self):
+        """And opened again, the same, before it is built and afterward."""
+        along = np.arange(-10.0, 111.0, 20.0)
+        y, z = (part.ravel() for part in np.meshgrid(along, np.arange(-40.0, 41.0, 20.0)))
+        points = np.column_stack([50.0 + 0.5 * z, y, z])
+        points_text = "\n".join(["x,y,z", *(",".join(map(str, row)) for row in points)])
+        (self.folder / "f.csv").write_text(points_text + "\n")
+        (self.folder / "d.csv").write_text("x,y,z,dip,dip_direction\n50,50,0,63.4,270\n")
+        select(*(sheet(f"S{n}", 10.0 * n) for n in range(2)))
+        ops.from_selected()
+        project_file = self.folder / "p.toml"
+        ops.save_project(filepath=str(project_file))
+        with project_file.open("a") as text:
+            text.write('\n[[fault]]\nname = "F"\npoints = "f.csv"\ndips = "d.csv"\n')
+        ops.open_project(filepath=str(project_file), build=False)
+        given = self.model.faults[0].dips["normals"].tolist()
+        for number in range(2):
+            saved = self.folder / f"saved{number}.toml"
+            ops.save_project(filepath=str(saved))
+            fault = load_project(saved).faults[0]
+            self.assertIsNotNone(fault.dip_file)
+            ops.open_project(filepath=str(saved), build=False)
+            np.testing.assert_allclose(self.model.faults[0].dips["normals"], given, atol=1e-12)
+            np.testing.assert_array_equal(read_points(self.model.faults[0].filepath).xyz, points)
+            ops.build()

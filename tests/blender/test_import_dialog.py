@@ -3,12 +3,16 @@
 profiles."""
 
 import json
+from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
 from panel_case import PanelCase, ops
-from realmodel.bl.field import profiles
+from realmodel.bl.field import field_tables, profiles
+from realmodel.bl.project import reading_text
 from realmodel.core import InputRefused
+from realmodel.core.readers import preview_table
+from realmodel.operators.chosen_tables import ChosenTables
 from realmodel.props_import import IGNORED
 from realmodel.ui.panel import wrapped
 
@@ -58,6 +62,30 @@ class Menus(PanelCase):
             directory=str(self.folder), files=[{"name": name} for name in tables], columns=columns
         )
         self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["Ton", "Sand"])
+
+    def test_an_ignored_column_of_field_data(self):
+        """Whichever it is, it is not read; one that another table has is not ignored in silence."""
+        path = self.folder / "i.csv"
+        path.write_text("hole,from,to,block,dip\nB,0,4,Sand,10\n")
+        dialog = ChosenTables.__new__(ChosenTables)
+        dialog.columns, dialog._previews = "", [preview_table(path)]
+        usual = field_tables.columns_of(dialog._previews[0])
+        for ignored in usual:
+            chosen = [(c, m if m != ignored else IGNORED) for m, c in usual.items()]
+            dialog.headings = [SimpleNamespace(file=str(path), key=c, meaning=m) for c, m in chosen]
+            self.assertEqual(dialog.named_columns(), {ignored: False})
+            text = reading_text.of_named(dialog.named_columns())
+            self.assertEqual(reading_text.named_columns(text), {ignored: False})
+        other = self.folder / "c.csv"
+        other.write_text("hole,x,y,z\nB,0,0,9\n")
+        dialog._previews.append(preview_table(other))
+        dialog.headings = [
+            SimpleNamespace(file=str(file), key=c, meaning=IGNORED if (file, m) == (path, "hole") else m)
+            for file in (path, other)
+            for m, c in field_tables.columns_of(preview_table(file)).items()
+        ]
+        with self.assertRaisesRegex(InputRefused, "'hole' is column hole in one table, and ignored"):
+            dialog.named_columns()
 
     def test_values_of_a_column_go_to_the_surfaces_of_their_names(self):
         path = self.folder / "t.csv"

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused, Project, Rock, Surface, build, load_project
-from realmodel.core.readers import read_boreholes
+from realmodel.core.readers import read_picks
 
 COLLARS = "hole,x,y,z\nB1,0,0,10\nB2,4,0,11\nB3,4,4,12\nB4,0,4,11\nB5,2,2,11\n"
 PICKS = "hole,surface,depth\nB1,clay,4\nB2,clay,5\nB3,clay,6\nB1,sand,1\nB3,sand,\nB4,sand,2\n"
@@ -53,7 +53,7 @@ CLAY, SAND = [[0, 0, 6], [4, 0, 6], [4, 4, 6]], [[0, 0, 9], [0, 4, 9]]
 )
 def test_tables(write, collars, picks, keys):
     files = {"picks": write("p.csv", picks), "collars": collars and write("c.csv", collars)}
-    met = read_boreholes(Boreholes(**files, **keys))
+    met = read_picks(Boreholes(**files, **keys))
     assert list(met.points) == ["clay", "sand"]
     assert met.points["clay"].tolist() == CLAY
     assert met.points["sand"].tolist() == SAND
@@ -70,7 +70,7 @@ def test_words_for_a_surface_that_was_not_reached(write, entry):
         "picks": write("p.csv", PICKS.replace("B3,sand,", f"B3,sand,{entry}")),
         "collars": write("c.csv", COLLARS),
     }
-    met = read_boreholes(Boreholes(**files))
+    met = read_picks(Boreholes(**files))
     assert met.points["sand"].tolist() == SAND
     assert any("left out: 1 pick without a depth" in text for text in met.warnings)
 
@@ -99,17 +99,17 @@ def test_inclined_holes_are_a_warning(write):
     lines = COLLARS.split()
     angles = ["Dip", "-90", "-60", "90", "", "-75"]
     collars = "\n".join(f"{line},{angle}" for line, angle in zip(lines, angles, strict=True))
-    met = read_boreholes(Boreholes(picks=write("p.csv", PICKS), collars=write("c.csv", collars)))
+    met = read_picks(Boreholes(picks=write("p.csv", PICKS), collars=write("c.csv", collars)))
     assert met.points["clay"].tolist() == CLAY
     assert [text for text in met.warnings if "B2 and B5 are not vertical" in text]
     # Elevations need no direction.
     rows = "hole,x,y,elevation,surface,dip\nB1,0,0,6,clay,-60\nB2,4,0,6,clay,-60\n"
-    assert not read_boreholes(Boreholes(picks=write("q.csv", rows))).warnings
+    assert not read_picks(Boreholes(picks=write("q.csv", rows))).warnings
 
 
 def test_units(write):
     files = {"picks": write("p.csv", PICKS), "collars": write("c.csv", COLLARS)}
-    met = read_boreholes(Boreholes(**files, units={"z": "ft"}))
+    met = read_picks(Boreholes(**files, units={"z": "ft"}))
     np.testing.assert_allclose(met.points["clay"], np.array(CLAY) * [1, 1, 0.3048])
 
 
@@ -119,8 +119,8 @@ def test_units(write):
         (
             {},
             {
-                "c.csv": "ft for 'Z (FT)': converted to m",
-                "p.csv": "ft for 'depth [feet]': converted to m",
+                "c.csv": "ft for 'Z (FT)', converted to m",
+                "p.csv": "ft for 'depth [feet]', converted to m",
             },
         ),
         ({"units": {"z": "ft"}}, {}),
@@ -134,7 +134,7 @@ def test_units_in_headers_are_obeyed_unless_the_user_says_others(write, units, s
         "picks": write("p.csv", PICKS.replace("depth", "depth [feet]")),
         "collars": write("c.csv", collars),
     }
-    met = read_boreholes(Boreholes(**files, **units))
+    met = read_picks(Boreholes(**files, **units))
     in_feet = 1 if units.get("units") == "ft" else [1, 1, 0.3048]
     np.testing.assert_allclose(
         met.points["clay"], np.array(CLAY) * in_feet * (0.3048 if in_feet == 1 else 1), rtol=1e-5
@@ -167,7 +167,7 @@ def test_units_in_headers_are_obeyed_unless_the_user_says_others(write, units, s
 def test_tables_refused(write, collars, picks, file, line, words):
     files = {"picks": write("p.csv", picks), "collars": collars and write("c.csv", collars)}
     with pytest.raises(InputRefused) as raised:
-        read_boreholes(Boreholes(**files))
+        read_picks(Boreholes(**files))
     assert words in str(raised.value)
     assert (raised.value.file.name, raised.value.line) == (file, line)
 
@@ -181,24 +181,24 @@ def test_tables_refused(write, collars, picks, file, line, words):
 )
 def test_a_pick_of_a_hole_without_a_collar_is_listed(write, more, words):
     collars = write("c.csv", COLLARS.replace("B5,2,2,11", "B5,2,,11"))
-    met = read_boreholes(Boreholes(write("p.csv", PICKS), collars))
+    met = read_picks(Boreholes(write("p.csv", PICKS), collars))
     assert met.points["sand"].tolist() == SAND
     assert met.warnings[0] == (
         f"{collars}: holes are without x, y or z, and are not used (1): line 6, hole 'B5': it has no y"
     )
-    met = read_boreholes(Boreholes(write("p.csv", PICKS + more), collars))
+    met = read_picks(Boreholes(write("p.csv", PICKS + more), collars))
     assert met.points["sand"].tolist() == SAND
     (entry,) = met.left_out
     assert entry.kind == "no_collar" and entry.text.startswith(words)
     off = write("p.csv", PICKS.replace("depth\n", "depth,use\n") + more.replace("\n", ",0\n"))
-    assert not read_boreholes(Boreholes(off, collars)).left_out
+    assert not read_picks(Boreholes(off, collars)).left_out
 
 
 def test_holes_are_found_however_they_are_written(write):
     collars = COLLARS.replace("B1,", "DH-1,").replace("B2,", "DH 2,").replace("B5,", "dh_2,")
     picks = PICKS.replace("B1,", "dh 1,").replace("B2,", "DH 2,").replace("B3,", "b3,")
     survey = write("s.csv", "hole,depth,azimuth,inclination\nDh 1,0,90,90\n")
-    met = read_boreholes(Boreholes(write("p.csv", picks), write("c.csv", collars), survey=survey))
+    met = read_picks(Boreholes(write("p.csv", picks), write("c.csv", collars), survey=survey))
     # 'DH-1' is horizontal
     np.testing.assert_allclose(met.points["clay"], [[4, 0, 10], CLAY[1], CLAY[2]], atol=1e-12)
     assert set(met.holes) == {"DH-1", "DH 2", "B3", "B4"}
@@ -206,7 +206,7 @@ def test_holes_are_found_however_they_are_written(write):
         "are taken for those with collars: 'dh 1' for 'DH-1' and 'b3' for 'B3'" in t for t in met.warnings
     )
     # 'DH_2' may be 'DH 2' or 'dh_2', at another place
-    met = read_boreholes(Boreholes(write("p.csv", picks.replace("DH 2,", "DH_2,")), write("c.csv", collars)))
+    met = read_picks(Boreholes(write("p.csv", picks.replace("DH 2,", "DH_2,")), write("c.csv", collars)))
     assert [(entry.kind, entry.hole) for entry in met.left_out] == [("no_collar", "DH_2")]
 
 
@@ -280,8 +280,25 @@ def test_a_point_in_another_column_is_no_decimal_comma(tmp_path):
     """Entries are told apart by the separator, as the numbers are read."""
     file = tmp_path / "picks.csv"
     file.write_text("hole;x;y;z;surface;depth\nB1;100,5;200,5;7,25;Top 1.5;1,5\n")
-    found = read_boreholes(Boreholes(picks=file))
+    found = read_picks(Boreholes(picks=file))
     assert found.points["Top 1.5"].tolist() == [[100.5, 200.5, 5.75]]
     file.write_text("hole;x;y;z;surface;depth\nB1;100.5;200.5;7;Top;1,5\n")
     with pytest.raises(InputRefused, match="depth is not a number: '1,5'"):  # as all that there are
-        read_boreholes(Boreholes(picks=file))
+        read_picks(Boreholes(picks=file))
+
+
+@pytest.mark.parametrize("meaning", ["z", "surface"])
+def test_a_column_that_is_not_to_be_read(tmp_path, meaning):
+    """It is as if the table had none, whatever it holds."""
+    columns = {"hole": "B1", "x": "0", "y": "0", "z": "7", "surface": "Top", "depth": "2"}
+    whole, without = tmp_path / "whole.csv", tmp_path / "without.csv"
+    for file, left in ((whole, ()), (without, (meaning,))):
+        shown = {name: text for name, text in columns.items() if name not in left}
+        file.write_text(f"{','.join(shown)}\n{','.join(shown.values())}\n")
+    assert read_picks(Boreholes(picks=whole)).points["Top"].tolist() == [[0, 0, 5]]
+    said = []
+    for file, named in ((whole, {meaning: False}), (without, {})):
+        with pytest.raises(InputRefused) as refused:
+            read_picks(Boreholes(picks=file, columns=named))
+        said.append(refused.value.what)
+    assert said[0] == said[1]

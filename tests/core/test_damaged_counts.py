@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from damages import damaged_bytes, wrong_counts
 from realmodel.core import Boreholes, InputRefused, PointFile
-from realmodel.core.readers import read_boreholes, read_mesh, read_point_file
+from realmodel.core.readers import read_mesh, read_picks, read_point_file
 from realmodel.core.readers.fault_input import read_fault_points
 from test_damaged_files import MSH, READERS
 from test_rasters import PLACE, needs_tifffile, tifffile
@@ -40,7 +40,7 @@ def of_holes(damaged):
             if name != damaged:
                 file.with_name(f"{name}.csv").write_bytes(content)
         paths = {name: file if name == damaged else file.with_name(f"{name}.csv") for name in tables}
-        return read_boreholes(Boreholes(**paths))
+        return read_picks(Boreholes(**paths))
 
     return read
 

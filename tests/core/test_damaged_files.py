@@ -20,7 +20,7 @@ from realmodel.core import (
     load_library,
     load_project,
 )
-from realmodel.core.readers import read_boreholes, read_mesh, read_point_file, read_region
+from realmodel.core.readers import read_mesh, read_picks, read_point_file, read_region
 from realmodel.core.readers.fault_input import read_fault_points
 from test_mesh_dialects import GOCAD, STRINGS, WELL, datamine, legacy
 from test_named_objects import binary_dxf, dxf_blocks, dxf_meshes, glb, gmsh
@@ -161,7 +161,7 @@ READERS = {
     "pt.dm": (datamine(("PID", "XP", "YP", "ZP"), [[1, 0, 0, 1], [2, 1, 0, 2]], 8), read_points_of),
     "s.str": (STRINGS.encode(), lambda file: read_point_file(PointFile(file, layer="1"))),
     "v.ts": (GOCAD.encode(), lambda file: read_point_file(PointFile(file, layer="tops"))),
-    "w.wl": (WELL.encode(), lambda file: read_boreholes(Boreholes(picks=file))),
+    "w.wl": (WELL.encode(), lambda file: read_picks(Boreholes(picks=file))),
     "r.geojson": (REGION, read_region),
     "r.wkt": (WKT, read_region),
 }

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, build, load_project
-from realmodel.core.readers import read_boreholes
+from realmodel.core.readers import read_picks
 from realmodel.core.readers.tables.holes import WellTrajectory, direction, dogleg_angles
 
 NEAR = {"rtol": 0, "atol": 1e-9}
@@ -96,7 +96,7 @@ SURVEY = f"hole,depth,azimuth,dip\nB1,{100 + 50 * math.pi},90,0\nB1,0,90,-90\nB1
 
 
 def read(write, survey=SURVEY, collars=COLLARS, picks=PICKS, **keys):
-    return read_boreholes(
+    return read_picks(
         Boreholes(
             picks=write("p.csv", picks),
             collars=collars and write("c.csv", collars),
@@ -270,3 +270,16 @@ def test_a_project(write, tmp_path):
             load_project(path)
         assert words in str(raised.value)
         assert (raised.value.file, raised.value.line) == (path, 8)
+
+
+def test_angles_in_other_units_are_degrees(write):
+    """Angles in any unit that the header names, beside others in degrees."""
+    expected = read(write).points["clay"]
+    for unit, factor in (("gon", 1 / 0.9), ("rad", math.pi / 180), ("Radians", math.pi / 180)):
+        head, *lines = SURVEY.splitlines()
+        rows = [line.split(",") for line in lines]
+        rows = [[*row[:3], repr(float(row[3]) * factor)] for row in rows]
+        text = "\n".join([head.replace("dip", f"dip ({unit})"), *map(",".join, rows)]) + "\n"
+        met = read(write, text)
+        np.testing.assert_allclose(met.points["clay"], expected)
+        assert any("converted to degrees" in text for text in met.warnings)

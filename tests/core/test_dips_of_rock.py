@@ -13,6 +13,7 @@ from realmodel.core import (
     InputRefused,
     MapFile,
     Model,
+    ObservationFile,
     Project,
     Rock,
     Surface,
@@ -20,7 +21,7 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.project.project_writer import save_project
-from realmodel.core.readers import UnitNames, read_dips_of_rock
+from realmodel.core.readers import UnitNames, read_dips, read_dips_of_rock, read_observed_places
 from realmodel.core.settings.rules import RULES
 from realmodel.core.surfaces.observed.dip_surfaces import beside_blocks, blocks_at, runs_of_blocks
 
@@ -249,3 +250,20 @@ def test_a_project_with_dips_of_its_rock_mass(tmp_path):
         with pytest.raises(InputRefused, match=said) as refused:
             load_project(file)
         assert refused.value.line == 8
+
+
+def test_units_in_the_header_of_observations_and_dips_are_obeyed(tmp_path):
+    """Each column in any unit that its header says; an unknown one is refused."""
+    units = UnitNames(["sst"], ["sst"])
+    (file := tmp_path / "o.csv").write_text(
+        "X_ft,y (km),Z [ft],depth (ft),height_error,block\n10,2,30,5,1,sst\n"
+    )
+    observed, _ = read_observed_places(ObservationFile(file), units)
+    np.testing.assert_allclose(observed.places, [[3.048, 2000.0, 9.144]])
+    np.testing.assert_allclose([observed.depths[0], observed.errors[0]], [1.524, 0.3048])
+    (file := tmp_path / "d.csv").write_text("X_ft,y,Z (ft),dip,azimuth\n10,2,30,5,1\n")
+    dips = read_dips(DipFile(file), "km")
+    np.testing.assert_allclose([*dips.positions[0], dips.z[0]], [0.003048, 2.0, 0.009144])
+    file.write_text("x (fathoms),y,z,dip,azimuth\n10,2,30,5,1\n")
+    with pytest.raises(InputRefused, match="set units"):
+        read_dips(DipFile(file))

@@ -11,7 +11,7 @@ from las_files import las_text
 from realmodel import core
 from realmodel.core import Boreholes, InputRefused, Model, UsageError, build, load_project
 from realmodel.core.drawing.drawing import FilledRings, Text
-from realmodel.core.readers.borehole_input import read_boreholes
+from realmodel.core.readers.borehole_input import read_picks
 from realmodel.core.readers.hole_values import read_interval_values
 from realmodel.core.readers.tables.interval_values import IntervalValues
 from realmodel.core.results.sections.hole_curves import seen_values
@@ -60,7 +60,7 @@ def test_values_come_back_at_their_depths(tmp_path_factory, seed, count, unit, v
     for array in curves.values():
         array[rng.random(len(array)) < 0.2] = np.nan
     text = las_text("a_1", depths, curves, unit[0], null, version, wrap)
-    log = read_boreholes(tables(tmp_path_factory.mktemp("las"), {"a.las": text})).logs
+    log = read_picks(tables(tmp_path_factory.mktemp("las"), {"a.las": text})).logs
     if len(depths) < 2:
         return
     assert set(log.holes.tolist()) == {"A-1"}
@@ -76,29 +76,29 @@ def test_values_come_back_at_their_depths(tmp_path_factory, seed, count, unit, v
 
 def test_a_unit_that_the_file_says_is_obeyed_with_a_word(tmp_path):
     text = las_text("A-1", [0.0, 10.0], {"GR.GAPI": [1.0, 2.0]}, "FT")
-    picks = read_boreholes(tables(tmp_path, {"a.las": text}))
+    picks = read_picks(tables(tmp_path, {"a.las": text}))
     assert np.isclose(picks.logs.depths[-1, 1], 3.048)
     assert any("its depths are in ft" in text for text in picks.warnings)
-    picks = read_boreholes(tables(tmp_path, {"a.las": text}, units={"z": "ft"}))
+    picks = read_picks(tables(tmp_path, {"a.las": text}, units={"z": "ft"}))
     assert picks.logs.depths[-1, 1] == 10.0 and np.isclose(picks.logs.ends[-1, 2], 90 * 0.3048)
     assert not any("its depths" in text for text in picks.warnings)
     bad = las_text("A-1", [0.0, 10.0], {"GR.GAPI": [1.0, 2.0]}, "US/F")
     with pytest.raises(InputRefused, match="not a unit of length"):
-        read_boreholes(tables(tmp_path, {"a.las": bad}))
+        read_picks(tables(tmp_path, {"a.las": bad}))
 
 
 def test_wells_are_found_by_name_and_by_number(tmp_path):
     curve = {"GR.GAPI": [1.0, 2.0]}
     for well, uwi in (("b-2", ""), ("Smith 7", "B_2"), ("B 2", "A-1")):
         given = tables(tmp_path, {"a.las": las_text(well, [0.0, 10.0], curve, uwi=uwi)})
-        assert set(read_boreholes(given).logs.holes.tolist()) == {"B 2"}
+        assert set(read_picks(given).logs.holes.tolist()) == {"B 2"}
     logs = {"a.las": las_text("Smith 7", [0.0, 10.0], curve), "b.las": las_text("A-1", [0.0, 9.0], curve)}
     with pytest.raises(InputRefused, match=r"no hole is called 'Smith 7'.*A-1 and B 2") as caught:
-        read_boreholes(tables(tmp_path, logs))
+        read_picks(tables(tmp_path, logs))
     assert caught.value.file.name == "a.las"
     (tmp_path / "x.las").write_text("depth,GR\n")
     with pytest.raises(InputRefused, match="not a LAS file"):
-        read_boreholes(Boreholes(collars=tmp_path / "c.csv", logs=tmp_path / "x.las"))
+        read_picks(Boreholes(collars=tmp_path / "c.csv", logs=tmp_path / "x.las"))
 
 
 def test_curves_stand_beside_the_columns_of_intervals(tmp_path):
@@ -111,7 +111,7 @@ def test_curves_stand_beside_the_columns_of_intervals(tmp_path):
     alone = Boreholes(collars=tmp_path / "c.csv", logs=tmp_path / "a.las")
     alone.check()
     assert list(read_interval_values(alone).columns) == ["GR (GAPI)", "GR"]
-    assert read_boreholes(alone).warnings == []
+    assert read_picks(alone).warnings == []
 
 
 def test_python_has_logs_as_a_table(tmp_path):
@@ -125,7 +125,7 @@ def test_python_has_logs_as_a_table(tmp_path):
 def test_deviated_holes_have_their_logs_along_them(tmp_path):
     given = tables(tmp_path, {"a.las": las_text("A-1", [0.0, 20.0], {"GR.GAPI": [1.0, 2.0]})})
     (tmp_path / "s.csv").write_text("hole,depth,azimuth,dip\nA-1,0,90,-45\nB 2,0,0,-90\n")
-    log = read_boreholes(replace(given, survey=tmp_path / "s.csv"))
+    log = read_picks(replace(given, survey=tmp_path / "s.csv"))
     assert np.allclose(log.logs.ends[-1], [30 + 20 / np.sqrt(2), 50, 100 - 20 / np.sqrt(2)])
 
 

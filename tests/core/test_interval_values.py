@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, InputRefused
-from realmodel.core.readers import read_boreholes
+from realmodel.core.readers import read_picks
 from realmodel.core.readers.hole_values import read_interval_values
 from realmodel.core.readers.table_kind import table_kind
 from realmodel.core.readers.tables.interval_values import IntervalValues
@@ -74,8 +74,8 @@ def test_the_ends_of_holes_are_kept(tmp_path):
     (tmp_path / "picks.csv").write_text("hole,surface,depth\nA,clay,5\nB,clay,4\n")
     boreholes = given(tmp_path, "hole,from,to,block\nA,0,10,clay\n")
     boreholes = Boreholes(collars=boreholes.collars, picks=tmp_path / "picks.csv")
-    found = read_boreholes(boreholes)
+    found = read_picks(boreholes)
     assert found.ends["A"].tolist() == [10, 20, 70]
     assert np.allclose(found.ends["B"], [50 + 20 / np.sqrt(2), 20, 110 - 20 / np.sqrt(2)])
-    logged = read_boreholes(given(tmp_path, "hole,from,to,block\nA,0,10,clay\n"))
+    logged = read_picks(given(tmp_path, "hole,from,to,block\nA,0,10,clay\n"))
     assert set(logged.ends) == {"A"}, "those that have intervals"

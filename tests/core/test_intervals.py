@@ -19,7 +19,7 @@ from realmodel.core import (
 )
 from realmodel.core.exporters.report import write_report
 from realmodel.core.project.project_writer import save_project
-from realmodel.core.readers import UnitNames, read_boreholes, read_observed_places
+from realmodel.core.readers import UnitNames, read_observed_places, read_picks
 from structure_cases import SQUARE
 
 UNITS = UnitNames(["S0", "S1", "S2"], ["basement", "clay", "sand"], ["salt"], {"SST": "sand", "X": ""})
@@ -83,7 +83,7 @@ def read(write, log, collars=COLLARS, units=UNITS, survey=None, step=None, **key
         intervals=write("log.csv", log),
         **keys,
     )
-    return read_boreholes(given, units=units, plan_step=step)
+    return read_picks(given, units=units, plan_step=step)
 
 
 def rows(observations):
@@ -138,7 +138,7 @@ def test_units(write):
     given = Boreholes(
         collars=write("c.csv", COLLARS), intervals=write("log.csv", LOG), units={"xy": "m", "z": "ft"}
     )
-    (in_feet,) = read_boreholes(given, units=UNITS).observations
+    (in_feet,) = read_picks(given, units=UNITS).observations
     (plain,) = read(write, LOG).observations
     np.testing.assert_allclose(in_feet.places, plain.places * [1, 1, 0.3048], rtol=1e-15)
     assert in_feet.depths.tolist() == plain.depths.tolist()  # as the table has them
@@ -234,7 +234,7 @@ def test_names_are_for_picks_too(write):
     given = Boreholes(
         write("p.csv", "hole,surface,depth\nB1,SST,1\nB2,clay,4\nB3,S2,2\n"), write("c.csv", COLLARS)
     )
-    points = read_boreholes(given, units=UNITS).points
+    points = read_picks(given, units=UNITS).points
     assert {name: len(own) for name, own in points.items()} == {"S2": 2, "S1": 1}
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Dialects of formats of meshes, as many programs write them; concave faces."""
 
+import base64
+import json
 import struct
 
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, PointFile, read_mesh, read_points
-from realmodel.core.readers import UnitNames, is_mesh_file, read_boreholes
+from realmodel.core.readers import UnitNames, is_mesh_file, read_picks
 from realmodel.core.readers.contents import layer_names
 from realmodel.core.readers.fault_input import read_fault_points
 from realmodel.core.readers.meshes.triangle_mesh import mesh_of_faces
@@ -293,6 +295,63 @@ def test_points_of_ply(put, kind):
     assert not is_mesh_file(path)
 
 
+@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian", "binary_big_endian"])
+def test_lists_among_the_properties_of_vertices_of_ply(put, kind):
+    """Vertices with lists of any length at any place, with faces and without."""
+    rng = np.random.default_rng(7)
+    mark = ">" if "big" in kind else "<"
+    for _ in range(20):
+        places = rng.integers(-9, 9, (3, 3)).tolist()
+        names = list(rng.permutation(["x", "y", "z", "tags", "more"]))
+        head = f"ply\nformat {kind} 1.0\nelement vertex 3\n"
+        head += "".join(f"property {'float' if n in 'xyz' else 'list uchar int'} {n}\n" for n in names)
+        faces = bool(rng.integers(2))
+        head += "element face 1\nproperty list uchar int vertex_indices\n" * faces + "end_header\n"
+        words, body = [], b""
+        for place in places:
+            for name in names:
+                values = [place["xyz".index(name)]] if name in "xyz" else [5] * int(rng.integers(4))
+                length = [] if name in "xyz" else [len(values)]
+                words += [*length, *values]
+                body += struct.pack(
+                    f"{mark}{len(length)}B{len(values)}{'f' if not length else 'i'}", *length, *values
+                )
+        words += [3, 0, 1, 2] * faces
+        body += struct.pack(f"{mark}B3i", 3, 0, 1, 2) * faces
+        path = put("m.ply", head.encode() + (" ".join(map(str, words)).encode() if kind == "ascii" else body))
+        assert read_points(path).xyz.tolist() == places
+        assert not faces or read_mesh(path).triangles.tolist() == [[0, 1, 2]]
+
+
+# glTF
+
+
+@pytest.mark.parametrize("with_view", [True, False])
+def test_sparse_accessors_of_gltf(put, with_view):
+    """Places that differ from those of the view, or from 0 without one."""
+    dense = np.array([[0, 0, 0], [1, 0, 0], [0, 0, -1]], "<f4") * with_view
+    buffer = (
+        dense.tobytes()
+        + np.array([1, 2], "<u4").tobytes()
+        + np.array([[5, 1, 0], [0, 1, -6]], "<f4").tobytes()
+    )
+    uri = "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()
+    sparse = {"count": 2, "indices": {"bufferView": 1, "componentType": 5125}, "values": {"bufferView": 2}}
+    places = {"componentType": 5126, "count": 3, "type": "VEC3", "sparse": sparse}
+    content = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [places | ({"bufferView": 0} if with_view else {})],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in ((0, 36), (36, 8), (44, 24))
+        ],
+        "buffers": [{"byteLength": len(buffer), "uri": uri}],
+    }
+    assert triangles_of(put("s.gltf", json.dumps(content))) == [[[0, 0, 0], [5, 0, 1], [0, 6, 1]]]
+
+
 # OBJ
 
 
@@ -387,7 +446,7 @@ END
 def test_wells_of_gocad(put):
     """Below its path a well goes straight on."""
     path = put("w.wl", WELL)
-    picks = read_boreholes(Boreholes(picks=path))
+    picks = read_picks(Boreholes(picks=path))
     collar, places = picks.holes["W1"]
     assert np.allclose(collar, [100, 200, 50])
     assert [(name, place.tolist()) for name, place in places] == [
@@ -395,11 +454,11 @@ def test_wells_of_gocad(put):
         ("B", pytest.approx([160, 200, -30])),
     ]
     feet = WELL.replace("ZPOSITIVE", 'AXIS_UNIT "ft" "ft" "ft"\nZPOSITIVE')
-    in_feet = read_boreholes(Boreholes(picks=put("f.wl", feet)))
+    in_feet = read_picks(Boreholes(picks=put("f.wl", feet)))
     assert np.allclose(in_feet.holes["W1"][0], np.array([100, 200, 50]) * 0.3048)
     assert any("ft" in text and "units" in text for text in in_feet.warnings)
     units = UnitNames(["sand", "clay"], ["sand", "clay"])
-    logged = read_boreholes(Boreholes(intervals=path), units=units, plan_step=1000.0)
+    logged = read_picks(Boreholes(intervals=path), units=units, plan_step=1000.0)
     assert [(name, place.tolist()) for name, place in logged.holes["W1"][1]] == [
         ("sand", pytest.approx([100, 200, 50])),
         ("clay", pytest.approx([115, 200, 30])),

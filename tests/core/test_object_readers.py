@@ -23,7 +23,7 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.project.project_writer import save_project
-from realmodel.core.readers import UnitNames, objects_in, read_boreholes, read_mesh, read_point_file
+from realmodel.core.readers import UnitNames, objects_in, read_mesh, read_picks, read_point_file
 from realmodel.core.readers.contents import column_names, column_values, layer_names
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -74,7 +74,7 @@ def test_what_is_written_is_read(model, tmp_path, ending):
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_boreholes_come_back(model, tmp_path, ending):
     model.save(path := tmp_path / f"m{ending}")
-    picks = read_boreholes(Boreholes(path))
+    picks = read_picks(Boreholes(path))
     wanted = model.project.rocks[0].hole_picks
     assert set(picks.holes) == {"B1", "B2"}
     for hole, (collar, places) in wanted.items():
@@ -185,8 +185,8 @@ def test_intervals_of_a_group_of_drillholes_are_picks_at_their_tops(tmp_path):
                 }
             )
     with pytest.raises(InputRefused, match=r"'A': it has no data 'Rock'; it has Lithology"):
-        read_boreholes(Boreholes(path, columns={"surface": "Rock"}))
-    picks = read_boreholes(Boreholes(path, units={"xy": "ft"}))
+        read_picks(Boreholes(path, columns={"surface": "Rock"}))
+    picks = read_picks(Boreholes(path, units={"xy": "ft"}))
     assert set(picks.points) == {"soil", "clay"}
     along = 2 * np.sqrt(0.5)
     wanted = [[along * 0.3048, 0, 100 - along], [(10 + along) * 0.3048, 0, 100 - along]]
@@ -194,14 +194,14 @@ def test_intervals_of_a_group_of_drillholes_are_picks_at_their_tops(tmp_path):
     assert picks.holes["B"][0].tolist() == [3.048, 0, 100]
 
     units = UnitNames(["clay", "soil"], ["clay", "soil"])
-    logged = read_boreholes(Boreholes(intervals=path), units=units, plan_step=10.0)
+    logged = read_picks(Boreholes(intervals=path), units=units, plan_step=10.0)
     (seen,) = logged.observations
     assert seen.holes.tolist() == ["A"] * 4 + ["B"] * 4
     assert seen.blocks.tolist() == ["soil", "soil", "clay", "clay"] * 2
     assert seen.depths.tolist() == [0, 2, 2, 7] * 2
     assert np.allclose(seen.places[3], [7 * np.sqrt(0.5), 0, 100 - 7 * np.sqrt(0.5)], atol=1e-5)
     assert logged.left_out == []
-    unknown = read_boreholes(Boreholes(intervals=path), units=UnitNames(["clay"], ["clay"]), plan_step=10.0)
+    unknown = read_picks(Boreholes(intervals=path), units=UnitNames(["clay"], ["clay"]), plan_step=10.0)
     assert [(each.kind, each.hole) for each in unknown.left_out] == [("unknown_block", hole) for hole in "AB"]
 
 
@@ -231,7 +231,7 @@ def test_logged_intervals_of_objects_are_those_of_a_table(write, tmp_path, endin
 
 def test_points_that_name_their_hole_are_picks(model, tmp_path):
     model.save(path := tmp_path / "m.omf")
-    picks = read_boreholes(Boreholes(path, layer="picks"))
+    picks = read_picks(Boreholes(path, layer="picks"))
     assert [name for name, _ in picks.holes["B1"][1]] == ["S3", "S2", "S0"]
     assert picks.holes["B1"][0] is None
 
@@ -248,7 +248,7 @@ def test_what_is_wrong_is_said_with_what_there_is(model, tmp_path, ending):
     with pytest.raises(InputRefused, match="has objects, so 'columns' has no effect"):
         read_point_file(PointFile(path, layer="S0", columns=[1, 2, 3]))
     with pytest.raises(InputRefused, match="has objects, so 'survey' has no effect"):
-        read_boreholes(Boreholes(path, survey=path))
+        read_picks(Boreholes(path, survey=path))
     with pytest.raises(InputRefused, match="object 'S0': it has no attribute 'bed'"):
         read_point_file(PointFile(path, layer="S0", where={"bed": 1}))
     mesh = tmp_path / "m.off"
@@ -256,9 +256,9 @@ def test_what_is_wrong_is_said_with_what_there_is(model, tmp_path, ending):
     with pytest.raises(InputRefused, match="not a file of objects, so it has no 'S0'"):
         read_mesh(MeshFile(mesh, layer="S0"))
     with pytest.raises(InputRefused, match="it has objects, and the other file is a table"):
-        read_boreholes(Boreholes(path, intervals=mesh))
+        read_picks(Boreholes(path, intervals=mesh))
     with pytest.raises(InputRefused, match="a table, so it has no object 'S0'"):
-        read_boreholes(Boreholes(mesh, layer="S0"))
+        read_picks(Boreholes(mesh, layer="S0"))
 
 
 @pytest.mark.parametrize(("ending", "module"), zip(ENDINGS, ("omf", "geoh5py"), strict=True))

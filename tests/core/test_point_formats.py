@@ -6,7 +6,7 @@ import random
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, PointFile, UsageError, read_points
+from realmodel.core import InputRefused, PointFile, UsageError, read_mesh, read_points
 from realmodel.core.base.packages import vendored
 from realmodel.core.base.units import METERS
 from realmodel.core.readers.contents import column_names, column_values, layer_names
@@ -311,3 +311,40 @@ def test_any_dialect_of_a_table(write, seed):
     assert len(read.columns["wert"]) == len(xyz)
     assert any("nodata" in warning for warning in read.warnings) == (null is not None)
     assert any("units" in warning for warning in read.warnings) == (of_header and unit != "m")
+
+
+def test_lines_of_cps3_have_numbers(write):
+    text = "FFASCI 0 1\nFFATTR 0 0\n->1\n1 2 3\n4 5 6\n->2\n7 8 9\n->3\n1 1 1\n"
+    assert read_points(write("f.cps", text)).columns["stick"].tolist() == [1, 1, 2, 3]
+
+
+def test_numbers_of_fortran_and_minus_signs(write):
+    text = "x y z\n1.5D+03 2.0d0 \N{MINUS SIGN}3.\n-1.D-01 .5D1 4\n"
+    assert read_points(write("f.xyz", text)).xyz.tolist() == [[1500, 2, -3], [-0.1, 5, 4]]
+    named = read_points(write("n.csv", "x,y,z,name\n1.5D0,2,3,W1D-2\n1,2,3,2D4\n"))
+    assert named.columns["name"].tolist() == ["W1D-2", "2D4"]
+
+
+def test_what_is_not_read_is_called_by_its_name(write, tmp_path):
+    beginnings = {
+        "DWG": b"AC1032\0\0",
+        "FBX": b"Kaydara FBX Binary  \0",
+        "STEP": b"ISO-10303-21;\n",
+        "LAZ": b"LASF\0\0",
+        "PDF": b"%PDF-1.4\n",
+        "gzip": b"\x1f\x8b\x08\0",
+        "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
+        "web": b"\n<!DOCTYPE html><html></html>",
+    }
+    for name, beginning in beginnings.items():
+        for ending in (".csv", ".dxf"):
+            (path := tmp_path / f"f{ending}").write_bytes(beginning)
+            for read in (read_points, read_mesh):
+                with pytest.raises(InputRefused, match=f"{name}.*; "):
+                    read(path)
+
+
+def test_a_depth_is_said_to_be_read_upward_whatever_its_sign(write):
+    for sign in ("", "-"):
+        (said,) = read_points(write("d.csv", f"x,y,depth\n0,0,{sign}5\n1,0,{sign}7\n0,1,{sign}6\n")).warnings
+        assert "z_axis" in said

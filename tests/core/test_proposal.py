@@ -296,7 +296,7 @@ def test_a_lens_in_a_unit_whose_surface_is_called_otherwise(tmp_path):
 def test_nothing_to_propose_from_is_refused(tmp_path):
     with pytest.raises(UsageError, match="boreholes or a map"):
         propose_project()
-    with pytest.raises(UsageError, match="unexpected"):
+    with pytest.raises(UsageError, match="there is no key 'log'"):
         propose_project(boreholes={"log": "x.csv"})
 
 

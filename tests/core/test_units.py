@@ -2,7 +2,7 @@
 """Units of length in texts and in names of columns, in the spellings of many programs."""
 
 import pytest
-from realmodel.core.base.units import METERS, unit_of, unit_of_column, unknown_unit
+from realmodel.core.base.units import METERS, unit_of, unit_text_of_column, unknown_unit
 
 SPELLED = {
     "m": "m M meter Meters metre METRES [m] (m) m. masl",
@@ -42,7 +42,7 @@ def test_units_in_every_spelling(unit):
     ],
 )
 def test_units_of_columns(name, unit):
-    assert unit_of_column(name) == unit
+    assert unit_of(unit_text_of_column(name)) == unit
 
 
 def test_units_without_a_factor():

@@ -90,6 +90,34 @@ def faulted_project(folder):
     return path
 
 
+def field_data(folder):
+    """The folder of small files: boreholes with a row the wrong way round, a log, heights of the ground,
+    and a DXF of two surfaces."""
+    data = folder / "field data"
+    data.mkdir(exist_ok=True)
+    collars, intervals = ["hole,x,y,z"], ["hole,from,to,block"]
+    for n in range(9):
+        collars.append(f"B{n},{40 * (n % 3)},{40 * (n // 3)},{50 + n % 2}")
+        depths = (0, 8 + n % 5, 20 + n % 3, 34, 45)
+        rows = list(zip(depths[:-1], depths[1:], ("Clay", "Sand", "Marl", "Chalk"), strict=True))
+        intervals += [
+            f"B{n},{a},{b},{c}" for a, b, c in ([(8, 0, "Clay")] if n == 3 else rows[:1]) + rows[1:]
+        ]
+    heights = [f"{x},{y},{52 + 0.02 * x}" for x in range(-20, 110, 20) for y in range(-20, 110, 20)]
+    las = ["~V", "VERS. 2.0", "WRAP. NO", "~W", "STRT.M 0", "STOP.M 40", "STEP.M 1", "NULL. -999", "WELL. B1"]
+    las += ["~C", "DEPT.M", "GR.API", "~A", *(f"{d} {30 + d % 7}" for d in range(41))]
+    dxf = ["0", "SECTION", "2", "ENTITIES"]
+    for k in range(2):
+        dxf += ["0", "3DFACE", "8", f"TOP_{k}"]
+        for corner, (x, y) in enumerate([(-20, -20), (110, -20), (110, 110), (-20, 110)]):
+            dxf += [f"1{corner}", str(x), f"2{corner}", str(y), f"3{corner}", str(10 * k)]
+    dxf += ["0", "ENDSEC", "0", "EOF"]
+    files = {"collars.csv": collars, "intervals.csv": intervals, "terrain.csv": ["x,y,z", *heights]}
+    for name, lines in (files | {"B1.las": las, "tops.dxf": dxf}).items():
+        (data / name).write_text("\n".join(lines) + "\n")
+    return data
+
+
 class Log:
     """All that Blender writes, C and Python alike; `check` looks for tracebacks in what is new."""
 
@@ -113,8 +141,8 @@ class Log:
 class Steps:
     """What a person may do next; each method is a step."""
 
-    def __init__(self, walk, chance, faulted):
-        self.walk, self.chance, self._faulted = walk, chance, faulted
+    def __init__(self, walk, chance, faulted, data):
+        self.walk, self.chance, self._faulted, self._data = walk, chance, faulted, data
 
     def _changed(self, what):
         bpy.ops.ed.undo_push(message=what)  # as Blender does after an edit in a panel
@@ -269,6 +297,46 @@ class Steps:
             self.chance.choice(items).name = f"thing {self.chance.randrange(99)}"
             self._changed("rename")
 
+    def take_field_data(self):
+        """Tables of boreholes and a log, imported or proposed; a terrain; surfaces of one DXF."""
+        what = self.chance.randrange(4)
+        tables = [{"name": name} for name in ("collars.csv", "intervals.csv", "B1.las")]
+        if bpy.context.mode != "OBJECT":
+            return
+        if what < 2:
+            is_proposed = what == 0 and _ops.propose_project.poll()
+            folder = str(self._data)
+            _ops.boreholes_read("EXEC_DEFAULT", True, directory=folder, files=tables, propose=is_proposed)
+        elif what == 2:
+            _ops.surface_add("EXEC_DEFAULT", True, filepath=str(self._data / "terrain.csv"), as_terrain=True)
+        else:
+            _ops.surface_add("EXEC_DEFAULT", True, filepath=str(self._data / "tops.dxf"))
+        model().live = self.chance.random() < 0.3
+
+    def decide_on_field_data(self):
+        rocks = [rock for rock in model().rocks if len(rock.codes)]
+        if not rocks or bpy.context.mode != "OBJECT":
+            return
+        model().active_rock = list(model().rocks).index(rocks[0])
+        what = self.chance.randrange(6)
+        codes = [row.name for row in rocks[0].codes]
+        if what < 2:
+            unit = self.chance.choice([*codes, "New"])
+            _ops.codes_assign("EXEC_DEFAULT", True, pattern=self.chance.choice(codes), unit=unit)
+        elif what == 2:
+            _ops.codes_ignore("EXEC_DEFAULT", True, pattern=self.chance.choice(codes))
+        elif what == 3:
+            _ops.codes_reset("EXEC_DEFAULT", True, pattern="*")
+        elif what == 4 and len(rocks[0].hole_problems):
+            decision = self.chance.choice(("REPAIR", "WRITTEN", "LEFT_OUT"))
+            _ops.hole_problem_decide("EXEC_DEFAULT", True, index=0, decision=decision)
+        else:
+            view = model().view
+            view.show_boreholes = self.chance.random() < 0.7
+            view.show_hole_curves = self.chance.random() < 0.7
+            view.show_contacts = self.chance.random() < 0.5
+            self._changed("view of field data")
+
     def switch_auto(self):
         model().live = self.chance.random() < 0.8
         self._changed("Auto")
@@ -291,6 +359,8 @@ WEIGHTS = {
     Steps.move_an_object: 3,
     Steps.rename_an_object: 2,
     Steps.switch_auto: 4,
+    Steps.take_field_data: 4,
+    Steps.decide_on_field_data: 12,
 }
 
 BY_KEY = {Steps.undo, Steps.redo, Steps.press_escape}
@@ -346,7 +416,7 @@ def steps_of(count, seed, log):
     chance = random.Random(seed)
 
     def walk_at_random(walk):
-        steps = Steps(walk, chance, faulted_project(walk.folder))
+        steps = Steps(walk, chance, faulted_project(walk.folder), field_data(walk.folder))
         walk.over_viewport()
         yield walk.redrawn()
         steps.open_a_sample()

@@ -6,7 +6,7 @@ from collections import Counter
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl.field import boreholes, field_tables, map_settings
@@ -19,7 +19,6 @@ from ..bl.project import (
     method_settings,
     observed_blocks,
     plan_mesh,
-    project_settings,
     reading_text,
     series_settings,
     settings,
@@ -28,29 +27,23 @@ from ..bl.project import (
 from ..bl.scene import borehole_points, data_objects, live
 from ..core import InputRefused, RealModelError
 from ..core.base.errors import counted
-from ..core.readers import (
-    contents,
-    table_contents,
-    table_kind,
-)
+from ..core.readers import contents, table_contents, table_kind
 from ..core.readers.borehole_input import read_repaired
 from ..core.readers.code_counts import count_codes
-from ..core.readers.formats import HOLES, OBJECTS, RASTER, SHAPES, TABLE, endings
 from ..core.readers.hole_values import is_log
 from ..core.readers.object_input import is_object_file
-from ..core.settings.data_files import READING
 from ..core.settings.series_kinds import FIELD
 from ..core.surfaces.field_data import left_out_texts
-from ..props_import import OF_HOLES
-from ..props_schema import items
 from ..ui.panel import message
-from .import_dialog import LETTERS, SHOWN, WIDTH, TableDialog
-from .imports import FilesImportHelper, arrived, chosen_files, previews
-from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, require_file
+from .chosen_tables import ChosenTables
+from .import_dialog import LETTERS, SHOWN, WIDTH
+from .imports import arrived, previews
+from .reporting import Reporting, a_rock, a_surface
 from .rocks import add_rock
 from .start import invoke
 
-_SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "layer", "add_surfaces")
+_SHOWN = ("collars", "survey", "downward_dip", "columns", "units", "layer")
+_OF_IMPORTS = ("names", "add_surfaces")  # a proposal has all units, as they are called
 _OF_MAPS = ("map_layer", "map_block", "map_ground", "map_accuracy")
 _MOST_DETAILED = 8  # chosen files of which columns and codes are shown
 _MOST_CODES = 20
@@ -58,37 +51,12 @@ _LARGEST = 1 << 24  # bytes of tables that are read for what the dialog says of 
 _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
 
 
-def _of_map(properties, ask, *arguments):
-    """The contents of the first of the chosen maps; none where it cannot be read."""
-    path = _first_map(properties)
-    try:
-        return [] if path is None else ask(path, *arguments)
-    except RealModelError:
-        return []
-
-
-def _first_map(properties):
-    return next((path for path in chosen_files(properties) if field_tables.is_map(path)), None)
-
-
 def _series(context):
     row = settings.active_rock(context.scene)
     return [] if row is None else [series.name for series in row.series]
 
 
-def _surfaces(context):
-    row = settings.active_rock(context.scene)
-    return [] if row is None else [surface.name for surface in reversed(row.surfaces)]
-
-
-def _rasters(properties):
-    """The names of the rasters beside the first of the chosen maps."""
-    path = _first_map(properties)
-    beside = sorted(path.parent.iterdir()) if path is not None and os.path.isdir(path.parent) else []
-    return [file.name for file in beside if file.suffix.lower() in endings(RASTER)]
-
-
-class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, FilesImportHelper):
+class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
     the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of
     an OMF or geoh5 file; tables of places in known blocks, such as outcrops; dips, which count for the
@@ -98,85 +66,10 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
 
     bl_label = "Import Field Data"
 
-    filepath: StringProperty(
-        name="File", description="One of the tables", subtype="FILE_PATH", options={"SKIP_SAVE"}
-    )
-    filter_glob: file_filter(*endings(TABLE, OBJECTS, SHAPES, HOLES))
-    map_layer: StringProperty(
-        name="Map Layer",
-        description="Layer of a GeoPackage that has the polygons; empty: its only one",
-        search=lambda properties, _context, _text: _of_map(properties, contents.layer_names),
-    )
-    map_block: StringProperty(
-        name="Block Column",
-        description="Attribute of the polygons that names the block, or its code; empty: the only one, or "
-        "that with a usual name",
-        search=lambda properties, _context, _text: _of_map(
-            properties, contents.column_names, properties.map_layer or None
-        ),
-    )
-    map_ground: StringProperty(
-        name="Ground",
-        description="Surface of the list that is the ground of the map, or a file of it beside the map or "
-        "anywhere: a raster, points or a mesh; empty: the youngest surface",
-        search=lambda properties, context, _text: [*_surfaces(context), *_rasters(properties)],
-    )
-    map_accuracy: FloatProperty(
-        name="Accuracy",
-        description="How far lines of the map may lie from where they should be, as a standard deviation; "
-        "0: a two-hundredth of the diagonal of the region",
-        min=0.0,
-        subtype="DISTANCE",
-    )
-    layer: StringProperty(
-        name="Layer",
-        description="Object of an OMF or geoh5 file with the boreholes; empty: all of its boreholes",
-    )
-    collars: StringProperty(
-        name="Collars",
-        description="Table with hole, x, y and z of each borehole, beside the other tables or anywhere; "
-        "empty: it is among the chosen files, or the rows of picks and intervals have x, y and z themselves",
-    )
-    survey: StringProperty(
-        name="Survey",
-        description="Table with hole, depth along it, azimuth, and dip or inclination, beside the other "
-        "tables or anywhere; empty: it is among the chosen files, or holes go as the collars say, or "
-        "straight down",
-    )
-    downward_dip: EnumProperty(
-        name="Downward Dip",
-        description="Sign of the dips of holes that go down",
-        items=[
-            ("TABLE", "As in the table", "All dips of a table have one sign, and go down"),
-            ("NEGATIVE", "Negative", "-90 is straight down"),
-            ("POSITIVE", "Positive", "90 is straight down"),
-        ],
-    )
-    columns: StringProperty(
-        name="Columns",
-        description="Columns with other names, in any of the tables, such as hole = BHID; "
-        "depth = FROM. There are " + ", ".join(field_tables.ALL_COLUMNS),
-    )
     names: StringProperty(
         name="Names",
         description="What codes of units in the tables mean: surfaces, blocks or bodies, such as "
         "SST = Sandstone; LC = (nothing: lost core)",
-    )
-    units: EnumProperty(
-        name="Unit",
-        description="Unit of all the tables",
-        items=items(READING["units"].parts["z"].words),
-    )
-    unrepaired: StringProperty(
-        name="Unrepaired",
-        description="Rows of tables of boreholes that are used as they are written, such as collars.csv:17; "
-        "survey.csv:3",
-        options={"SKIP_SAVE"},
-    )
-    left_out: StringProperty(
-        name="Left Out",
-        description="Rows of tables of boreholes that are not used, such as collars.csv:17; survey.csv:3",
-        options={"SKIP_SAVE"},
     )
     series: StringProperty(
         name="Dips Of Series",
@@ -192,7 +85,19 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
         default=True,
     )
 
-    of = OF_HOLES
+    propose: BoolProperty(
+        name="Propose Project",
+        description="Make a project of these data alone, in place of the model there: the order of units and "
+        "which of them cut older ones, lenses, region, base and ground, each with its reason",
+        options={"SKIP_SAVE"},
+    )
+
+    only_try: BoolProperty(
+        name="Only Try",
+        description="Read the files, and change nothing",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+
     _browses = False
 
     def invoke(self, context, event):
@@ -201,17 +106,20 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
             return ImportHelper.invoke(self, context, event)
         reading = self.begin_tables(list(previews(self)))
         self.units = reading.get("units", self.units)
+        if not self.properties.is_property_set("propose"):
+            self.propose = not settings.has_rows(context.scene) and self._may_propose(context)
         return context.window_manager.invoke_props_dialog(self, width=WIDTH)
-
-    def understood(self, preview):
-        return field_tables.columns_of(preview)
 
     def act(self, context):
         if self._browses:
-            invoke(bpy.ops.realmodel.boreholes_read, self, **self._properties())
+            invoke(bpy.ops.realmodel.boreholes_read, self, **self.called())
+            return
+        if self.propose:
+            self._remember()
+            invoke(bpy.ops.realmodel.propose_project, self, **self._of_proposal())
             return
         scene = context.scene
-        tables = self._tables(context)
+        tables = self.tables(context)
         series = _series_for_dips(scene, self.series)
         is_of_sheets = series is not None and series.kind != FIELD
         if series is not None and not is_of_sheets:
@@ -219,6 +127,8 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
         surface = _surface_for_dips(scene).name if tables.dips and series is None else ""
         rock = settings.active_rock(scene)
         data = field_tables.read(scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces)
+        if self.only_try:
+            return
         rock = rock or add_rock(scene)
         field_tables.forget(rock, data)
         warnings = [*data.picks.warnings, *data.warnings, *left_out_texts(data.left_out).values()]
@@ -262,78 +172,27 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
             view.show_map = view.show_map or bool(data.maps)
         counts = count_codes(*tables.coded, units=scene.realmodel.units)
         known = observed_blocks.units_of(scene, rock, reading_text.named_texts(self.names))
-        imported.record(rock, self._properties(), counts, data.picks.problems, known)
+        imported.record(rock, self.called(), counts, data.picks.problems, known)
         arrived(context, rock, places)
-        self.remember({} if self.units == "NONE" else {"units": self.units})
+        self._remember()
         for text in warnings:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, _summary(data, surface or (series.name if series is not None else "")))
 
-    def _tables(self, context):
-        """The chosen tables, and those that are named. Raises InputRefused."""
-        paths = self.paths() or [chosen_path(self, "the tables")]
-        named = {
-            kind: path
-            for kind, text in (("collars", self.collars), ("survey", self.survey))
-            if (path := _beside(paths[0], text)) is not None
-        }
-        for file in (*paths, *named.values()):
-            require_file(file)
-        return field_tables.sorted_out(
-            paths,
-            self._named_columns(),
-            None if self.units == "NONE" else self.units,
-            of_maps=self._of_maps(context, paths),
-            downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
-            layer=self.layer.strip() or None,
-            unrepaired=imported.rows_of(self.unrepaired),
-            left_out=imported.rows_of(self.left_out),
-            **named,
-        )
+    def _remember(self):
+        self.remember({} if self.units == "NONE" else {"units": self.units})
 
-    def _properties(self):
-        """How the operator is called for the same files, but for what codes mean."""
-        ignored = ("filter_glob", "check_existing", "headings", "names", "files")
-        properties = self.as_keywords(ignore=ignored)
-        paths = [str(path) for path in self.paths()]
-        if paths:
-            properties |= {"filepath": paths[0], "directory": os.path.dirname(paths[0])}
-        properties["files"] = [{"name": file.name} for file in self.files]
-        return properties | {"columns": reading_text.of_named(self._named_columns())}
+    def _may_propose(self, context):
+        """Whether there is enough for a proposal in the chosen files."""
+        try:
+            tables = self.tables(context)
+        except RealModelError:
+            return False
+        return tables.boreholes is not None or any(file.ground for file in tables.maps)
 
-    def _named_columns(self):
-        """{meaning: column} of those that are called otherwise than usually, as they were typed or chosen in
-        the menus. Raises InputRefused where tables contradict one another."""
-        columns = reading_text.named_columns(self.columns)
-        chosen = [(self.columns_of(p.file), self.understood(p)) for p in self._previews]
-        for of_table, usual in chosen:
-            columns |= {m: name for m, name in of_table.items() if usual.get(m) != name}
-        for of_table, _ in chosen:
-            for meaning, column in of_table.items():
-                if columns.get(meaning, column) != column and "azimuth" not in of_table:
-                    what = f"'{meaning}' is column {column} in one table and {columns[meaning]} in another"
-                    raise InputRefused(what, advice="give the column the same name in all tables")
-        return columns
-
-    def _of_maps(self, context, paths):
-        """The keys of MapFile. Raises InputRefused where the column of blocks is not said."""
-        maps = [path for path in paths if field_tables.is_map(path)]
-        names = _of_map(self, contents.column_names, self.map_layer or None)
-        block = self.map_block.strip() or field_tables.block_attribute(names)
-        if maps and not block:
-            advice = f"choose Block Column: it has {', '.join(map(str, names))}" if names else None
-            raise InputRefused("it is not said which attribute names the blocks", file=maps[0], advice=advice)
-        ground = self.map_ground.strip()
-        if ground and ground not in _surfaces(context) and maps:
-            path = _beside(maps[0], ground)
-            require_file(path)
-            ground = str(path)
-        return {
-            "block": block,
-            "layer": self.map_layer.strip() or None,
-            "ground": ground or None,
-            "accuracy": settings.plain(self.map_accuracy) or None,
-        }
+    def _of_proposal(self):
+        called = self.called()
+        return {key: called[key] for key in called if key not in ("series", "add_surfaces")}
 
     def draw(self, context):
         layout = self.layout
@@ -345,7 +204,7 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
                 box.label(text="Choose all tables at once", icon="INFO")
             return
         try:
-            columns, problem = reading_text.of_named(self._named_columns()), ""
+            columns, problem = reading_text.of_named(self.named_columns()), ""
         except InputRefused as error:
             columns, problem = self.columns, str(error)
         self.draw_tables(layout, lambda path: self._said(path, columns))
@@ -374,7 +233,7 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
         """(text, icon) of what reading the boreholes says: warnings, and how many problems are repaired; or
         why they are refused."""
         try:
-            boreholes = self._tables(context).boreholes
+            boreholes = self.tables(context).boreholes
             if boreholes is None or any(is_object_file(file) for file in boreholes.files):
                 return []
             stamps = [stored_arrays.file_stamp(file) for file in boreholes.files]
@@ -391,22 +250,20 @@ class REALMODEL_OT_boreholes_read(Reporting, TableDialog, bpy.types.Operator, Fi
             return [(notices.in_panel_words(str(error)), "ERROR")]
 
     def _draw_options(self, context, layout, shown):
+        layout.prop(self, "propose", icon="SHADERFX", toggle=True)
+        if self.propose and settings.has_rows(context.scene):
+            layout.label(text=f"It takes the place of {context.scene.realmodel.name}", icon="QUESTION")
         layout.use_property_split = True
         has_maps = any(field_tables.is_map(path) for path in shown)
         of_series = ("series",) if _series(context) else ()
-        for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
+        of_imports = () if self.propose else (*of_series, *_OF_IMPORTS)
+        for name in (*(_OF_MAPS if has_maps else ()), *_SHOWN, *of_imports):
             if name != "columns" or not self._previews:  # else the menus say it
                 layout.prop(self, name)
 
     def check(self, _context):
         self.settle_columns()
         return True  # a file of any ending; what the chosen tables are is drawn anew
-
-
-def _beside(table, filepath):
-    """The path of another table, which may stand beside one; None where none is given."""
-    path = project_settings.absolute(filepath)
-    return table.parent / filepath.strip() if path is not None and not os.path.isfile(path) else path
 
 
 def shown_kind(path, columns, map_layer="", map_block=""):

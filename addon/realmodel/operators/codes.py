@@ -26,12 +26,17 @@ def require_files(rock):
             require_file(file)
 
 
-def read_again(rock):
-    """Reads the files of the imports of a rock mass again, with the present meanings of its codes. Raises
-    BuildFailed."""
+def read_again(rock, changed=None):
+    """Reads the files of the imports of a rock mass again, with the present meanings of its codes. changed:
+    {code: unit} of others; then nothing but whether the files can be read is tried. Raises BuildFailed."""
     for entry in imported.imports(rock):
-        names = reading_text.of_named(imported.names(rock))
-        run(bpy.ops.realmodel.boreholes_read, **entry["properties"], names=names)
+        names = reading_text.of_named(imported.names(rock, changed or {}))
+        run(
+            bpy.ops.realmodel.boreholes_read,
+            **entry["properties"],
+            names=names,
+            only_try=changed is not None,
+        )
 
 
 class _Regrouping(Reporting):
@@ -56,8 +61,10 @@ class _Regrouping(Reporting):
         require_files(rock)
         before = {row.unit for row in rock.codes}
         known, count = observed_blocks.units_of(context.scene, rock), len(rows)
+        changed = {row.name: known.surface(self.unit_of(row)) for row in rows}
+        read_again(rock, changed)
         for row in rows:
-            row.unit, row.chosen = known.surface(self.unit_of(row)), False
+            row.unit, row.chosen = changed[row.name], False
         borehole_points.forget(rock, borehole_picks.of_rock(rock))
         _give_way(context.scene, rock, before)
         read_again(rock)
@@ -208,10 +215,11 @@ class REALMODEL_OT_hole_problem_decide(_OfAProblem, bpy.types.Operator):
         require_files(rock)
         imported.decide(rock, problem.file, row, self.decision)
         try:
-            read_again(rock)
+            read_again(rock, {})
         except BuildFailed:
             rock.imports = before
             raise
+        read_again(rock)
         live.touch(context.scene)
         self.report({"INFO"}, f"{row}: {self.decision.lower().replace('_', ' ')}")
 

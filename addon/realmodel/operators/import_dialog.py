@@ -48,7 +48,7 @@ class TableDialog:
             profile = profiles.of_header(self.of, preview.names) if preview.has_header else None
             columns = self.understood(preview)
             if profile is not None:
-                columns, reading = columns | profile.columns, reading | profile.reading
+                columns, reading = profile.columns, reading | profile.reading
             for number, name in enumerate(preview.names, 1):
                 heading = self.headings.add()
                 is_name = preview.names.count(name) == 1 and not name.isdecimal()

@@ -48,6 +48,7 @@ def _begin(scene, name, interfaces=()):
         group.active_rock = group.stage = group.active_property = group.active_result = 0
         group.explode = 0.0
         group.show_data = False
+        group.proposal.clear()
     data_objects.update(scene)
 
 
@@ -162,8 +163,13 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
 
 
 def _open(scene, path):
-    file_project = load_project(path)
-    project = with_arrays(file_project)
+    project = load_project(path)
+    show(scene, project, with_arrays(project))
+
+
+def show(scene, file_project, project):
+    """Shows a project in place of the model of a scene. project: the same with its data read into arrays, see
+    `with_arrays`."""
     _begin(scene, project.name)
     project_settings.fill(scene, project)
     map_settings.keep_of_project(scene, file_project)
@@ -221,7 +227,8 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
     def act(self, context):
         path = chosen_path(self, "the project")
         depsgraph = context.evaluated_depsgraph_get()
-        project = project_settings.read_project(project_settings.compose(context.scene, depsgraph))
+        composed = project_settings.compose(context.scene, depsgraph)
+        project = project_settings.read_as_given(context.scene, composed)
         written = save_project(project, path)
         context.scene.realmodel.project_file = str(path)
         self.report({"INFO"}, f"Saved {path.name} and {counted(len(written) - 1, 'file')} beside it")

@@ -14,6 +14,7 @@ from . import (
     lists,
     menu,
     planned_holes,
+    proposal,
     results,
     rocks,
     series,
@@ -24,7 +25,21 @@ from . import (
 )
 
 _MODULES = (
-    *(lists, start, rocks, surfaces, series, field_data, codes, structures, judge, build, view, library),
+    *(
+        lists,
+        start,
+        proposal,
+        rocks,
+        surfaces,
+        series,
+        field_data,
+        codes,
+        structures,
+        judge,
+        build,
+        view,
+        library,
+    ),
     *(results, hole_validation, ensemble, planned_holes, booleans, menu),
 )
 

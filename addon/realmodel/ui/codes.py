@@ -6,7 +6,7 @@ from collections import Counter
 
 import bpy
 
-from ..bl.project import settings, units
+from ..bl.project import imported, settings, units
 from ..core.readers.tables.hole_problems import DECIDED
 from .lists import OfRows
 from .panel import FoldedPanel, hint, message, right_label
@@ -14,23 +14,23 @@ from .panel import FoldedPanel, hint, message, right_label
 
 def _columns(layout):
     """Of the table: a tick and the code, holes, length, unit."""
-    split = layout.split(factor=0.34)
-    code, rest = split.row(), split.split(factor=0.22)
-    holes, rest = rest.row(), rest.split(factor=0.42)
+    split = layout.split(factor=0.3)
+    code, rest = split.row(), split.split(factor=0.25)
+    holes, rest = rest.row(), rest.split(factor=0.55)
     return code, holes, rest.row(), rest.row()
 
 
 class REALMODEL_UL_codes(OfRows, bpy.types.UIList):
     """Codes of field data."""
 
-    def draw_row(self, _context, row, item):
+    def draw_row(self, context, row, item):
         code, holes, length, unit = _columns(row)
         code.use_property_split = False
         code.prop(item, "chosen", text=item.name)
         right_label(holes, str(item.holes))
         right_label(length, f"{item.length:,.0f}" if item.length else "")
         unit.active = bool(item.unit)
-        unit.label(text=item.unit or "nothing")
+        unit.label(text=imported.unit_text(settings.active_rock(context.scene), item))
 
 
 class REALMODEL_PT_codes(FoldedPanel, bpy.types.Panel):
@@ -61,7 +61,7 @@ class REALMODEL_PT_codes(FoldedPanel, bpy.types.Panel):
             active = rock.codes[rock.active_code]
             length = units.length_text(context.scene, active.length)
             said = f"{active.name}: {active.rows} rows in {active.holes} holes, {length}"
-            hint(layout, f"{said}; means {active.unit or 'nothing'}")
+            hint(layout, f"{said}; means {imported.unit_text(rock, active)}")
 
 
 class REALMODEL_UL_hole_problems(OfRows, bpy.types.UIList):

@@ -184,7 +184,7 @@ def of_property(scene, property_id):
     scene_materials = library_rows.scene_materials(scene, property_id)
     if scene_materials:
         return scene_materials[0]
-    return plain_material(*materials.name_and_color(library_rows.library_of(scene), property_id))
+    return plain_material(*library_rows.name_and_color(scene, property_id))
 
 
 def _put_into_slot(obj, material):

@@ -9,10 +9,10 @@ from ...core.readers import (
     Picks,
     UnitNames,
     names_units,
-    read_boreholes,
     read_dips,
     read_dips_of_rock,
     read_observed_places,
+    read_picks,
     read_space_dips,
     table_contents,
     table_kind,
@@ -215,7 +215,7 @@ def _read(scene, rock, tables, units):
     picks = Picks()
     logged = [*tables.assays]
     if tables.boreholes is not None:
-        picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
+        picks = read_picks(tables.boreholes, unit, units=units, plan_step=step)
         intervals = tables.boreholes.intervals
         has_values = intervals is not None and not is_object_file(intervals)
         logged += [replace(tables.boreholes, logs=())] if has_values else []

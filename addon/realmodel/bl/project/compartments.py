@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Statistics of the compartments and the faults of a model, stored with the scene as text."""
 
+import functools
 import json
 
 import numpy as np
@@ -48,9 +49,15 @@ def _center(model, compartment):
 
 
 def read(scene):
-    """The statistics of the last build, as of `of_model`; None for a model without structures."""
+    """The statistics of the last build, as of `of_model`, not to be changed; None for a model without
+    structures."""
     text = scene.realmodel.view.compartments
-    return json.loads(text) if text else None
+    return _table(text) if text else None
+
+
+@functools.lru_cache(maxsize=2)  # panels ask several times at each redraw
+def _table(text):
+    return json.loads(text)
 
 
 def shifts(scene, amount):

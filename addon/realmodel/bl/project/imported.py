@@ -64,9 +64,16 @@ def _fill(rock, counted, units):
         row.length += numbers[2]
 
 
-def names(rock):
-    """`names` of the codes of a rock mass: {code: unit}, "" for nothing."""
-    return {row.name: row.unit for row in rock.codes if row.unit != row.name}
+def names(rock, changed):
+    """`names` of the codes of a rock mass: {code: unit}, "" for nothing; some `changed`."""
+    units = {row.name: row.unit for row in rock.codes} | changed
+    return {code: unit for code, unit in units.items() if unit != code}
+
+
+def unit_text(rock, row):
+    """What a code means, as people say it: the block beneath its surface, or a body; "nothing"."""
+    surface = rock.surfaces.get(row.unit)
+    return (surface is not None and surface.block) or row.unit or "nothing"
 
 
 def fitting(rock, pattern):

@@ -21,6 +21,12 @@ def library_of(scene):
     return Library([_property(row) for row in rows])
 
 
+def name_and_color(scene, property_id):
+    """As of `materials.name_and_color`, of one row alone. Raises InputRefused."""
+    row = find(scene, property_id)
+    return materials.name_and_color(None if row is None else Library([_property(row)]), property_id)
+
+
 def _property(row):
     values = method_settings.values(row, Property)
     if values["look_scale"] == PROPERTY["look_scale"].start:

@@ -18,6 +18,7 @@ from ...core.base.work import run
 from ...core.project.fingerprint import fingerprint
 from ...core.project.project import surface_item
 from ...core.readers import is_mesh_file
+from ...core.readers.fault_input import read_fault_points
 from ...core.results.automatic_library import with_library
 from ...core.settings.methods import CONTINUATION
 from ...core.settings.setting import declarations
@@ -445,6 +446,21 @@ def read_project(composed):
     inputs = run(lambda work: read_rocks(work, project))
     faults, bodies, _ = run(lambda work: read_structures(work, project))
     return replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+
+
+def read_as_given(scene, composed):
+    """As read_project, but faults of points with dips have these, not the surface that was fitted to them.
+    Raises InputRefused."""
+    project = read_project(composed)
+    for number, row in enumerate(scene.realmodel.faults):
+        path = absolute(row.filepath) if row.source == "POINTS_FILE" else None
+        if path is None or not row.dips or ("fault", number) in composed.edited or not path.is_file():
+            continue
+        fault = structure_settings.entry_of(("fault", number), row)
+        with naming(fault.item):
+            points, _ = read_fault_points(method_settings.point_file(row, path), fault.stick, project.units)
+        project.faults[number] = replace(fault, points=points, stick=None)
+    return project
 
 
 def in_use(item):

@@ -111,8 +111,8 @@ def _fill_names(row, key, names):
 
 
 def named_columns(given):
-    """{name: column} of "hole = BHID; depth = 3"."""
-    return {name: column(text) for name, text in _pairs(given)}
+    """{name: column} of "hole = BHID; depth = 3; dip ="; False for nothing: no column is read."""
+    return {name: column(text) if text else False for name, text in _pairs(given)}
 
 
 def named_texts(given):
@@ -130,7 +130,7 @@ def _unquoted(text):
 
 def of_named(texts):
     """The text that `named_texts` reads, and `named_columns` of columns."""
-    return "; ".join(f"{_quoted(name)} = {_quoted(text)}" for name, text in texts.items())
+    return "; ".join(f"{_quoted(name)} = {_quoted(text or '')}" for name, text in texts.items())
 
 
 def _quoted(text):

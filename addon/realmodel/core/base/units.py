@@ -110,26 +110,6 @@ def unit_text_of_column(name: str) -> str:
     return word[1] if word is not None and is_unit else ""
 
 
-def unit_of_column(name: str) -> str | None:
-    """The unit of length that the name of a column says; None where there is none."""
-    return unit_of(unit_text_of_column(name))
-
-
-def other_units(file: Path, columns: Mapping[str, str | None], model_unit: str = MODEL_UNIT) -> list[str]:
-    """A warning for each unit that names of columns of a table say, and in which they are not read. columns:
-    the unit of each by its name, None for that of the model."""
-    names_by_unit: dict[tuple[str, str], list[str]] = {}
-    for name, unit in columns.items():
-        said, read = unit_of_column(name), unit or model_unit
-        if said is not None and said != ("ft" if read == "us-ft" else read):
-            names_by_unit.setdefault((said, read), []).append(f"'{name.strip()}'")
-    return [
-        f"{file}: the header says {said} for {number_list(names)}, but the unit is {read}: set units of this "
-        "table or of the project, or correct the header"
-        for (said, read), names in names_by_unit.items()
-    ]
-
-
 def stated_units(
     file: Path, coordinates: Sequence[tuple[str, str, str | None]], model_unit: str = MODEL_UNIT
 ) -> tuple[list[str | None], list[str]]:

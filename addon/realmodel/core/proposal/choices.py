@@ -17,7 +17,8 @@ class Proposal:
     order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
     the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became bodies.
     repeats: where several units come again in a hole. rules: of the surface over each unit, with reasons.
-    reasons: of the other choices, by the key of the project file. warnings: sentences.
+    reasons: of the other choices, by the key of the project file. warnings: sentences; the last of them are
+    about `uncertain`, in its order.
     """
 
     order: list[str]
@@ -28,3 +29,8 @@ class Proposal:
     rules: list[RuleChoice] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+
+    @property
+    def uncertain(self) -> list[Alternative | Conflict | Lens | Repeat]:
+        """What the data do not decide, or what they contradict."""
+        return [*self.alternatives, *self.conflicts, *self.lenses, *self.repeats]

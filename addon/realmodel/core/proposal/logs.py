@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, counted
 from ..base.text import no_step
 from ..base.units import MODEL_UNIT
-from ..readers.borehole_input import read_boreholes, read_repaired
-from ..readers.tables.hole_tables import normalized_name
+from ..readers.borehole_input import read_picks, read_repaired
+from ..readers.tables.hole_data import HoleTables
+from ..readers.tables.hole_tables import Row, normalized_name
 from ..readers.tables.observations import Observations
-from ..readers.tables.unit_names import UnitNames
+from ..readers.tables.unit_names import UnitNames, may_be_a_unit
 from ..settings.data_files import Boreholes
 
 
@@ -79,8 +80,10 @@ class HoleLogs:
 def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
     """The logs and picks of boreholes, read as a project reads them, in order of their names. Raises
     InputRefused naming file and line."""
-    names = _unit_names(_codes(given, units))
-    picks = read_boreholes(given, units, no_step, UnitNames(names, names))
+    tables = read_repaired(given, units)
+    short_codes, warnings = _short_codes(tables.intervals or ())
+    names = _unit_names(_codes(tables), short_codes)
+    picks = read_picks(given, units, no_step, UnitNames(names, names))
     logs: list[Log] = []
     for observations in picks.observations:
         for hole in sorted(set(observations.holes.tolist())):
@@ -98,12 +101,37 @@ def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
     ]
     if not logs and not picks.of_surfaces:
         raise InputRefused("no unit is known in any hole", file=given.files[-1])
-    return HoleLogs(logs, picks.points, orders, picks.warnings)
+    return HoleLogs(logs, picks.points, orders, [*picks.warnings, *warnings])
 
 
-def _codes(given: Boreholes, units: str) -> list[str]:
+def _short_codes(intervals: Iterable[Row]) -> tuple[set[str], list[str]]:
+    """Of the codes that may mean lost core or a unit those that are units: in half of the holes or more where
+    they occur nothing else lies at the end, where there is no reason to log core that is not there. With
+    warnings of how all of them are taken."""
+    last: dict[str, Row] = {}
+    holes: dict[str, set[str]] = {}
+    for row in intervals:
+        hole, code = row.text("hole"), row.text("block")
+        if hole not in last or row.number("to") > last[hole].number("to"):
+            last[hole] = row
+        if may_be_a_unit(code):
+            holes.setdefault(code, set()).add(hole)
+    units, warnings = set(), []
+    for code, within in sorted(holes.items()):
+        ends = sum(last[hole].text("block") == code for hole in within)
+        if 2 * ends >= len(within):
+            units.add(code)
+            how = f"a unit: it is the lowest of {counted(ends, 'hole')}"
+            advice = f'if it is lost core, write names = {{ {code} = "" }} and take its surface out'
+        else:
+            how = f"lost core in {counted(len(within), 'hole')}"
+            advice = "if it is a unit, give it a surface with a block of this name"
+        warnings.append(f"'{code}' is taken for {how}; {advice}")
+    return units, warnings
+
+
+def _codes(tables: HoleTables) -> list[str]:
     """What the tables write in the columns of units."""
-    tables = read_repaired(given, units)
     named = (
         *((row, "block") for row in tables.intervals or ()),
         *((row, "surface") for row in tables.picks or ()),
@@ -111,9 +139,10 @@ def _codes(given: Boreholes, units: str) -> list[str]:
     return [row.text(column) for row, column in named if row.has(column)]
 
 
-def _unit_names(codes: Iterable[str]) -> list[str]:
-    """The names of units: of spellings that differ in capitals, spaces and hyphens alone the commonest."""
-    empty = UnitNames()
+def _unit_names(codes: Iterable[str], short_codes: Iterable[str]) -> list[str]:
+    """The names of units: of spellings that differ in capitals, spaces and hyphens alone the commonest.
+    short_codes: those that are units."""
+    empty = UnitNames(tuple(short_codes))
     count = Counter(code.strip() for code in codes if not empty.says_nothing(code))
     names: dict[str, str] = {}
     for code in sorted(count, key=lambda code: (-count[code], code)):

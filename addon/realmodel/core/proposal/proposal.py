@@ -22,7 +22,7 @@ from ..project.project_checks import check_project
 from ..project.structure_entries import Body
 from ..readers import read_mesh
 from ..readers.formats import MESH, RASTER, format_of
-from ..readers.point_input import read_point_file, read_raster_heights
+from ..readers.point_input import read_point_file, read_raster_heights, reading_keys
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, dip_file_of
 from ..settings.method_options import OptionRefused
@@ -93,7 +93,7 @@ def propose_project(
     ...     boreholes={"collars": "c.csv", "intervals": "i.csv"}
     ... )  # doctest: +SKIP
     """
-    data = _Data(_boreholes(boreholes), _map(map, ground), dip_file_of(dips), _ground_of(ground))
+    data = _Data(_boreholes(boreholes, units), _map(map, ground), dip_file_of(dips), _ground_of(ground))
     if data.boreholes is None and data.map is None:
         raise UsageError("propose_project needs boreholes or a map")
     if data.map is not None and data.ground is None and data.boreholes is None:
@@ -123,16 +123,12 @@ def propose_project(
     return project
 
 
-def _boreholes(given: Any) -> Boreholes | None:
+def _boreholes(given: Any, units: str) -> Boreholes | None:
     if given is None or isinstance(given, Boreholes):
         return given
     keys = dict(given) if isinstance(given, Mapping) else {"file": given}
-    try:
-        boreholes = Boreholes(**{key: value for key, value in keys.items() if value is not None})
-        boreholes.check()
-    except (TypeError, OptionRefused) as error:
-        raise UsageError(f"boreholes: {error}") from error
-    return boreholes
+    keys = {key: value for key, value in keys.items() if value is not None}
+    return reading_keys(Boreholes, keys.pop("file", None), units, keys.pop("units", None), keys)
 
 
 def _map(given: Any, ground: Any) -> MapFile | None:
@@ -381,7 +377,7 @@ def _warn(proposal: Proposal, data: _Data) -> None:
     for other in proposal.alternatives:
         found.append(
             f"nothing decides whether '{other.younger}' is younger than '{other.older}': taken so; "
-            f"{'; '.join(other.reasons)}. If it is not, exchange their surfaces in project.toml"
+            f"{'; '.join(other.reasons)}. If it is not, exchange their surfaces"
         )
     for conflict in proposal.conflicts:
         found.append(

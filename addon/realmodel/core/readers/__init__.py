@@ -6,7 +6,7 @@ of boreholes, blocks at places, in meters, as arrays in memory or in files; dama
 their line.
 """
 
-from .borehole_input import read_boreholes
+from .borehole_input import read_picks
 from .map_input import read_region, read_shapes
 from .mesh_input import is_mesh_file, read_mesh
 from .meshes.off import read_off
@@ -31,12 +31,12 @@ __all__ = [
     "normal_of",
     "objects_in",
     "preview_table",
-    "read_boreholes",
     "read_dips",
     "read_dips_of_rock",
     "read_mesh",
     "read_observed_places",
     "read_off",
+    "read_picks",
     "read_point_file",
     "read_points",
     "read_region",

@@ -23,7 +23,7 @@ from .tables.interval_values import IntervalValues
 from .tables.unit_names import UnitNames
 
 
-def read_boreholes(
+def read_picks(
     given: Boreholes,
     model_unit: str = MODEL_UNIT,
     step: Step = no_step,
@@ -53,13 +53,18 @@ def read_boreholes(
         picks = picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
         picks.logs = IntervalValues.joined(logs) if logs else None
         return picks
+    _refuse_tables(given, of_objects)
+    picks = read_hole_objects(given, model_unit, units, plan_step)
+    step(1.0)
+    return picks
+
+
+def _refuse_tables(given: Boreholes, of_objects: list[Path]) -> None:
+    """Refuses tables, and keys of tables, beside files of objects."""
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"
         raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
-    picks = read_hole_objects(given, model_unit, units, plan_step)
-    step(1.0)
-    return picks
 
 
 def read_repaired(
@@ -68,7 +73,7 @@ def read_repaired(
     """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
     InputRefused naming file and line."""
     if of_objects := [file for file in given.files if is_object_file(file)]:
-        refuse_keys(of_objects[0], "has objects", given.only_for_tables)
+        _refuse_tables(given, of_objects)
         sheets, warnings = hole_sheets(given, of_objects[0], model_unit)
         tables_of: dict[str, Any] = dict.fromkeys(MEANINGS) | dict.fromkeys(sheets, of_objects[0])
         given = replace(given, file=None, layer=None, units=None, columns={}, **tables_of)

@@ -5,11 +5,13 @@ only where they say nothing. Menus, file filters and messages about endings foll
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..base.errors import InputRefused
 from ..base.text import as_utf8, reading
 from .gdal_files import (
     RASTER_ENDINGS,
@@ -165,13 +167,33 @@ FORMATS = (
 )
 
 
+# What people give and what is not read: how it begins, what it is, and what to do.
+_NOT_READ = (
+    (rb"AC10\d\d", "a drawing of AutoCAD (DWG)", "save it as DXF"),
+    (rb"Kaydara FBX", "an FBX", "save it as OBJ, PLY or glTF: Blender can"),
+    (
+        rb"ISO-10303-21",
+        "a STEP or IFC file",
+        "save its surfaces as OBJ, STL or glTF: FreeCAD and Blender can",
+    ),
+    (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
+    (rb"%PDF-", "a PDF", "save its table as CSV"),
+    (rb"\x1f\x8b", "compressed by gzip", "unpack it"),
+    (rb"version https://git-lfs", "a pointer of Git LFS in the place of the file", "fetch it: git lfs pull"),
+    (rb"(?i)\s*<(?:!doctype )?html", "a page of the web", "download the file itself"),
+)
+
+
 def format_of(file: str | Path, *holds: str) -> FileFormat | None:
     """The format of a file among those that hold these things: by its beginning, or else by its ending.
-    Raises InputRefused where it cannot be read."""
+    Raises InputRefused where it cannot be read, and for what is known not to be."""
     file = Path(file)
     with reading(file), file.open("rb") as opened:
         head = as_utf8(opened.read(_HEAD))
         size = opened.seek(0, os.SEEK_END)
+    for beginning, what, advice in _NOT_READ:
+        if re.match(beginning, head):
+            raise InputRefused(f"it is {what}, which is not read", file=file, advice=advice)
     able = [entry for entry in FORMATS if entry.holds in holds]
     by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)
     tables = (entry for entry in able if entry.holds == TABLE)  # of which the refusal is then

@@ -4,6 +4,7 @@ pyogrio, which bring GDAL with them."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,7 @@ _RASTERS = (
     *(b"CDF\x01", b"CDF\x02", b"CDF\x05", b"EHFA_HEADER_TAG", b"GRID1.", b"UHL1", b"\0\0\0\x0cjP  "),
     *(b"HF2\0", b"binterr1", b"<VRTDataset", b"DatasetHeader Begin"),
 )
+_GXF = re.compile(rb"(?m)^#(?:POINTS|ROWS)\s*$")
 _SHAPES = (b"fgb\x03", b"!table", b"Version 300", b"Version 450", b"EXP  0 ")
 _ZIP, _ZIPPED = b"PK\x03\x04", (b".gdb/", b".kml")  # a file geodatabase, KMZ
 _ROOTS = (
@@ -42,7 +44,7 @@ _ROOTS = (
 
 def begins_as_gdal_raster(head: bytes, _size: int = 0) -> bool:
     """Whether a file begins as a raster that is left to GDAL."""
-    return head.lstrip().startswith(_RASTERS)
+    return head.lstrip().startswith(_RASTERS) or len(_GXF.findall(head.replace(b"\r", b"\n"))) == 2
 
 
 def begins_as_gdal_shapes(head: bytes, _size: int = 0) -> bool:

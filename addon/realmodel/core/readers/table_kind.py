@@ -52,7 +52,7 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
     )
     are_picks = {"hole", "surface"} <= hole.keys() and not {"depth", "elevation", "z"}.isdisjoint(hole)
     are_seen = {"x", "y", "z", "block"} <= seen.keys()
-    named = set(reading.columns)
+    named = {meaning for meaning, called in reading.columns.items() if called is not False}
     if are_picks and "surface" in named:
         return "picks"
     if {"hole", "from", "to", "block"} <= logged.keys():

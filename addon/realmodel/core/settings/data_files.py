@@ -302,7 +302,7 @@ def check_column_names(columns: Any, known: Sequence[str]) -> None:
             what = f"'columns' has an unknown column '{name}'"
             raise OptionRefused(what, "columns", f"there are {', '.join(known)}")
         is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
-        if not is_number and not (isinstance(column, str) and column.strip()):
+        if column is not False and not is_number and not (isinstance(column, str) and column.strip()):
             what = f"column '{name}' must be a name or a number from 1, not {column!r}"
             raise OptionRefused(what, "columns")
 
@@ -353,7 +353,8 @@ class Boreholes:
     horizontal; None: holes go as the collars say, or straight down. use: an optional column of picks and
     intervals, 0 where a row is switched off. downward_dip: "negative" or
     "positive", which dips go down; None: all of a table go the same way, down. columns: {"hole": "BHID",
-    ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them.
+    ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them;
+    False: none is read.
     separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}
     (depths are in the unit of z); None: those of the model.
     Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all

@@ -14,7 +14,7 @@ from ..base.work import Work
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_history import body_times
-from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_observed_places
+from ..readers import Picks, UnitNames, read_dips_of_rock, read_observed_places, read_picks
 from ..readers.tables.boreholes import Pick
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips, SpaceDips
@@ -58,7 +58,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     with naming(rock.item):
         if rock.boreholes is not None:
             step = rock.edge_length if isinstance(rock.edge_length, (int, float)) else None
-            picks = read_boreholes(rock.boreholes, project.units, units=units, plan_step=step)
+            picks = read_picks(rock.boreholes, project.units, units=units, plan_step=step)
             parts += picks.observations
         left_out = list(picks.left_out)
         if rock.observation_file is not None:

@@ -23,7 +23,7 @@ from ..project.structure_entries import Fault
 from ..readers import read_dips, read_space_dips
 from ..readers.rasters.geotiff import geotiff_system
 from ..readers.tables.dips import DIPS
-from ..readers.tables.hole_tables import OBSERVED, other_units_in
+from ..readers.tables.hole_tables import OBSERVED, unit_warnings
 from ..settings.crs import epsg_code
 from ..settings.dips import Dips, SpaceDips, as_given
 from ..settings.meshers import AUTO
@@ -127,7 +127,7 @@ def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
     ):
         if table is not None:
             with naming(rock.item):
-                texts = other_units_in(table, Path(table.file), columns, units)
+                texts = unit_warnings(table, Path(table.file), columns, units)
             warnings += [BuildWarning(text, "points", rock.name) for text in texts]
     return warnings
 

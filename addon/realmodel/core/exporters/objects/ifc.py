@@ -21,6 +21,7 @@ from ...base.text import Step
 from ...base.units import METERS, UNIT_NAMES
 from ...cells.model_data import ModelData
 from ...results.sections.section_data import rgb_bytes
+from ..shapes.manifold import separated
 from .object_contents import BlockShell, Contents, Hole, stable_uuid
 
 SCHEMA = "IFC4X3_ADD2"
@@ -129,9 +130,12 @@ class Entities:
         element.Representation = make("IfcProductDefinitionShape", None, None, [shape])
 
     def triangles(self, corners: np.ndarray, is_closed: bool, style: Any) -> Any:
-        """Triangles (T, 3) of vertices of the model."""
+        """Triangles (T, 3) of vertices of the model; closed ones become a manifold."""
         make = self.file.create_entity
-        used, numbers = np.unique(corners, return_inverse=True)
+        if is_closed:
+            used, numbers = separated(self._vertices, corners)
+        else:
+            used, numbers = np.unique(corners, return_inverse=True)
         points = make("IfcCartesianPointList3D", self._vertices[used].tolist())
         face_set = make(
             "IfcTriangulatedFaceSet",

@@ -37,15 +37,18 @@ def read_diggs(file: Path) -> dict[str, RawTable]:
             names[_attribute(hole, "id")] = name
             point = next(_all(hole, "referencePoint"), None)
             place = [] if point is None else _numbers(point)
-            position = next(
-                (e for e in (() if point is None else point.iter()) if _attribute(e, "srsName")), None
+            system, labels_text = (
+                next(
+                    (text for e in (() if point is None else point.iter()) if (text := _attribute(e, name))),
+                    "",
+                )
+                for name in ("srsName", "uomLabels")
             )
-            system = "" if position is None else _attribute(position, "srsName")
             if any(system.endswith(code) for code in _GEOGRAPHIC):
                 what = f"hole '{name}' is placed by longitude and latitude ({system})"
                 advice = "give a table of collars in meters or feet beside it: collars = ..."
                 raise InputRefused(what, file=file, advice=advice)
-            labels = ("" if position is None else _attribute(position, "uomLabels")).split()
+            labels = labels_text.split()
             unit_of_plan, unit_of_height = (
                 (labels[0], labels[-1]) if labels else (unit_of_plan, unit_of_height)
             )

@@ -148,20 +148,31 @@ class _Content:
     def _accessor(self, number: int) -> np.ndarray:
         """(N, K) the numbers of an accessor."""
         accessor = self._json["accessors"][number]
-        if "sparse" in accessor or "bufferView" not in accessor:
-            raise ValueError("an accessor is sparse, which is not read")
-        view = self._json["bufferViews"][accessor["bufferView"]]
         kind, columns = np.dtype(_TYPES[accessor["componentType"]]), _COLUMNS[accessor["type"]]
-        count, size = accessor["count"], kind.itemsize * columns
-        stride = view.get("byteStride", size)
-        begin = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-        raw = self._buffer(view["buffer"])
-        if count < 1 or stride < size or begin < 0 or begin + (count - 1) * stride + size > len(raw):
-            raise ValueError(f"accessor {number} goes beyond its buffer: the file is cut off")
-        rows = np.ndarray((count, columns), kind, raw, begin, (stride, kind.itemsize)).astype(np.float64)
+        if "bufferView" in accessor:
+            rows = self._rows(number, accessor, kind, (accessor["count"], columns)).astype(np.float64)
+        elif "sparse" in accessor:
+            rows = np.zeros((accessor["count"], columns))
+        else:
+            raise ValueError(f"accessor {number} has no data")
+        if sparse := accessor.get("sparse"):
+            of_places = np.dtype(_TYPES[sparse["indices"]["componentType"]])
+            at = self._rows(number, sparse["indices"], of_places, (sparse["count"], 1)).ravel()
+            rows[at] = self._rows(number, sparse["values"], kind, (sparse["count"], columns))
         if accessor.get("normalized") and kind.kind in "iu":
             rows = np.maximum(rows / np.iinfo(kind).max, -1.0)
         return rows
+
+    def _rows(self, number: int, place: dict, kind: np.dtype, shape: tuple[int, int]) -> np.ndarray:
+        """(N, K) numbers of an accessor from where `place` says that they are."""
+        view, (count, columns) = self._json["bufferViews"][place["bufferView"]], shape
+        size = kind.itemsize * columns
+        stride = view.get("byteStride", size)
+        begin = view.get("byteOffset", 0) + place.get("byteOffset", 0)
+        raw = self._buffer(view["buffer"])
+        if count < 1 or stride < size or begin < 0 or begin + (count - 1) * stride + size > len(raw):
+            raise ValueError(f"accessor {number} goes beyond its buffer: the file is cut off")
+        return np.ndarray(shape, kind, raw, begin, (stride, kind.itemsize))
 
     def _buffer(self, number: int) -> bytes:
         if number not in self._buffers:

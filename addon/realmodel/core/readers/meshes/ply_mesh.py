@@ -62,15 +62,16 @@ def read_ply_points(file: str | Path, _step: Step = no_step) -> list[ObjectName]
         body = _Numbers(raw, begins, Rows) if kind == "ascii" else _Bytes(raw, begins)
         at = 0
         for name, (count, properties) in elements.items():
-            row = _row_of(properties)
             if name == "vertex":
-                table = np.frombuffer(body.some(at, count * row.itemsize), row)
+                table, _ = _table(body, at, count, properties)
                 break
-            at += count * row.itemsize
+            at = _behind(body, at, count, properties)
         else:
             raise ValueError("its header has no format, vertices or faces")
         places = np.column_stack([table[axis].astype(np.float64) for axis in "xyz"])
-        columns = {name: np.array(table[name]) for name in row.names or () if name not in tuple("xyz")}
+        columns = {
+            name: np.array(table[name]) for name in table.dtype.names or () if name not in tuple("xyz")
+        }
     except UNREADABLE as error:
         raise unreadable(file, "PLY", error) from error
     return [point_object(file.stem, places, columns=columns)]
@@ -122,10 +123,20 @@ def _read_header(raw: FileBytes) -> tuple[str, int, dict[str, tuple]]:
 
 
 def _row_of(properties: list[tuple]) -> np.dtype:
-    """A row of an element without lists. Raises ValueError."""
-    if any(length for _, length, _ in properties):
-        raise ValueError("its vertices have a list")
-    return np.dtype([(name, form) for name, _, form in properties])
+    """A row of an element, without its lists."""
+    return np.dtype([(name, form) for name, length, form in properties if not length])
+
+
+def _table(body: _Bytes, at: int, count: int, properties: list[tuple]) -> tuple[np.ndarray, int]:
+    """The rows of an element, without its lists, and their end."""
+    row, rows = _row_of(properties), []
+    if not any(length for _, length, _ in properties):
+        size = count * row.itemsize
+        return np.frombuffer(body.some(at, size), row), at + size
+    for _ in range(count):
+        values, at = _face(body, at, properties)
+        rows.append(tuple(values[name][0] for name in row.names or ()))
+    return np.array(rows, row), at
 
 
 def _behind(body: _Bytes, at: int, count: int, properties: list[tuple]) -> int:
@@ -133,7 +144,7 @@ def _behind(body: _Bytes, at: int, count: int, properties: list[tuple]) -> int:
     if not any(length for _, length, _ in properties):
         return at + count * _row_of(properties).itemsize
     for _ in range(count):
-        _, _, at = _face(body, at, properties, "")
+        _, at = _face(body, at, properties)
     return at
 
 
@@ -199,6 +210,10 @@ def _header(lines: list[str]) -> tuple[str, dict[str, tuple]]:
 
 def _vertices(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: MeshRows, step: Step) -> int:
     """Reads the vertices from a byte on; where they end."""
+    if any(length for _, length, _ in properties):
+        table, at = _table(body, at, count, properties)
+        mesh.add_vertices(np.column_stack([table[axis] for axis in "xyz"]))
+        return at
     row = _row_of(properties)
     if not 0 <= count * row.itemsize <= len(body) - at:
         raise _CutOffError(min(at, len(body)))
@@ -229,8 +244,8 @@ def _strips(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: Me
     if len(keys) != 1:
         raise ValueError("its strips have no list of vertices")
     for _ in range(count):
-        row, _, at = _face(body, at, properties, keys[0])
-        corners = np.asarray(row, np.float64)
+        strip, at = _face(body, at, properties)
+        corners = np.asarray(strip[keys[0]], np.float64)
         place = np.arange(len(corners))
         begins = np.maximum.accumulate(np.where(corners == -1, place, -1)) + 1
         odd = ((place - begins)[:-2] % 2 == 1)[:, None]
@@ -244,7 +259,7 @@ def _strips(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: Me
 
 def _some_faces(body: _Bytes, at: int, count: int, properties: list[tuple], key: str) -> tuple[Any, int]:
     """The corners of this number of faces, and their end."""
-    _, sizes, _ = _face(body, at, properties, key)
+    sizes = [len(values) for values in _face(body, at, properties)[0].values()]
     fields: list[tuple] = []
     for (name, length, form), size in zip(properties, sizes, strict=True):
         fields += [(f"{name} size", length)] if length else []
@@ -257,14 +272,14 @@ def _some_faces(body: _Bytes, at: int, count: int, properties: list[tuple], key:
             return table[key], at + table.nbytes
     faces = []
     for _ in range(count):
-        corners, _, at = _face(body, at, properties, key)
-        faces.append(corners)
+        face, at = _face(body, at, properties)
+        faces.append(face[key])
     return faces, at
 
 
-def _face(body: _Bytes, at: int, properties: list[tuple], key: str) -> tuple[Any, list[int], int]:
-    """One face: its corners, the length of each property, and its end."""
-    corners, sizes = None, []
+def _face(body: _Bytes, at: int, properties: list[tuple]) -> tuple[dict[str, np.ndarray], int]:
+    """One row of an element, as a face: the values of each property, and its end."""
+    properties_of: dict[str, np.ndarray] = {}
     for name, length, form in properties:
         size = 1
         if length:
@@ -278,9 +293,8 @@ def _face(body: _Bytes, at: int, properties: list[tuple], key: str) -> tuple[Any
             np.frombuffer(body.some(at, size * np.dtype(form).itemsize), form) if size else np.empty(0, form)
         )
         at += values.nbytes
-        sizes.append(size)
-        corners = values if name == key else corners
-    return corners, sizes, at
+        properties_of[name] = values
+    return properties_of, at
 
 
 class _CutOffError(ValueError):

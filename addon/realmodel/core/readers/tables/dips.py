@@ -14,7 +14,7 @@ from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...settings.dips import NORMAL, DipFile, Dips, SpaceDips
 from ...settings.directions import gradient_of, normal_of
-from .hole_tables import OBSERVED, Row, rows
+from .hole_tables import OBSERVED, Row, rows, rows_in_one_unit
 from .observations import LeftOut
 from .points import AXES
 from .unit_names import UnitNames
@@ -47,7 +47,9 @@ _ELSEWHERE = 'leave the row out: steep folds belong in a series with kind = "fie
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
     """The dips of a table, all of one surface, in the model's unit. Raises InputRefused naming file and
     line."""
-    return _dips(given, list(rows(given, Path(given.file), DIPS, ("x", "y"), step)), model_unit)
+    return _dips(
+        given, list(rows_in_one_unit(given, Path(given.file), DIPS, ("x", "y"), step, model_unit)), model_unit
+    )
 
 
 def read_dips_of_rock(
@@ -57,7 +59,8 @@ def read_dips_of_rock(
     are of nothing that the rock mass has. Raises InputRefused naming file and line."""
     chosen_rows, surfaces, blocks = [], [], []
     left_out: list[LeftOut] = []
-    every = list(rows(given, Path(given.file), {**DIPS, **NAMED}, ("x", "y"), step))
+    known = {**DIPS, **NAMED}
+    every = list(rows_in_one_unit(given, Path(given.file), known, ("x", "y"), step, model_unit))
     for row in every:
         code = next((row.text(key) for key in NAMED if row.has(key)), "")
         surface = block = ""
@@ -107,7 +110,7 @@ def read_space_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = n
     file = Path(given.file)
     plan, height = factors(given.units, model_unit)
     places, normals, used = [], [], []
-    for row in rows(given, file, DIPS, ("x", "y", "z"), step):
+    for row in rows_in_one_unit(given, file, DIPS, ("x", "y", "z"), step, model_unit):
         places.append((plan * row.number("x"), plan * row.number("y"), height * row.number("z")))
         normals.append(_normal(row))
         used.append(row.is_used)

@@ -3,27 +3,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
-from ...base.units import factor, factors, other_units, unit_of, unit_of_column, unknown_unit
+from ...base.units import factors
 from ...settings.data_files import Boreholes
 from .hole_problems import HoleProblem
 from .hole_tables import (
     COLLARS,
     INTERVALS,
-    LENGTHS,
     SURVEY,
     Columns,
     RawTable,
     Row,
-    TableHeader,
     column_key,
+    header_factors,
     rows,
     sheet_rows,
 )
@@ -93,7 +90,10 @@ def read_hole_rows(
         else:
             table_rows = list(rows(boreholes, Path(file), known, required[kind], slow))
         setattr(tables, kind, table_rows)
-        tables.factors[kind] = _to_one_unit(tables, table_rows, model_unit)
+        if table_rows:
+            header = table_rows[0].header
+            tables.factors[kind], warnings = header_factors(header, boreholes.units, model_unit)
+            tables.warnings += warnings
     return tables
 
 
@@ -101,44 +101,3 @@ def _has_blocks(boreholes: Boreholes, sheet: RawTable) -> bool:
     """Whether a table has a column that names blocks."""
     keys = set(map(column_key, sheet.names))
     return "block" in boreholes.columns or not keys.isdisjoint(map(column_key, INTERVALS["block"]))
-
-
-def _to_one_unit(tables: HoleTables, table_rows: list[Row], model_unit: str) -> dict[str, float]:
-    """The factors of columns to the unit in which they are read: that of the model where the user does not
-    say it. Raises InputRefused for a unit that is not known."""
-    if not table_rows:
-        return {}
-    header, units = table_rows[0].header, tables.boreholes.units
-    units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
-    factors_of: dict[str, float] = {}
-    said: dict[str, list[str]] = {}
-    for meaning, text in header.units.items():
-        unit, read = unit_of(text), units.get("xy" if meaning in ("x", "y") else "z")
-        if meaning not in LENGTHS or read is not None:
-            continue
-        if unit is None and unknown_unit(text):
-            what = (
-                f"the unit of column '{header.names[header.columns[meaning]].strip()}' is not one of length"
-            )
-            raise InputRefused(what, file=header.file, line=header.line, advice="say it: units = ...")
-        if unit not in (None, model_unit):
-            factors_of[meaning] = factor(unit, model_unit)
-            said.setdefault(unit, []).append(f"'{header.names[header.columns[meaning]].strip()}'")
-    tables.warnings += [
-        f"{header.file}: the header says {unit} for {number_list(names)}: converted to {model_unit}; "
-        "set units if it is another"
-        for unit, names in said.items()
-    ]
-    tables.warnings += _contradicted(header, units, model_unit)
-    return factors_of
-
-
-def _contradicted(header: TableHeader, units: Mapping, model_unit: str) -> list[str]:
-    """The warnings about units in a header other than those that the user says."""
-    columns: dict[str, str | None] = {}
-    for meaning, text in header.units.items():
-        read = units.get("xy" if meaning in ("x", "y") else "z")
-        if meaning in LENGTHS and read is not None:
-            name = header.names[header.columns[meaning]].strip()
-            columns[name if unit_of_column(name) else f"{name} ({text})"] = read
-    return other_units(header.file, columns, model_unit)

@@ -16,7 +16,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.no_value import NO_VALUE
 from ...base.text import Step
-from ...base.units import other_units, unit_text_of_column
+from ...base.units import factor, stated_units, unit_text_of_column
 from .points import AXES, TextTable, open_table
 from .table_layout import Expected, TableLayout, column_number, fields, is_number, plain_name
 
@@ -48,7 +48,18 @@ PICKS = {
     ),
     "z": (
         *("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height", "ground_level", "loca_gl"),
-        *("hole_gl", "gl", "ground_elevation", "surface_elevation", "z_collar", "collar_z", "collar_rl"),
+        *(
+            "gse",
+            "ground_surface_elevation",
+            "land_surface_elevation",
+            "hole_gl",
+            "gl",
+            "ground_elevation",
+            "surface_elevation",
+            "z_collar",
+            "collar_z",
+            "collar_rl",
+        ),
         *("collar_elevation", "elevation_z", "location_z", "z_coordinate", "z_coordinaat", "z_koordinate"),
         *("Ansatzhöhe", "Ansatzhoehe", "Ansatzpunkt", "Geländehöhe", "Gelaendehoehe", "GOK"),
         *("Maaiveld", "Maaiveldhoogte", "Cota boca", *_HEIGHT, *AXES["z"]),
@@ -130,6 +141,8 @@ _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
+_ANGLES = frozenset(("azimuth", "dip", "inclination", "dip_direction", "strike"))
+_DEGREES = {"rad": 180 / np.pi, "radian": 180 / np.pi, "radians": 180 / np.pi, "gon": 0.9, "grad": 0.9}
 LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
@@ -250,15 +263,12 @@ class Row:
 
 
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
-    """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
-    one that is needed."""
+    """The rows of a table as they are written, with those of the known columns that it has. Raises
+    InputRefused where it lacks one that is needed."""
     table = _opened(given, file, known, needed)
     layout = table.layout
-    names, name_line = layout.names or (), layout.name_line or 1
-    columns = _columns(given, file, layout, known)
-    _require(given, TableHeader(file, names, name_line, columns), needed)
-    written = {meaning: unit_text_of_column(names[at]) for meaning, at in columns.items() if at < len(names)}
-    header = TableHeader(file, names, name_line, columns, written)
+    header = _header(given, file, layout, known)
+    _require(given, header, needed)
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
@@ -277,6 +287,12 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
         yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
 
 
+def _header(given: Reading, file: Path, layout: TableLayout, known: Columns) -> TableHeader:
+    names, columns = layout.names or (), _columns(given, file, layout, known)
+    written = {meaning: unit_text_of_column(names[at]) for meaning, at in columns.items() if at < len(names)}
+    return TableHeader(file, names, layout.name_line or 1, columns, written)
+
+
 def sheet_rows(
     given: Reading, file: Path, sheet: RawTable, known: Columns, needed: Sequence[str]
 ) -> list[Row]:
@@ -288,17 +304,57 @@ def sheet_rows(
     return [Row(header, line, entries) for line, entries in sheet.rows]
 
 
-def other_units_in(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
-    """The warnings about units in the header of a table, other than those in which it is read."""
-    table = _opened(given, file, known)
-    names, units = table.layout.names or (), given.units
-    units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
-    column_units = {
-        names[at]: units.get("xy" if meaning in ("x", "y") else "z")
-        for meaning, at in _columns(given, file, table.layout, known).items()
-        if meaning in LENGTHS and at < len(names)
+def rows_in_one_unit(
+    given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step, model_unit: str
+) -> Iterator[Row]:
+    """The same, in the unit of the key `units`, or else in that of the model."""
+    factors: dict[str, float] | None = None
+    for row in rows(given, file, known, needed, step):
+        if factors is None:
+            factors, _ = header_factors(row.header, given.units, model_unit)
+        yield row.scaled(factors) if factors else row
+
+
+def header_factors(
+    header: TableHeader, units: str | Mapping | None, model_unit: str
+) -> tuple[dict[str, float], list[str]]:
+    """The factors of columns to the unit in which they are read, that of the key `units` or else of the
+    model, and degrees, by their meaning, where the header says another; and warnings. Raises InputRefused for
+    a unit of length that is not known."""
+    of_key = units if isinstance(units, Mapping) else {"xy": units, "z": units}
+    written = {
+        meaning: (header.names[at].strip(), header.units.get(meaning, ""))
+        for meaning, at in header.columns.items()
+        if meaning in LENGTHS and at < len(header.names)
     }
-    return other_units(file, column_units, model_unit)
+    keys = {meaning: of_key.get("xy" if meaning in ("x", "y") else "z") for meaning in written}
+    coordinates = [(*written[meaning], key) for meaning, key in keys.items()]
+    stated, warnings = stated_units(header.file, coordinates, model_unit)
+    factors = {
+        meaning: factor(unit, model_unit)
+        for (meaning, key), unit in zip(keys.items(), stated, strict=True)
+        if key is None and unit not in (None, model_unit)
+    }
+    if "z" in factors:
+        factors["error"] = factors["z"]
+    for meaning in _ANGLES & header.columns.keys():
+        text = header.units.get(meaning, "").strip().lower()
+        if text in _DEGREES:
+            factors[meaning] = _DEGREES[text]
+            name = header.names[header.columns[meaning]].strip()
+            warnings.append(
+                f"{header.file}: the header says {text} for '{name}', converted to degrees: correct the "
+                "header if that is wrong"
+            )
+    return factors, warnings
+
+
+def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
+    """The warnings about the units that the header of a table says. Raises InputRefused for one that is not
+    known."""
+    layout = _opened(given, file, known).layout
+    _, warnings = header_factors(_header(given, file, layout, known), given.units, model_unit)
+    return warnings
 
 
 def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
@@ -373,7 +429,7 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
     as_written = [name.strip().lower() for name in names]
     columns: dict[str, int] = {}
     for column, called in reading.columns.items():  # first, so that no other column takes what they name
-        if column not in meanings:
+        if column not in meanings or called is False:
             continue
         if isinstance(called, int):
             columns[column] = called - 1
@@ -383,7 +439,8 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
             columns[column] = at
     for column, aliases in meanings.items():
         # depths of picks are often called otherwise than a survey's
-        if column in columns or (reading.columns.get(column) is not None and meanings is not SURVEY):
+        called = reading.columns.get(column)
+        if column in columns or called is False or (called is not None and meanings is not SURVEY):
             continue
         at = _named(names, aliases)
         if at is not None and at not in columns.values():

@@ -17,7 +17,7 @@ from ...base.units import MODEL_UNIT, factors
 from ...notebook import ShortRepr
 from ...settings.data_files import ObservationFile
 from .hole_problems import LEFT_OUT, HoleProblem
-from .hole_tables import OBSERVED, Row, rows
+from .hole_tables import OBSERVED, Row, rows_in_one_unit
 from .unit_names import UnitNames
 
 # Of the range of heights: so far within its bounds a surface is kept, where there is room. A bound says that
@@ -401,13 +401,14 @@ def read_observed_places(
     places, blocks, holes, depths, used, on, errors = [], [], [], [], [], [], []
     left_out: list[LeftOut] = []
     count = 0
-    for row in rows(given, Path(given.file), OBSERVED, ("x", "y", "z", "block"), step):
+    needed = ("x", "y", "z", "block")
+    for row in rows_in_one_unit(given, Path(given.file), OBSERVED, needed, step, model_unit):
         count += 1
         code = row.text("block")
         if units.says_nothing(code):
             continue
         hole = row.text("hole") if row.has("hole") else ""
-        depth = row.number("depth") if row.has("depth") else float("nan")
+        depth = height * row.number("depth") if row.has("depth") else float("nan")
         block = units.block(code)
         where = f"line {row.line}, '{code}'"
         lacking = [axis for axis in "xyz" if not row.has(axis)]

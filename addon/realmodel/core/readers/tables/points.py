@@ -25,6 +25,7 @@ from ...base.text import BOM, Content, FileBytes, Step, encoding_of, no_step, pi
 from ...base.units import unit_text_of_column
 from ...base.work import NativeError, native_module, on_threads
 from ...settings.data_files import PointFile, list_of
+from ..objects.geo_object import STICK
 from .dialects import DIALECTS
 from .dialects.workbook import begins_as_workbook, sheet_text
 from .table_layout import (
@@ -41,6 +42,12 @@ from .table_layout import (
 _MOST_THREADS = 8
 _GROUPED = r"[+-]?(\d{{1,3}}(?:{0}\d{{3}})+)({1}\d*)?"  # by a sign between thousands, and a decimal mark
 _NO_ROW = re.compile(rb"\s*(?:[#!%>]|//|$)")
+# Parts of numbers that are written otherwise: exponents of Fortran, and the minus sign that is no hyphen.
+_UNUSUAL = (
+    (re.compile(rb"((?<![\w.])[+-]?\d*\.\d*)[dD](?=[+-]?\d{1,3}(?![\w.]))"), rb"\1e"),
+    (re.compile(rb"\xe2\x88\x92(?=[\d.])"), b"-"),
+)
+_BEGINS_LINE = b"#->"  # of CPS-3, as a comment
 _SAY_COLUMNS = 'set columns = ["X", "Y", "Z"]'
 # Names of coordinates, and what may stand before or behind them.
 _WORDS = {
@@ -55,7 +62,7 @@ _WORDS = {
     "z": (
         *("z", "elevation", "elev", "altitude", "height", "rl", "höhe", "hoehe", "hoogte", "cota", "kote"),
         *("quota", "altura", "elevación", "elevacion", "élévation", "maaiveld", "zcoord", "z_wert", "alt"),
-        *("reduced_level", "groundlevel", "ground_level", "hauteur", "nivel"),
+        *("reduced_level", "groundlevel", "ground_level", "hauteur", "nivel", "h"),
     ),
 }
 _BESIDE = (
@@ -183,6 +190,9 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None, step: S
     dialect = next((entry for entry in DIALECTS if entry.begins(raw[:4096], len(raw))), None)
     if dialect is not None and dialect.not_rows is not None:
         raw = dialect.not_rows.sub(b"#", raw[:])
+    for unusual, sign in _UNUSUAL:
+        if unusual.search(raw[:4096]):
+            raw = unusual.sub(sign, raw[:])
     start = len(BOM) if raw[: len(BOM)] == BOM else 0
     encoding = encoding_of(raw)
     return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected, dialect))
@@ -276,7 +286,7 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str)
                 "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
             )
         words = re.findall(r"[^\W\d_]+", names[wanted[2]].lower())
-        if z_axis == "up" and not set(words).isdisjoint(_DEPTHS) and (z > 0).sum() * 2 > len(z):
+        if z_axis == "up" and not set(words).isdisjoint(_DEPTHS):
             doubts.append(
                 f"'{names[wanted[2]]}' is read as elevations, upward: if it has depths, set z_axis = \"down\""
             )
@@ -383,7 +393,12 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     """(P,) the values of each further column, by its name, or by its number from 1 where it has none: numbers
     (NaN where there is none), or texts if not all are numbers."""
     table, mark = rows.table, rows.decimal
-    if max(map(len, head_rows(table, 2000)), default=0) <= 3 and len(table.layout.names or ()) <= 3:
+    has_lines = _BEGINS_LINE in table.raw[table.layout.body :]
+    if (
+        not has_lines
+        and max(map(len, head_rows(table, 2000)), default=0) <= 3
+        and len(table.layout.names or ()) <= 3
+    ):
         return {}
     filters, missing = _filters(table, given)
     separator = table.layout.separator
@@ -398,11 +413,14 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     numbers = native_module().read_numbers(
         b"\n".join(numbered), (separator, mark), columns, shifted, missing
     )[0][:, 0]
-    texts = [lines[n - 1].decode(table.encoding) for n in np.rint(numbers / 1e200).astype(np.int64).tolist()]
+    at = np.rint(numbers / 1e200).astype(np.int64) - 1
+    texts = [lines[n].decode(table.encoding) for n in at.tolist()]
     entries = [table.layout.fields(text) for text in texts]
     width = max(map(len, entries), default=0)
     names = [*(table.layout.names or ()), *[""] * width]
     by_name: dict[str, np.ndarray] = {}
+    if has_lines:
+        by_name[STICK] = np.cumsum([line.startswith(_BEGINS_LINE) for line in lines])[at] + 1.0
     for column in sorted(set(range(width)) - set(rows.axes)):
         name = names[column] if names[column] not in ("", *by_name) else str(column + 1)
         values = [row[column] if column < len(row) else "" for row in entries]
@@ -531,8 +549,8 @@ def _refused(table: TextTable, columns: Sequence[int], decimal: str, error: Nati
         advice = "this file has decimal commas: use them in all numbers"
     elif not table.layout.names and not entry[:1].isdigit():
         advice = "say which columns are x, y and z: columns = [2, 3, 4]"
-    if not entry:
-        advice = 'remove points without a value, or set nodata = ""'
+    if entry.lower() in NO_VALUE:
+        advice = f'remove points without a value, or set nodata = "{entry}"'
     return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
 
 

@@ -11,11 +11,12 @@ from functools import cached_property
 from .hole_tables import NO_VALUE, normalized_name
 
 # What stands for core that is not there, or that nobody looked at.
-_NO_CORE = frozenset(
+_SHORT = frozenset(("lc", "nr", "nl"))  # which may be the code of a unit as well: LC is London Clay
+_NO_CORE = _SHORT | frozenset(
     normalized_name(name)
     for name in (
-        *("lost core", "core loss", "coreloss", "lostcore", "lc", "no core", "no recovery", "nr"),
-        *("not recovered", "not logged", "nl", "not cored", "no sample", "no data", "unknown", "missing"),
+        *("lost core", "core loss", "coreloss", "lostcore", "no core", "no recovery"),
+        *("not recovered", "not logged", "not cored", "no sample", "no data", "unknown", "missing"),
     )
 )
 _WHOLE = re.compile(r"([+-]?\d+)[.,]0+")
@@ -93,6 +94,11 @@ class UnitNames:
             if self._is_known(spelling):
                 return spelling
         return None if _is_empty(code) else self._alike.get(normalized_name(code))
+
+
+def may_be_a_unit(code: str) -> bool:
+    """Whether an entry that says nothing may be the code of a unit."""
+    return normalized_name(code) in _SHORT
 
 
 def _is_empty(code: str) -> bool:

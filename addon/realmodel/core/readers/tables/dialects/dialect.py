@@ -28,8 +28,7 @@ class FileHeader:
 @dataclass(frozen=True)
 class Dialect:
     """A kind of table that its beginning tells: begins(head, size), as of a FileFormat. header(file,
-    lines): of its first lines; raises InputRefused. not_rows: lines among its rows that are none. layout:
-    where it is public."""
+    lines): of its first lines; raises InputRefused. not_rows: lines among its rows that are none."""
 
     label: str
     endings: tuple[str, ...]
