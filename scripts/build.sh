@@ -33,7 +33,7 @@ if ! "$root/scripts/python_environment.sh" "$root/build/tools" "$root/scripts/re
 fi
 
 if ! "$root/scripts/vendor_packages.sh" "$root/build/tools/bin/python"; then
-    echo "build.sh: pyshp, tifffile and openpyxl could not be fetched; shapefiles, GeoTIFF and .xlsx will not be read" >&2
+    echo "build.sh: pyshp, tifffile, openpyxl and pydyf could not be fetched; shapefiles, GeoTIFF and .xlsx will not be read, and no PDF written" >&2
 fi
 
 # What was found for another interpreter must not stay in the cache.

@@ -11,7 +11,7 @@ build=(g++ cmake=cmake ninja-build=ninja python3 python3-dev python3-venv python
     libcgal-dev libeigen3-dev libnanoflann-dev libgmp-dev libgtest-dev)
 blender=(blender=blender python3-numpy libegl1)
 bpy=(libegl1 libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1)
-test=(clang-format=clang-format shellcheck=shellcheck git=git chromium=chromium)
+test=(clang-format=clang-format shellcheck=shellcheck git=git chromium=chromium poppler-utils=pdfinfo)
 tidy=(clang-tidy=clang-tidy)
 versions=(debootstrap)
 solvers=(openfoam=checkMesh calculix-ccx=ccx libopm-simulators-bin=flow libegl1)

@@ -91,6 +91,7 @@ def _written_formats():
         "model": exporters.MODEL,
         "surfaces": exporters.SURFACES,
         "section": exporters.SECTION,
+        "sheets": exporters.SHEETS,
         "mesh for simulation": exporters.MESH,
         "borehole": exporters.BOREHOLE,
         "planned hole": exporters.PLANNED_HOLE,

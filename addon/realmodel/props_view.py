@@ -16,7 +16,7 @@ from bpy.props import (
 
 from .bl import changes
 from .bl.display import cuts, fields
-from .bl.field import boreholes
+from .bl.field import boreholes, shown_log
 from .bl.objects.stored_arrays import ArraysProperty
 from .core.proof.misfits import DIP_TOLERANCE
 
@@ -204,6 +204,14 @@ class RealModelView(bpy.types.PropertyGroup):
     show_hole_names: BoolProperty(
         name="Hole Names",
         description="Show the name of each borehole at its collar, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    log_hole: StringProperty(
+        name="Log",
+        description="Borehole whose log stands beside the model, in the viewport and in pictures; empty: "
+        "none",
+        search=lambda self, _context, _text: shown_log.names(self.id_data),
         options=set(),
         update=changes.overlay,
     )

@@ -8,7 +8,8 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
-from realmodel.bl.field import boreholes
+from realmodel.bl.field import boreholes, shown_log
+from realmodel.bl.overlay import View, drawing_for
 from realmodel.bl.project import interval_values, project_settings
 
 sys.path.append(str(Path(__file__).parents[1] / "core"))  # behind the tests of this folder
@@ -130,3 +131,30 @@ class HoleLogs(PanelCase):
         ops.save_section(filepath=str(path), hole_width=1.0)
         self.assertNotIn("GR (GAPI)", path.read_text())
         self.refused(ops.save_section, "no column 'XX'", filepath=str(path), hole_width=1.0, hole_column="XX")
+
+    def overlay(self):
+        picture = View(np.eye(4), np.eye(4), False, (900.0, 600.0))
+        return drawing_for(self.scene, picture)
+
+    def test_the_log_of_a_hole_stands_beside_the_model(self):
+        self.read_all()
+        self.refused(ops.hole_log, "no borehole 'B-7'", hole="B-7")
+        self.assertNotIn("B-0 (m)", [getattr(item, "text", "") for item in self.overlay().items])
+        bpy.ops.ed.undo_push(message="before")
+        ops.hole_log(hole="B-0")
+        bpy.ops.ed.undo_push(message="log")
+        texts = [getattr(item, "text", "") for item in self.overlay().items]
+        for text in ("B-0 (m)", "Sand", "Clay", "GR (GAPI)", "RHOB (G/C3)", "40"):
+            self.assertIn(text, texts)
+        log = shown_log.of_scene(self.scene)
+        self.assertEqual([(part.top, part.bottom) for part in log.parts], [(0.0, 10.0), (10.0, 30.0)])
+        bpy.ops.ed.undo()
+        self.assertEqual(self.model.view.log_hole, "")
+        bpy.ops.ed.redo()
+        self.assertEqual(self.model.view.log_hole, "B-0")
+        self.save_and_open()
+        self.assertIn("B-0 (m)", [getattr(item, "text", "") for item in self.overlay().items])
+        self.model.view.log_hole = "gone"
+        self.assertIsNone(shown_log.of_scene(self.scene))
+        ops.hole_log()
+        self.assertEqual(self.model.view.log_hole, "")

@@ -53,3 +53,20 @@ class SectionHoles(PanelCase):
         self.refused(ops.pick_holes, "no borehole was picked")
         self.model.view.section_holes = ""
         self.refused(ops.save_section, "no boreholes are chosen", filepath="x.svg", along="HOLES")
+
+    def test_sheets_have_the_sections_of_the_scene(self):
+        self.a_model()
+        file = self.folder / "sheets.svg"
+        ops.save_sheets(filepath=str(file))
+        self.assertNotIn("Section A-A", file.read_text())
+        section_holes.choose(self.scene, list(section_holes.paths(self.scene))[:3])
+        ops.section_plane(axis="Y")
+        self.model.library[0].color = (0.25, 0.5, 1.0)
+        ops.save_sheets(filepath=str(file), size="A2-portrait", scale=5000.0)
+        drawn = file.read_text()
+        for text in ("Section A-A'", "Section B-B'", "Scale 1 : 5,000 on A2", "Sheet 1 of 1"):
+            self.assertIn(f">{text}<", drawn)
+        self.assertNotIn("Section C-C", drawn)
+        self.assertEqual(drawn.count('fill="#4080ff"'), 4, "map, sections and legend have the color of now")
+        self.refused(ops.save_sheets, "take the scale 1 : 5,000", filepath=str(file), scale=100.0)
+        self.assertEqual(file.read_text(), drawn)

@@ -112,7 +112,7 @@ def test_the_same_drawing_gives_the_same_bytes(ending, tmp_path):
 
 
 def test_an_unknown_ending_is_refused(tmp_path):
-    with pytest.raises(UsageError, match=r"not written as '\.bmp'; use one of \.svg, \.dxf, \.png"):
+    with pytest.raises(UsageError, match=r"not written as '\.bmp'; use one of \.svg, \.pdf, \.dxf, \.png"):
         save_drawing(chart(), tmp_path / "a.bmp")
     assert not list(tmp_path.iterdir())
 

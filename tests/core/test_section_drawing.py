@@ -137,7 +137,7 @@ def test_drawings_of_the_command_line(layers, out):  # noqa: F811
     wrong = run(project, "--exaggeration", "2")
     assert "goes with --section or --fence" in wrong.stderr and wrong.returncode == 2
     assert "not a number above 0" in run(project, "--exaggeration", "0").stderr
-    assert "use one of .vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz, .svg, .dxf, .png" in refused(
+    assert "use one of .vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz, .svg, .pdf, .dxf, .png" in refused(
         run(project, "--section", "0,0,0,1,0,0=a.x"), 2
     )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts, sections, fences and boreholes of the command line: WHAT=FILE."""
+"""Cuts, sections, fences, sheets of them and boreholes of the command line: WHAT=FILE."""
 
 from __future__ import annotations
 
@@ -12,18 +12,45 @@ import numpy as np
 
 from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
-from ..core.exporters import BOREHOLE, JUXTAPOSITION, MODEL, PLANNED_HOLE, SECTION, STEREONET, Exporter
+from ..core.exporters import (
+    BOREHOLE,
+    JUXTAPOSITION,
+    MODEL,
+    PLANNED_HOLE,
+    SECTION,
+    SHEETS,
+    STEREONET,
+    Exporter,
+)
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.model.cutting import Section
 from ..core.readers import read_mesh
 from ..core.readers.formats import MESH, endings
 from ..core.results.model_holes import HoleAxis, HoleInterval, Interval
+from ..core.results.sheets import draw_sheets
 from ..core.settings.data_files import MeshFile
 from .sources import ENDINGS, OpenedFile
 
 
+class _Request:
+    """What is made of a model and written to one file."""
+
+    file: Path
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return []
+
+    def read(self) -> None:
+        pass
+
+
 @dataclass
-class SectionRequest:
+class SectionRequest(_Request):
     """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2).
     exaggeration, hole_width, hole_column: of drawings, as of Section.save. exporter: writes the file."""
 
@@ -34,10 +61,7 @@ class SectionRequest:
     exaggeration: float = 1.0
     hole_width: float = 0.0
     hole_column: str | None = None
-
-    @property
-    def outputs(self) -> list[Path]:
-        return [self.file]
+    made: Section | None = None
 
     @property
     def inputs(self) -> list[Path]:
@@ -49,9 +73,14 @@ class SectionRequest:
             self.what = read_polyline(self.what)
 
     def cut(self, model, threads: int = 0) -> Section:
-        if self.option == "--fence":
-            return model.fence(self.what, threads=threads)
-        return model.section(self.what[:3], self.what[3:], threads=threads)
+        """The section of a model, which is made once."""
+        if self.made is None:
+            self.made = (
+                model.fence(self.what, threads=threads)
+                if self.option == "--fence"
+                else model.section(self.what[:3], self.what[3:], threads=threads)
+            )
+        return self.made
 
     def run(self, model, outputs, threads: int, progress) -> str:
         """Makes the section and stages its file. Returns the summary for the terminal."""
@@ -65,24 +94,35 @@ class SectionRequest:
 
 
 @dataclass
-class JuxtapositionRequest:
+class SheetRequest(_Request):
+    """Sheets to print, and their file. size, scale: as of draw_sheets. sections: what they show beside the
+    map; the first says how they are drawn."""
+
+    file: Path
+    size: str
+    scale: float | None
+    sections: list[SectionRequest]
+    exporter = SHEETS
+
+    def run(self, model, outputs, threads: int, progress) -> str:
+        """Draws the sheets and stages their file. Returns the summary for the terminal."""
+        progress(1.0, f"drawing {self.file.name}")
+        sections = [request.cut(model, threads) for request in self.sections]
+        first = self.sections[0] if self.sections else None
+        drawn = () if first is None else (first.exaggeration, first.hole_width, first.hole_column)
+        sheets = draw_sheets(model, sections, self.size, self.scale, *drawn)
+        self.exporter.write(sheets, self.file, outputs)
+        return f"{self.file.name}: {counted(len(sheets), 'sheet')} on {self.size}"
+
+
+@dataclass
+class JuxtapositionRequest(_Request):
     """The juxtaposition diagram of a fault, by its name, and its file. exaggeration: of elevations."""
 
     file: Path
     fault: str
     exaggeration: float = 1.0
     exporter = JUXTAPOSITION
-
-    @property
-    def outputs(self) -> list[Path]:
-        return [self.file]
-
-    @property
-    def inputs(self) -> list[Path]:
-        return []
-
-    def read(self) -> None:
-        pass
 
     def run(self, model, outputs, _threads: int, progress) -> str:
         """Stages the file. Returns the areas for the terminal."""
@@ -98,7 +138,7 @@ class JuxtapositionRequest:
 
 
 @dataclass
-class StereonetRequest:
+class StereonetRequest(_Request):
     """The stereonet of the dips of the project, or of those of the surface, block, series, rock mass or fault
     `of`, and its file. net: as of Stereonet.save."""
 
@@ -106,17 +146,6 @@ class StereonetRequest:
     of: str | None
     net: str = "equal_area"
     exporter = STEREONET
-
-    @property
-    def outputs(self) -> list[Path]:
-        return [self.file]
-
-    @property
-    def inputs(self) -> list[Path]:
-        return []
-
-    def read(self) -> None:
-        pass
 
     def run(self, model, outputs, _threads: int, progress) -> str:
         """Stages the file. Returns the numbers for the terminal."""
@@ -127,24 +156,13 @@ class StereonetRequest:
 
 
 @dataclass
-class BoreholeRequest:
+class BoreholeRequest(_Request):
     """A borehole and its file. what: where it is planned, or the position in plan of one that goes straight
     down through the whole model. exporter: writes the file."""
 
     file: Path
     what: HoleAxis | tuple[float, float]
     exporter: Exporter
-
-    @property
-    def outputs(self) -> list[Path]:
-        return [self.file]
-
-    @property
-    def inputs(self) -> list[Path]:
-        return []
-
-    def read(self) -> None:
-        pass
 
     def run(self, model, outputs, _threads: int, progress) -> str:
         """Stages the file. Returns the summary of the borehole for the terminal."""

@@ -38,6 +38,14 @@ def _factor(text: str) -> float:
     return _number(text, lambda value: 0.0 < value <= MOST_EXAGGERATION, what)
 
 
+def _paper(text: str) -> str:
+    from ..core.results.sheets import SHEET_SIZES
+
+    if text not in SHEET_SIZES:
+        raise argparse.ArgumentTypeError(f"'{text}' is not one of {', '.join(SHEET_SIZES)}")
+    return text
+
+
 def _sizes(text: str) -> list[float]:
     words = text.split(",")
     if len(words) > 3:
@@ -99,9 +107,9 @@ class _Parser(argparse.ArgumentParser):
     """Fills endings from the table of formats into the help, for which alone the table is imported."""
 
     def print_help(self, file=None):
-        from ..core.exporters import BOREHOLE, JUXTAPOSITION, MESH, MODEL, SECTION
+        from ..core.exporters import BOREHOLE, JUXTAPOSITION, MESH, MODEL, SECTION, SHEETS
 
-        exporters = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE}
+        exporters = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE, "sheet": SHEETS}
         exporters["drawing"] = JUXTAPOSITION
         endings = {name: [f.ending for f in exporter.formats()] for name, exporter in exporters.items()}
         for option in ("cell_size", "contour_interval", "tolerance", "origin", "grid_layers", "grid_azimuth"):
@@ -254,9 +262,29 @@ OPTIONS = (
         default=[],
     ),
     Option(
+        "sheet",
+        "F",
+        "write the geological map and the sections by --section and --fence to F, sheets to print ({sheet})",
+        Path,
+    ),
+    Option(
+        "sheet-size",
+        "SIZE",
+        "its paper, A4 to A0, wide, or high as A3-portrait (default: A3)",
+        _paper,
+        needs=("sheet",),
+    ),
+    Option(
+        "sheet-scale",
+        "N",
+        "the scale 1 : N of its map and sections (default: the largest round one at which they fit)",
+        _length,
+        needs=("sheet",),
+    ),
+    Option(
         "exaggeration",
         "X",
-        "exaggerate the heights of drawings by --section, --fence and --juxtaposition X times",
+        "exaggerate the heights of drawings by --section, --fence, --juxtaposition and --sheet X times",
         _factor,
         1.0,
         needs=("section", "fence", "juxtaposition"),
@@ -264,7 +292,8 @@ OPTIONS = (
     Option(
         "hole-width",
         "W",
-        "draw the boreholes of the project within this distance on drawings by --section and --fence",
+        "draw the boreholes of the project within this distance on drawings by --section, --fence and "
+        "--sheet",
         _length,
         0.0,
         needs=("section", "fence"),

@@ -23,10 +23,12 @@ from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import hole_entries, model_report, write_report
 from ..core.exporters.surface_files import write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
+from ..core.results.sheets import DEFAULT_SIZE
 from ..core.surfaces.prepare import with_arrays
 from .cuts import (
     CutRequest,
     JuxtapositionRequest,
+    SheetRequest,
     borehole_request,
     cut_request,
     fence_request,
@@ -259,11 +261,17 @@ def _validation(options: argparse.Namespace, model, progress):
 
 
 def _requests(options: argparse.Namespace) -> list:
-    """Sections, fences, juxtapositions, stereonets, boreholes and cuts, in this order. Raises UsageError."""
+    """Sections, fences, the sheets that show them, juxtapositions, stereonets, boreholes and cuts, in this
+    order. Raises UsageError."""
     drawn = {name: getattr(options, name) for name in ("exaggeration", "hole_width", "hole_column")}
-    return [
+    sections = [
         *(replace(section_request(text), **drawn) for text in options.section),
         *(replace(fence_request(text), **drawn) for text in options.fence),
+    ]
+    size = options.sheet_size or DEFAULT_SIZE
+    return [
+        *sections,
+        *([SheetRequest(options.sheet, size, options.sheet_scale, sections)] if options.sheet else []),
         *(
             replace(juxtaposition_request(text), exaggeration=options.exaggeration)
             for text in options.juxtaposition

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sections: the movable plane that shows the model cut open, and exact sections as mesh objects."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -10,11 +12,12 @@ from ..bl import display
 from ..bl.display import cuts, sections
 from ..bl.field import boreholes, hole_curves
 from ..bl.objects import exaggeration, viewports, visible
-from ..bl.project import interval_values, project_settings, settings
+from ..bl.project import interval_values, library_rows, project_settings, settings
 from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
-from ..core.exporters import SECTION
+from ..core.exporters import SECTION, SHEETS
 from ..core.results.sections.section_drawing import MOST_EXAGGERATION
+from ..core.results.sheets import DEFAULT_SIZE, SHEET_SIZES
 from .drawing import InViewport
 from .files import Exporting, format_filter, format_menu
 from .reporting import (
@@ -149,20 +152,12 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
     def clicked(self, context, area, at, is_held):
         if is_held:
             return None
-        name = self._nearest(context, area, at)
+        name = _nearest(context, self._lines, area, at)
         if name is None:
             return "There is no borehole here"
         if name not in self._names[-1:]:
             self._names.append(name)
         return ", ".join(self._names)
-
-    def _nearest(self, context, area, at):
-        best = _PIXELS, None
-        for name, line in self._lines.items():
-            seen = viewports.pixels(area, project_settings.in_world(context.scene, line))
-            seen = seen[np.isfinite(seen).all(axis=1)]
-            best = min(best, (_distance(np.array(at, float), seen), name), key=lambda pair: pair[0])
-        return best[1]
 
     def remove_last(self):
         del self._names[-1:]
@@ -175,6 +170,48 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
         if not self._names:
             raise InputRefused("no borehole was picked", advice="click boreholes, then press Enter")
         section_holes.choose(context.scene, self._names)
+
+
+class REALMODEL_OT_hole_log(InViewport, bpy.types.Operator):
+    """Click a borehole in the viewport: its log stands beside the model, with intervals, picks and curves"""
+
+    bl_label = "Hole Log"
+    bl_options = {"UNDO"}
+    needs = (some_holes,)
+    keys = "Click a borehole"
+
+    hole: StringProperty(
+        name="Hole", description="Name of the borehole; empty: no log is shown", options={"SKIP_SAVE"}
+    )
+
+    def clicked(self, context, area, at, _is_held):
+        self.hole = _nearest(context, section_holes.paths(context.scene), area, at) or ""
+        return None if self.hole else "There is no borehole here"
+
+    def _take(self, context, event):
+        result = super()._take(context, event)
+        if not self.hole:
+            return result
+        self.leave(context, {})
+        return self.execute(context)
+
+    def marks(self, _context):
+        return np.empty((0, 3))
+
+    def act(self, context):
+        if self.hole and self.hole not in section_holes.paths(context.scene):
+            raise InputRefused(f"there is no borehole '{self.hole}'")
+        context.scene.realmodel.view.log_hole = self.hole
+
+
+def _nearest(context, lines, area, at):
+    """The name of the borehole at a position in a viewport, or None. lines: {name: its line}."""
+    best = _PIXELS, None
+    for name, line in lines.items():
+        seen = viewports.pixels(area, project_settings.in_world(context.scene, line))
+        seen = seen[np.isfinite(seen).all(axis=1)]
+        best = min(best, (_distance(np.array(at, float), seen), name), key=lambda pair: pair[0])
+    return best[1]
 
 
 def _distance(at, line):
@@ -200,25 +237,9 @@ class REALMODEL_OT_fence_holes(Reporting, bpy.types.Operator):
         _show(self, context, sections.add(context.scene, section, "Holes", self.flat))
 
 
-class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
-    """Save a section as a drawing with axes, legend, and scale, or as polygons"""
+class _DrawsSections(Exporting):
+    """Writes drawings of sections; it begins with what is set for the viewport."""
 
-    bl_label = "Save Section"
-    needs = (a_model,)
-
-    format: format_menu(SECTION.formats(), "SVG")
-    filter_glob: format_filter(SECTION.formats())
-    location: _PLACE
-    normal: _NORMAL
-    along: EnumProperty(
-        name="Along",
-        description="Where the model is cut",
-        items=(
-            ("PLANE", "Section Plane", "The section plane, or the location and normal that are given"),
-            ("LINE", "Active Curve", "Vertical sections along the active curve or mesh of edges"),
-            ("HOLES", "Boreholes", "Vertical sections through the chosen boreholes"),
-        ),
-    )
     exaggeration: FloatProperty(
         name="Vertical Exaggeration",
         description="Factor by which heights are exaggerated",
@@ -241,9 +262,6 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         search=lambda _properties, context, _text: boreholes.columns(context.scene),
     )
 
-    def of_what(self, _context):
-        return ("section",)
-
     def invoke(self, context, event):
         if not self.properties.is_property_set("exaggeration"):
             self.exaggeration = exaggeration.factor(context.scene)
@@ -254,23 +272,55 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.hole_column = boreholes.column(context.scene)
         return super().invoke(context, event)
 
+    def draw_options(self):
+        for name in ("exaggeration", "hole_width", "hole_column"):
+            self.layout.prop(self, name)
+
+    def of_sections(self, width=0.0):
+        """How sections are drawn. width: boreholes within this distance are drawn anyway."""
+        width = max(width, settings.plain(self.hole_width))
+        return settings.plain(self.exaggeration), width, self.hole_column.strip() or None
+
+
+class REALMODEL_OT_save_section(_DrawsSections, bpy.types.Operator):
+    """Save a section as a drawing with axes, legend, and scale, or as polygons"""
+
+    bl_label = "Save Section"
+    needs = (a_model,)
+
+    format: format_menu(SECTION.formats(), "SVG")
+    filter_glob: format_filter(SECTION.formats())
+    location: _PLACE
+    normal: _NORMAL
+    along: EnumProperty(
+        name="Along",
+        description="Where the model is cut",
+        items=(
+            ("PLANE", "Section Plane", "The section plane, or the location and normal that are given"),
+            ("LINE", "Active Curve", "Vertical sections along the active curve or mesh of edges"),
+            ("HOLES", "Boreholes", "Vertical sections through the chosen boreholes"),
+        ),
+    )
+
+    def of_what(self, _context):
+        return ("section",)
+
     def draw(self, context):
         for name in ("format", "along"):
             self.layout.prop(self, name)
         if self.along == "PLANE":
             _draw_plane(self, context)
-        for name in ("exaggeration", "hole_width", "hole_column"):
-            self.layout.prop(self, name)
+        self.draw_options()
 
     def write(self, context, path):
-        width = settings.plain(self.hole_width)
+        width = 0.0
         if self.along == "PLANE":
             section = sections.by_plane(context.scene, *_plane_of(self, context))
         elif self.along == "HOLES":
             if reason := chosen_holes(context):
                 raise InputRefused(reason)
             section = sections.through(context.scene, section_holes.line(context.scene))
-            width = max(width, _ON_LINE * section.length)
+            width = _ON_LINE * section.length
         else:
             reason = an_outline_object(context)
             if reason:
@@ -278,7 +328,63 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             line = sections.line_of(context.active_object)
             section = sections.along(context.scene, line, context.evaluated_depsgraph_get())
         section.hole_values = interval_values.of_scene(context.scene)
-        section.save(path, settings.plain(self.exaggeration), width, self.hole_column.strip() or None)
+        section.save(path, *self.of_sections(width))
+
+
+class REALMODEL_OT_save_sheets(_DrawsSections, bpy.types.Operator):
+    """Save sheets to print: the geological map, and the sections by the section plane, along the line of each
+    fence, and through the chosen boreholes, at one scale with frame, legend and title block"""
+
+    bl_label = "Save Sheets"
+    needs = (a_model,)
+
+    format: format_menu(SHEETS.formats(), "PDF")
+    filter_glob: format_filter(SHEETS.formats())
+    size: EnumProperty(
+        name="Paper",
+        description="Size of the sheets",
+        items=[(size, size.replace("-portrait", ", portrait"), "") for size in SHEET_SIZES],
+        default=DEFAULT_SIZE,
+    )
+    scale: FloatProperty(
+        name="Scale 1 :",
+        description="Number of the scale of map and sections; 0: the largest round scale at which they fit",
+        min=0.0,
+    )
+
+    def of_what(self, _context):
+        return ("sheets",)
+
+    def draw(self, _context):
+        for name in ("format", "size", "scale"):
+            self.layout.prop(self, name)
+        self.draw_options()
+
+    def write(self, context, path):
+        made = list(_of_scene(context))
+        for section in made:
+            section.hole_values = interval_values.of_scene(context.scene)
+        model = self.model(context)
+        project = replace(model.project, library=library_rows.library_of(context.scene))
+        model = replace(model, project=project)  # in the colors that sections have
+        model.save_sheets(path, made, self.size, settings.plain(self.scale) or None, *self.of_sections())
+
+
+def _of_scene(context):
+    """The sections of a scene: by the section plane, along the line of each fence, through the chosen
+    boreholes."""
+    scene = context.scene
+    if cuts.plane_of(scene) is not None:
+        context.view_layer.update()
+        point, normal = cuts.plane_in_model(scene)
+        yield sections.by_plane(scene, point - project_settings.model_origin(scene), normal)
+    lines = {
+        item[sections.LINE].name: item[sections.LINE] for item in scene.objects if item.get(sections.LINE)
+    }
+    for line in lines.values():
+        yield sections.along(scene, line, context.evaluated_depsgraph_get())
+    if chosen_holes(context) is None:
+        yield sections.through(scene, section_holes.line(scene))
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl.field import boreholes, data, handle
+from ..bl.field import boreholes, data, handle, shown_log
 from ..core import RealModelError
 from .lists import OfRows
 from .panel import FoldedPanel, OfAModel, hint, message, right_label
@@ -42,6 +42,10 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
                 column.prop(group.view, "show_hole_curves")
         if group.view.show_boreholes or group.view.show_contacts or group.view.show_dips:
             column.prop(group.view, "hole_width", text="Within")
+        if shown_log.names(context.scene):
+            row = layout.row(align=True)
+            row.prop(group.view, "log_hole")
+            row.operator("realmodel.hole_log", text="", icon="EYEDROPPER")
         _draw_datum(layout, context)
         layout.operator("realmodel.save_stereonet", text="Save Stereonet...", icon="FILE_TICK")
 

@@ -146,6 +146,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             _section_buttons(layout, "fence_holes", "HOLES", "Save Section...", "Through Holes")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
         _section_buttons(layout, "fence", "LINE", "Save Fence...")
+        layout.operator("realmodel.save_sheets", text="Save Sheets...", icon="FILE_TICK")
 
 
 def _section_buttons(layout, operator, along, saving, making=""):

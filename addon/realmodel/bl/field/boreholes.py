@@ -111,9 +111,17 @@ def _by_block(scene):
     """(material, begin, end) of the tubes."""
     material_of = functools.cache(lambda number: colors.of_property(scene, number))
     for rock in scene.realmodel.rocks:
-        logs, _ = observed_blocks.shown(rock)
-        for layer, begin, end in (*_of_logs(scene, rock, logs.values()), *_of_picks(rock, logs)):
+        for layer, begin, end in parts_of(scene, rock):
             yield material_of(layer or 0), begin, end
+
+
+def parts_of(scene, rock, hole=None):
+    """(property, begin, end) of the parts of a hole of a rock mass that something is known of; None: of all
+    holes."""
+    logs, _ = observed_blocks.shown(rock)
+    chosen = logs.values() if hole is None else [logs[hole]] if hole in logs else []
+    yield from _of_logs(scene, rock, chosen)
+    yield from _of_picks(rock, logs, hole)
 
 
 def _colored(scene):
@@ -171,14 +179,14 @@ def _hues(values, words):
     return [colors.hue(numbers[word]) if word in numbers else _OTHERS for word in values.astype(str).tolist()]
 
 
-def _of_picks(rock, logs):
-    """(property, begin, end) of the tubes of holes that have no intervals."""
+def _of_picks(rock, logs, only):
+    """(property, begin, end) of the tubes of holes that have no intervals. only: the hole that is meant."""
     ids = [surface.property_id for surface in rock.surfaces]
     below = {surface.name: number for surface, number in zip(rock.surfaces, ids, strict=True)}
     above = {surface.name: number for surface, number in zip(rock.surfaces, ids[1:], strict=False)}
     ends = borehole_picks.ends_of(rock)
     for hole, (collar, picks) in borehole_picks.of_rock(rock).items():
-        if hole in logs or not picks:
+        if hole in logs or not picks or only not in (None, hole):
             continue
         stops = [] if collar is None else [(above.get(picks[0][0]), collar)]
         stops += [(below.get(name), place) for name, place in picks]

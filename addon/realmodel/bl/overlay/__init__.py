@@ -11,12 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
+from ...core.results.hole_log import draw_hole_log
 from ..display import colors, ensembles, explosion, fields, residuals
-from ..field import boreholes
+from ..field import boreholes, shown_log
 from ..host import caches
 from ..objects import exaggeration
 from ..project import project_settings
 
+_BESIDE_LOG = 12.0  # points between a log and the right border
+_FOOT_OF_LOG, _HEIGHT_OF_LOG = 0.12, 0.62  # of the height of a picture: below the north arrow
 WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
 
@@ -44,7 +47,8 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     parts = parts if len(group.results) else []
     if group.explode and "axes" in parts:
         parts.remove("axes")
-    if not (keys or parts or labels):
+    has_log = view_settings.log_hole in shown_log.names(scene)
+    if not (keys or parts or labels or has_log):
         return None
     if not (parts or labels):
         picture = picture._replace(projection=np.eye(4), matrix=np.eye(4))  # of legends: it may turn
@@ -69,9 +73,14 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
         (k.title, *k.entries, k.limits, k.colors is None or k.colors.tobytes(), *k.names) for k in keys
     )
     of_parts = of_keys, *parts, *labels, tuple(margins)
+    of_parts += shown_log.key(scene) if has_log else ()
     name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, *of_parts)
     if name not in _drawings:
-        _drawings[name] = draw_overlay(eye, shown, keys, parts, margins, labels)
+        drawing = draw_overlay(eye, shown, keys, parts, margins, labels)
+        if has_log:
+            right, high = drawing.width - margins[1] - _BESIDE_LOG, drawing.height * _HEIGHT_OF_LOG
+            draw_hole_log(drawing, shown_log.of_scene(scene), (right, drawing.height * _FOOT_OF_LOG, high))
+        _drawings[name] = drawing
     return _drawings[name]
 
 

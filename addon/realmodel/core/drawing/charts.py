@@ -83,6 +83,15 @@ class Axes:
             left = x - _TICK - 2 - widest - 0.8 * size
             drawing.text(left, y + height / 2, y_label, size, anchor="middle", angle=90, layer=layer)
 
+    def crosses(self, layer: str = "") -> None:
+        """A small cross where the ticks of both axes meet."""
+        x, _ = self._x_ticks()
+        y, _, _ = _y_ticks(self.y_range, self.box[3], self.size)
+        for east, north in self.at([(a, b) for a in x for b in y]).tolist():
+            drawing, reach = self.drawing, 0.8 * _TICK
+            drawing.line([(east - reach, north), (east + reach, north)], width=0.3, layer=layer)
+            drawing.line([(east, north - reach), (east, north + reach)], width=0.3, layer=layer)
+
     def _x_ticks(self) -> tuple[np.ndarray, list[str]]:
         """As many ticks as there is room for; the first one at least."""
         for most in range(9, 1, -1):

@@ -3,14 +3,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby
+from pathlib import Path
 from typing import BinaryIO
 from xml.sax.saxutils import escape
 
 import numpy as np
 
+from ..base.atomic import Outputs
+from ..base.errors import UsageError
 from ..base.text import Step, no_step
 from .drawing import Color, Drawing, DrawingItem, FilledRings, Line, Text
+
+EACH_SHEET = "{sheet}"  # in a file's name: a file for each, numbered from 1
+
+
+def write_svg_sheets(drawings: Sequence[Drawing], path: Path, outputs: Outputs, step: Step = no_step) -> None:
+    """A file for each drawing: SVG has no pages. Raises UsageError for several drawings and one name."""
+    if len(drawings) > 1 and EACH_SHEET not in path.name:
+        raise UsageError(
+            f"{path}: an SVG file has one sheet, and there are {len(drawings)}: put {EACH_SHEET} into its "
+            "name, which becomes a file for each, take larger paper, or write a .pdf"
+        )
+    for number, drawing in enumerate(drawings, 1):
+        with outputs.file(path.with_name(path.name.replace(EACH_SHEET, str(number)))) as file:
+            write_svg(drawing, file)
+        step(number / len(drawings))
 
 
 def write_svg(drawing: Drawing, file: BinaryIO, _step: Step = no_step) -> None:

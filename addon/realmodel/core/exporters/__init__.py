@@ -177,6 +177,7 @@ SECTION = Exporter(
 )
 JUXTAPOSITION = Exporter("juxtaposition diagrams are not written as {}", {"drawing": _drawn_juxtaposition})
 STEREONET = Exporter("stereonets are not written as {}", {"drawing": _drawn_net})
+SHEETS = Exporter("sheets are not written as {}", {"sheets": _as_it_is})
 FIELDS = Exporter("fields are not written as {}", {"fields": _as_it_is})
 REPORT = Exporter("reports are not written as {}", {"report": _as_it_is, "block table": _as_it_is})
 BOREHOLE = Exporter("boreholes are not written as {}", {"borehole": _as_it_is})

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ..base.formats import Format
 from ..drawing import DRAWINGS
+from ..drawing.pdf import write_pages
+from ..drawing.svg import write_svg_sheets
 from .map_files import write_geojson, write_geopackage
 from .model_arrays import write_npz
 from .objects.geoh5 import write_geoh5
@@ -235,9 +237,9 @@ FORMATS = (
         ".gpkg",
         "GeoPackage",
         ("model",),
-        "The geological map of the top, and contours, for GIS",
+        "The geological map of the top, contours, and maps of tops, thickness and uncertainty, for GIS",
         write_geopackage,
-        ("contour_interval",),
+        ("contour_interval", "cell_size"),
         has_files=True,
     ),
     Format(
@@ -292,5 +294,7 @@ FORMATS = (
         "Volumes, shares, and counts of the blocks, for a spreadsheet",
         lambda text, file, _step: file.write(text.encode()),
     ),
+    Format(".pdf", "PDF", ("sheets",), "Sheets to print, a page for each", write_pages),
+    Format(".svg", "SVG", ("sheets",), "Sheets to print, a file for each", write_svg_sheets, has_files=True),
     *DRAWINGS,
 )

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The geological map and contours as GeoJSON (RFC 7946) and GeoPackage (OGC 12-128r18).
 
-Areas: a feature for each block, in each compartment, where it crops out. Contours: a feature for each line.
+Areas: a feature for each block, in each compartment, where it crops out. Contours and faults: a feature for
+each line. GeoPackages have maps of tops, thickness and standard deviations, too, a layer each, and the styles
+in which QGIS shows the layers.
+
 Coordinates are those of the model; the files name its coordinate reference system where the project does:
 GeoJSON as its first edition (2008) has it, since RFC 7946 knows longitudes and latitudes alone.
 """
@@ -17,29 +20,43 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.algebra import twice_area
 from ..base.atomic import Outputs
 from ..base.errors import OutputFailed
 from ..base.text import Step
 from ..cells.model_data import ModelData
 from ..results.contours import contours
-from ..results.geological_map import geological_map, ground_of
+from ..results.geological_map import fault_lines, geological_map, ground_of
+from ..results.samples import CellSize
+from ..results.value_areas import ValueMap, value_maps
 from ..settings.crs import epsg_code
+from ..simulation.patches import solver_names
+from .map_styles import areas_style, classes_style, lines_style
+from .shapes.shape_parts import distinct_names
 
-AREAS, CONTOURS = "geology", "contours"
+AREAS, CONTOURS, FAULTS = "geology", "contours", "faults"
 _TOP = "top of the model"
 _POLYGONS, _LINE = 6, 2  # well-known binary: several polygons, a line
 _Shape = list | np.ndarray  # polygons, each a list of closed rings (N, 2), or a line (N, 2)
+_BLACK, _BROWN = "0,0,0,255", "107,69,33,255"
+_KINDS = {"top": "top", "thickness": "thickness", "deviation": "standard deviation"}
 _UNDEFINED = -1  # the plane system that is not known, of GeoPackages
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _Layer:
     """columns: of attributes, name to SQL type. rows: (values, rings) each: polygons, each a list of closed
-    rings, or a line."""
+    rings, or a line. style: of QGIS. title: what it is called there, "": its name."""
 
     name: str
     columns: dict[str, str]
     rows: list[tuple[list, _Shape]]
+    style: str = ""
+    title: str = ""
+
+    @property
+    def is_of_lines(self) -> bool:
+        return self.name in (CONTOURS, FAULTS)
 
 
 def write_geojson(
@@ -80,16 +97,24 @@ def _urn(crs: str) -> str:
 
 
 def write_geopackage(
-    model: ModelData, path: Path, outputs: Outputs, step: Step, contour_interval: float | None = None
+    model: ModelData,
+    path: Path,
+    outputs: Outputs,
+    step: Step,
+    contour_interval: float | None = None,
+    cell_size: CellSize = None,
 ) -> None:
-    """A table for each layer."""
+    """A table for each layer. cell_size: of the maps of values, as of plan_grids."""
     layers = _layers(model, step, contour_interval)
+    layers += _value_layers(value_maps(model, cell_size, contour_interval))
+    step(0.9)
     try:
         with outputs.path(path) as target, closing(sqlite3.connect(target)) as base:
             base.executescript(_SCHEMA)
             srs = _write_system(base, model.project.crs)
             for layer in layers:
                 _write_layer(base, layer, srs)
+            _write_styles(base, layers)
             base.commit()
     except sqlite3.Error as error:
         raise OutputFailed(f"{path}: cannot be written: {error}") from error
@@ -117,7 +142,32 @@ def _layers(model: ModelData, step: Step, interval: float | None) -> list[_Layer
     for line in contours(model, interval, ground):
         lines.rows.append(([line.surface or _TOP, line.elevation], line.points))
     step(0.7)
-    return [areas, lines]
+    faults = _Layer(FAULTS, {"fault": "TEXT"}, [([name], line) for name, line in fault_lines(model, ground)])
+    faults.style = lines_style("fault", _different(faults), 0.6, _BLACK)
+    lines.style = lines_style("surface", _different(lines), 0.2, _BROWN, shown=1)
+    shades = {values[0]: values[4] for values, _ in areas.rows}
+    areas.style = areas_style("block", list(shades.items()))
+    return [areas, lines, *([faults] if faults.rows else [])]
+
+
+def _different(layer: _Layer) -> list[str]:
+    """The texts of its first column."""
+    return list(dict.fromkeys(values[0] for values, _ in layer.rows))
+
+
+def _value_layers(maps: list[ValueMap]) -> list[_Layer]:
+    """A layer for each map of values."""
+    titles = distinct_names(f"{_KINDS[made.kind]} of {made.of}" for made in maps)
+    columns = {"low": "REAL", "high": "REAL", "area": "REAL"}
+    layers = []
+    for made, name, title in zip(maps, solver_names(titles), titles, strict=True):
+        rows: list[tuple[list, _Shape]] = []
+        for low, high, polygons in made.areas:
+            area = float(sum(twice_area(ring) / 2 for rings in polygons for ring in rings))
+            rows.append(([low, high, area], [[_closed(ring) for ring in rings] for rings in polygons]))
+        style = classes_style([(low, high) for low, high, _ in made.areas])
+        layers.append(_Layer(name, columns, rows, style, title))
+    return layers
 
 
 def _closed(ring: np.ndarray) -> np.ndarray:
@@ -163,6 +213,26 @@ CREATE TABLE gpkg_geometry_columns (
 """
 
 
+_STYLES = """
+CREATE TABLE layer_styles (
+    id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
+    f_table_catalog TEXT(256),
+    f_table_schema TEXT(256),
+    f_table_name TEXT(256),
+    f_geometry_column TEXT(256),
+    styleName TEXT(30),
+    styleQML TEXT,
+    styleSLD TEXT,
+    useAsDefault BOOLEAN,
+    description TEXT,
+    owner TEXT(30),
+    ui TEXT(30),
+    update_time DATETIME DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ','now')));
+INSERT INTO gpkg_contents (table_name, data_type, identifier, last_change)
+    VALUES ('layer_styles', 'attributes', 'layer_styles', '1970-01-01T00:00:00.000Z');
+"""
+
+
 def _write_system(base: sqlite3.Connection, crs: str | None) -> int:
     """The number of the coordinate system in the file. EPSG's get their row: programs know the definition by
     the code. That of others we do not have."""
@@ -176,7 +246,7 @@ def _write_system(base: sqlite3.Connection, crs: str | None) -> int:
 
 
 def _write_layer(base: sqlite3.Connection, layer: _Layer, srs: int) -> None:
-    kind = "MULTIPOLYGON" if layer.name == AREAS else "LINESTRING"
+    kind = "LINESTRING" if layer.is_of_lines else "MULTIPOLYGON"
     columns = ", ".join(f"{name} {form}" for name, form in layer.columns.items())
     base.execute(
         f"CREATE TABLE {layer.name} (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom {kind}, {columns})"
@@ -188,7 +258,7 @@ def _write_layer(base: sqlite3.Connection, layer: _Layer, srs: int) -> None:
     base.execute(
         "INSERT INTO gpkg_contents (table_name, data_type, identifier, last_change, min_x, min_y, max_x, "
         "max_y, srs_id) VALUES (?, 'features', ?, '1970-01-01T00:00:00.000Z', ?, ?, ?, ?, ?)",
-        [layer.name, layer.name, *whole, srs],
+        [layer.name, layer.title or layer.name, *whole, srs],
     )
     base.execute("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 0, 0)", [layer.name, kind, srs])
     marks = ", ".join("?" * (len(layer.columns) + 1))
@@ -198,6 +268,17 @@ def _write_layer(base: sqlite3.Connection, layer: _Layer, srs: int) -> None:
             [_blob(shape, box, srs), *values]
             for (values, shape), box in zip(layer.rows, boxes.tolist(), strict=True)
         ),
+    )
+
+
+def _write_styles(base: sqlite3.Connection, layers: list[_Layer]) -> None:
+    """The table in which QGIS looks for the style of a layer that it opens."""
+    base.executescript(_STYLES)
+    base.executemany(
+        "INSERT INTO layer_styles (f_table_catalog, f_table_schema, f_table_name, f_geometry_column, "
+        "styleName, styleQML, styleSLD, useAsDefault, description, owner, ui, update_time) "
+        "VALUES ('', '', ?, 'geom', ?, ?, '', 1, '', '', NULL, '1970-01-01T00:00:00.000Z')",
+        ([layer.name, layer.name[:30], layer.style] for layer in layers),
     )
 
 

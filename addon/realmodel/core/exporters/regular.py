@@ -68,7 +68,8 @@ def write_vti(model: ModelData, file: BinaryIO, step: Step, cell_size: CellSize 
 
 def _grids(model: ModelData, cell_size: CellSize) -> tuple:
     """The grids, and (name, heights (ny, nx)) of each: the ground, then of each block its top and thickness,
-    then of each its true thickness."""
+    then of each its true thickness, and of each interpolated
+    surface the standard deviation of its heights, where that is known."""
     grids = plan_grids(model, cell_size)
     bands = [("elevation", grids.top)]
     names = distinct_names(block.name for block in model.blocks)
@@ -76,6 +77,9 @@ def _grids(model: ModelData, cell_size: CellSize) -> tuple:
         bands.append((f"top of {name}", grids.upper[number]))
         bands.append((f"thickness of {name}", grids.thickness[number]))
     bands += [(f"true thickness of {name}", grids.true_thickness[n]) for n, name in enumerate(names)]
+    surfaces = distinct_names(name for name, _ in grids.deviation)
+    for name, (_, values) in zip(surfaces, grids.deviation, strict=True):
+        bands.append((f"standard deviation of {name}", values))
     return grids, bands
 
 
@@ -83,7 +87,7 @@ def write_ascii_grids(
     model: ModelData, path: Path, outputs: Outputs, step: Step, cell_size: CellSize = None
 ) -> None:
     """ESRI ASCII grids: the elevation in the file itself; beside it NAME_top_of_BLOCK,
-    NAME_thickness_of_BLOCK and NAME_true_thickness_of_BLOCK."""
+    NAME_thickness_of_BLOCK, NAME_true_thickness_of_BLOCK and NAME_standard_deviation_of_SURFACE."""
     grids, bands = _grids(model, cell_size)
     step(0.5)
     (west, north), (dx, dy) = grids.north_west, grids.size

@@ -12,7 +12,7 @@ from ..base.named import keyword_only, number_of
 from ..base.work import Cancel, Progress, run
 from ..cells.assembly import build_stage
 from ..cells.model_data import ModelData
-from ..exporters import MODEL, SURFACES, check_tolerance
+from ..exporters import MODEL, SHEETS, SURFACES, check_tolerance
 from ..exporters.page import page_of
 from ..exporters.report import Report, model_report
 from ..fields import ScalarField
@@ -25,6 +25,8 @@ from ..results.contours import contours
 from ..results.geological_map import geological_map
 from ..results.layer_values import field_of, rock_fields
 from ..results.model_holes import borehole
+from ..results.sections.section_data import SectionData
+from ..results.sheets import DEFAULT_SIZE, draw_sheets
 from ..results.tables import block_table, borehole_table, map_dataset
 from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
@@ -71,8 +73,9 @@ class Model(ModelData):
         """Writes the model to a file or folder, by its ending (docs/reference/output_files.md). It appears
         whole or not at all.
 
-        cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
-        None: a hundredth of the longest side; in .omf and .geoh5 there are cells only where it is given.
+        cell_size: of regular grids (.csv, .vti, .tif, .asc) and maps of values (.gpkg), one number, two (in
+        plan, in height) or three; None: a hundredth of the longest side; in .omf and .geoh5 there are cells
+        only where it is given.
         contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen levels. tolerance: of formats
         with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as cleaned_cells does; None: the
         exact cells. grid_layers, grid_azimuth: of corner-point grids (.grdecl), the layers of each block and
@@ -105,6 +108,28 @@ class Model(ModelData):
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
         SURFACES.save(self, path)
+
+    def save_sheets(
+        self,
+        path: str | Path,
+        sections: Sequence[SectionData] = (),
+        size: str = DEFAULT_SIZE,
+        scale: float | None = None,
+        exaggeration: float = 1.0,
+        hole_width: float = 0.0,
+        hole_column: str | None = None,
+    ) -> None:
+        """Writes sheets to print, with the geological map and sections, to a .pdf of as many pages as they
+        take; an .svg has one, and several where its name has {sheet}. They appear whole or not at all.
+
+        sections: as of `section` and `fence`; vertical ones are lines on the map, A-A', B-B', ... size: "A4"
+        to "A0", as "A3" wide or as "A3-portrait" high. scale: N of 1 : N, of map and sections; None: the
+        largest round one at which all fit. exaggeration, hole_width, hole_column: as of Section.save. Raises
+        UsageError for what does not fit, naming a size and a scale that do, OutputFailed.
+        """
+        SHEETS.format(path)
+        of_sections = exaggeration, hole_width, hole_column
+        SHEETS.save(draw_sheets(self, sections, size, scale, *of_sections), path)
 
     def field(self, series: str, compartment: str | None = None) -> ScalarField:
         """The field of a series: its lattice, the values of the nodes, and the level of each surface.

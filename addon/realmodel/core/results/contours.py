@@ -67,14 +67,31 @@ def contours(model: ModelData, interval: float | None = None, ground: Ground | N
         return []
     low, high = min(z.min() for z in heights), max(z.max() for z in heights)
     step = checked_interval(interval, float(low), float(high))
-    contour_lines = []
-    for name, corners, vertices, solid in shapes:
-        if len(corners):
-            own_low, own_high = corners[:, :, 2].min(), corners[:, :, 2].max()
-            for k in range(math.ceil(own_low / step), math.floor(own_high / step) + 1):
-                lines = level_lines(corners, vertices, solid, k * step)
-                contour_lines += [Contour(name, k * step, line) for line in lines]
-    return contour_lines
+    lines = (_of_shape(name, corners, plan, solid, step) for name, corners, plan, solid in shapes)
+    return [line for of_shape in lines for line in of_shape]
+
+
+def ground_contours(ground: Ground) -> list[Contour]:
+    """Contours of the top of a model alone, at about fifteen levels of it."""
+    if not len(ground.corners):
+        return []
+    heights = ground.corners[:, :, 2]
+    step = checked_interval(None, float(heights.min()), float(heights.max()))
+    return _of_shape("", ground.corners, ground.vertices, ground.solid, step)
+
+
+def _of_shape(
+    name: str, corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, step: float
+) -> list[Contour]:
+    if not len(corners):
+        return []
+    low, high = corners[:, :, 2].min(), corners[:, :, 2].max()
+    levels = (k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1))
+    return [
+        Contour(name, level, line)
+        for level in levels
+        for line in level_lines(corners, vertices, solid, level)
+    ]
 
 
 def level_lines(

@@ -177,6 +177,7 @@ def _contains(points: np.ndarray, outline: np.ndarray, ring: np.ndarray) -> bool
 
 
 _WALL = -1
+_FAULT = 1  # of `surface_kind`
 _UPRIGHT = 2.0**-40  # the slope from which on a face is upright but for the rounding of its corners
 
 
@@ -220,6 +221,53 @@ def geological_map(model: ModelData, ground: Ground | None = None) -> list[MapAr
     [('clay', 4.0), ('sand', 4.0), ('soil', 8.0)]
     """
     return (ground_of(model) if ground is None else ground).areas
+
+
+def fault_lines(model: ModelData, ground: Ground) -> list[tuple[str, np.ndarray]]:
+    """Where faults come to the top of a model: the name of each and a line (N, 2) float64, closed where the
+    first place is the last. Lines of a fault meet where it branches. ground: as of `ground_of`."""
+    kinds = np.append(model.surface_kind, 0)  # faces on no surface have numbers below 0
+    faces = np.flatnonzero(kinds[np.maximum(model.face_surface, -1)] == _FAULT)
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    following = np.arange(1, len(corners) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    size = len(model.vertices)
+
+    def keys(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        return np.minimum(start, end).astype(np.int64) * size + np.maximum(start, end)
+
+    of_faults = keys(corners, corners[following])
+    on_ground = np.isin(of_faults, keys(*_edges(ground.solid)))
+    surface = np.repeat(model.face_surface[faces], np.diff(offsets))
+    plan, vertex = _plan_vertices(model.vertices[:, :2])
+    lines = []
+    for fault in np.unique(surface[on_ground]):
+        edges = of_faults[on_ground & (surface == fault)]
+        ends = np.sort(vertex[np.column_stack([edges // size, edges % size])], axis=1)
+        for line in _joined(np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0)):
+            lines.append((model.surface_names[fault], plan[line]))
+    return lines
+
+
+def _joined(edges: np.ndarray) -> list[list[int]]:
+    """Edges (E, 2) between vertices joined to lines that end where not two meet; others are closed."""
+    around: dict[int, list[int]] = defaultdict(list)
+    for a, b in edges.tolist():
+        around[a].append(b)
+        around[b].append(a)
+    lines = []
+    for first in sorted(around, key=lambda vertex: (len(around[vertex]) == 2, vertex)):
+        while around[first]:
+            line = [first]
+            while around[line[-1]]:
+                at, after = line[-1], around[line[-1]][0]
+                around[at].remove(after)
+                around[after].remove(at)
+                line.append(after)
+                if len(around[after]) != 1:
+                    break
+            lines.append(line)
+    return lines
 
 
 def _areas(

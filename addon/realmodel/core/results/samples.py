@@ -16,6 +16,7 @@ from ..base.triangles import Sheet
 from ..base.work import Work, native_module, run
 from ..cells.model_data import ModelData
 from ..heights.true_thickness import Base
+from .layer_values import at_places
 from .sections.section_data import SectionData
 
 
@@ -233,7 +234,8 @@ class PlanGrids:
     the
     place), 0 where it is not, and the height of its top, NaN where it is not. true_thickness: (B, ny, nx),
     how far the top of each block is from its base, which goes on beyond its border with the slopes that it
-    has there; 0 where the block is not.
+    has there; 0 where the block is not. deviation: name and (ny, nx) of each surface whose heights have a
+    known variance, their standard deviation, NaN where there is none.
     """
 
     north_west: tuple[float, float]
@@ -242,6 +244,7 @@ class PlanGrids:
     thickness: np.ndarray
     upper: np.ndarray
     true_thickness: np.ndarray
+    deviation: list[tuple[str, np.ndarray]]
 
 
 def plan_grids(model: ModelData, size: CellSize = None) -> PlanGrids:
@@ -277,7 +280,20 @@ def plan_grids(model: ModelData, size: CellSize = None) -> PlanGrids:
         thickness.reshape(-1, *shape)[:, ::-1],
         upper.reshape(-1, *shape)[:, ::-1],
         true.reshape(-1, *shape)[:, ::-1],
+        [(name, values.reshape(shape)[::-1]) for name, values in _deviations(model, centers)],
     )
+
+
+def _deviations(model: ModelData, centers: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """The standard deviation (N,) of the heights of each surface at places (N, 2), where it is known."""
+    for number, name in enumerate(model.surface_names):
+        if model.surface_kind[number] != 0 or model.lacks_project is not None:
+            continue
+        variance = model.surface_attributes(number)["variance"]
+        if np.isfinite(variance).any():
+            vertices, triangles = model.surface(number)
+            deviation = np.sqrt(np.maximum(variance, 0.0))
+            yield name, at_places(np.column_stack([vertices[:, :2], deviation]), triangles, centers)
 
 
 def _true_thickness(

@@ -14,12 +14,13 @@ import numpy as np
 from ...base.errors import UsageError
 from ...base.units import METERS
 from ...drawing.charts import Axes, legend, legend_size, tick_texts
-from ...drawing.drawing import BLACK, WHITE, Drawing, text_width
+from ...drawing.drawing import BLACK, WHITE, Color, Drawing, text_width
 from .section_curves import HoleCurves, Panel
 from .section_data import FenceData, SectionData
 from .section_holes import UNKNOWN, HoleLine, parts_near
 
 MOST_EXAGGERATION = 1000.0
+SCALES = (1.0, 2.0, 2.5, 5.0)  # round ones, times a power of ten
 _POINT = 0.0254 / 72  # meters
 _PLOT = (560.0, 360.0)  # maximal size of the section on the page, in points
 _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
@@ -53,75 +54,126 @@ def draw_section(
     drawn beside the holes as a curve with a color bar.
     Raises UsageError for a section that is empty or not plane, or an exaggeration that is not above 0.
     """
-    if not 0 < exaggeration <= MOST_EXAGGERATION:
-        raise UsageError(
-            f"exaggeration must be above 0 and at most {MOST_EXAGGERATION:g}, not {exaggeration!r}"
-        )
-    if not len(section):
-        raise UsageError("there is nothing to draw: the section does not meet the model")
-    flat = flattened(section)
-    exaggeration = exaggeration if is_vertical(section) else 1.0
-    curves = None if hole_column is None else HoleCurves(section.hole_values, hole_column, hole_width)
-    holes = holes_on(section, hole_width) if hole_width > 0 else []
-    places = np.concatenate(
-        [flat, *([] if cells is None else [cells[0].reshape(-1, 2)]), *(line for _, line in holes)]
-    )
-    low, high = places.min(axis=0), places.max(axis=0)
-    if isinstance(section, FenceData):
-        low[0], high[0] = 0.0, section.length
-    if is_vertical(section):
-        high[1] += _SKY * (high[1] - low[1])
-    least = 1e-9 * max(np.abs(flat).max(), 1.0)
-    extent = np.maximum(high - low, least)
-    ratio, scale = page_scale(extent * (1.0, exaggeration), section.unit)
-    if holes:  # room for a line of names over them, within the frame
-        sky = high[1] - max(line[:, 1].max() for _, line in holes)
-        high[1] += max(0.0, (_NAME_ABOVE + _SIZE) / (scale * exaggeration) - sky)
-        extent = np.maximum(high - low, least)
-        ratio, scale = page_scale(extent * (1.0, exaggeration), section.unit)
-    width, height = extent * (1.0, exaggeration) * scale
-    present = [int(block) for block in np.unique(section.block)[::-1]]
-    entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
+    plot = SectionPlot(section, exaggeration, hole_width, hole_column, cells)
+    ratio, scale = page_scale(plot.extent(), section.unit)
+    if plot.leave_room_for_names(scale):
+        ratio, scale = page_scale(plot.extent(), section.unit)
+    width, height = plot.extent() * scale
+    entries, curves = plot.entries(), plot.curves
     legend_width, legend_height = legend_size(_LEGEND, entries, _SIZE)
     bar_width, bar_height = (0.0, 0.0) if curves is None else curves.key_size(_SIZE)
     legend_width = max(legend_width, bar_width)
-    subtitle = _subtitle(section, ratio, exaggeration)
+    below_title = subtitle(section, ratio, plot.exaggeration)
     title = title or section.name
-    ends = _end_texts(section, flat)
-    are_beside = width > sum(text_width(text, _SIZE - 1) for text in ends) + 40
-    above = _ABOVE if are_beside else _ABOVE + len(ends) * _LINE
+    above = _ABOVE + plot.height_of_ends(width)
     page = max(
         _LEFT + width + _GAP + legend_width,
-        *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle)),
-        *(_LEFT + 20 + text_width(text, _SIZE - 1) for text in ends),
+        *(20 + text_width(text, _SIZE + 3) for text in (title, below_title)),
+        *(_LEFT + 20 + text_width(text, _SIZE - 1) for text in plot.ends),
     )
     plot_height = max(height, legend_height + bar_height)
     drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + above))
     base = _BELOW + plot_height - height
     drawing.scale, drawing.origin = (
         float(scale),
-        (_LEFT - scale * low[0], base - scale * exaggeration * low[1]),
+        (_LEFT - scale * plot.low[0], base - scale * plot.exaggeration * plot.low[1]),
     )
-    axes = Axes(drawing, (_LEFT, base, width, height), (low[0], high[0]), (low[1], high[1]), _SIZE)
-    for corners, color in zip(*(cells or ((), ())), strict=True):
-        drawing.polygon(axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells")
-    for block in present:
-        rings = [axes.at(ring) for ring in block_outlines(section, flat, block)]
-        color, name = tuple(section.block_colors[block]), section.block_names[block]
-        drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
-    _draw_faults(drawing, axes, section)
-    if curves is not None:
-        curves.draw(axes, list(panels_of(section)))
-    _draw_holes(drawing, axes, section, holes)
-    axes.frame(*_axis_names(section), layer="Axes")
-    _draw_ends(drawing, axes, section, ends, are_beside)
+    plot.draw(drawing, (_LEFT, base), scale, ("A", "B"))
     legend(drawing, (_LEFT + width + _GAP, base + height), _LEGEND, entries, _SIZE, layer="Legend")
     if curves is not None:
         curves.draw_key(drawing, (_LEFT + width + _GAP, base + height - legend_height), _SIZE)
     top = drawing.height - 20
     drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
-    drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")
+    drawing.text(_LEFT, top - 1.6 * _SIZE, below_title, _SIZE, layer="Text")
     return drawing
+
+
+class SectionPlot:
+    """A section in its frame, at any scale: what drawings of sections and sheets share.
+
+    low, high: (2,) float64, what it shows in the plane of the picture. present: the numbers of the blocks in
+    it, the youngest first. ends: texts of the places of its ends. curves: those beside the holes, or None.
+    """
+
+    def __init__(
+        self,
+        section: SectionData,
+        exaggeration: float = 1.0,
+        hole_width: float = 0.0,
+        hole_column: str | None = None,
+        cells: tuple[np.ndarray, np.ndarray] | None = None,
+    ):
+        """As of draw_section. Raises UsageError."""
+        if not 0 < exaggeration <= MOST_EXAGGERATION:
+            raise UsageError(
+                f"exaggeration must be above 0 and at most {MOST_EXAGGERATION:g}, not {exaggeration!r}"
+            )
+        if not len(section):
+            raise UsageError("there is nothing to draw: the section does not meet the model")
+        self.section, self._cells, self._flat = section, cells, flattened(section)
+        self.exaggeration = exaggeration if is_vertical(section) else 1.0
+        self.curves = (
+            None if hole_column is None else HoleCurves(section.hole_values, hole_column, hole_width)
+        )
+        self._holes = holes_on(section, hole_width) if hole_width > 0 else []
+        shown = [self._flat, *([] if cells is None else [cells[0].reshape(-1, 2)])]
+        places = np.concatenate([*shown, *(line for _, line in self._holes)])
+        self.low, self.high = places.min(axis=0), places.max(axis=0)
+        if isinstance(section, FenceData):
+            self.low[0], self.high[0] = 0.0, section.length
+        if is_vertical(section):
+            self.high[1] += _SKY * (self.high[1] - self.low[1])
+        self._top = float(self.high[1])
+        self.present = [int(block) for block in np.unique(section.block)[::-1]]
+        self.ends = _end_texts(section, self._flat)
+
+    def extent(self) -> np.ndarray:
+        """(2,) float64: width and exaggerated height, model units."""
+        least = 1e-9 * max(np.abs(self._flat).max(), 1.0)
+        return np.maximum(self.high - self.low, least) * (1.0, self.exaggeration)
+
+    def entries(self) -> list[tuple[str, Color]]:
+        """Names and colors of the legend."""
+        section = self.section
+        return [(section.block_names[block], tuple(section.block_colors[block])) for block in self.present]
+
+    def leave_room_for_names(self, scale: float) -> bool:
+        """Makes it higher, so that a line of names over the holes is within the frame. scale: points for a
+        unit. Returns whether there are holes."""
+        if self._holes:
+            sky = self._top - max(line[:, 1].max() for _, line in self._holes)
+            room = (_NAME_ABOVE + _SIZE) / (scale * self.exaggeration)
+            self.high[1] = self._top + max(0.0, room - sky)
+        return bool(self._holes)
+
+    def height_of_ends(self, width: float) -> float:
+        """What the coordinates of the ends take above a frame of a width, in points: nothing where they are
+        beside each other."""
+        return 0.0 if self._are_beside(width) else len(self.ends) * _LINE
+
+    def _are_beside(self, width: float) -> bool:
+        return width > sum(text_width(text, _SIZE - 1) for text in self.ends) + 40
+
+    def draw(self, drawing: Drawing, at: tuple[float, float], scale: float, letters: tuple[str, str]) -> None:
+        """Draws it with its lower left corner at a place in points. scale: points for a unit. letters: over
+        its ends, where it is vertical."""
+        section = self.section
+        width, height = (self.extent() * scale).tolist()
+        (left, right), (bottom, top) = zip(self.low.tolist(), self.high.tolist(), strict=True)
+        axes = Axes(drawing, (*at, width, height), (left, right), (bottom, top), _SIZE)
+        for corners, color in zip(*(self._cells or ((), ())), strict=True):
+            drawing.polygon(
+                axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells"
+            )
+        for block, (name, color) in zip(self.present, self.entries(), strict=True):
+            rings = [axes.at(ring) for ring in block_outlines(section, self._flat, block)]
+            drawing.polygon(rings, color if self._cells is None else None, BLACK, 0.35, layer=name)
+        _draw_faults(drawing, axes, section)
+        if self.curves is not None:
+            self.curves.draw(axes, list(panels_of(section)))
+        _draw_holes(drawing, axes, section, self._holes)
+        axes.frame(*_axis_names(section), layer="Axes")
+        _draw_ends(drawing, axes, section, self.ends, self._are_beside(width), letters)
 
 
 def is_vertical(section: SectionData) -> bool:
@@ -315,17 +367,27 @@ def directions(section: SectionData) -> tuple[np.ndarray | None, np.ndarray | No
     return right, np.cross(normal, right)
 
 
+def points_for_unit(ratio: float, unit: str) -> float:
+    """How long a unit is on paper at a scale 1 : ratio, in points."""
+    return float(METERS[unit]) / ratio / _POINT
+
+
 def page_scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
     """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
     least = float((extent * float(METERS[unit]) / (np.array(_PLOT) * _POINT)).max())
     power = 10.0 ** np.floor(np.log10(least))
-    ratio = next(f * power for f in (1.0, 2.0, 2.5, 5.0, 10.0) if f * power >= least * (1 - 1e-9))
-    return ratio, float(METERS[unit]) / ratio / _POINT
+    ratio = next(f * power for f in (*SCALES, 10.0) if f * power >= least * (1 - 1e-9))
+    return ratio, points_for_unit(ratio, unit)
 
 
-def _subtitle(section: SectionData, ratio: float, exaggeration: float) -> str:
-    denominator = f"{ratio:,.0f}" if ratio >= 10 else f"{ratio:g}"
-    text = f"Scale 1 : {denominator}"
+def scale_text(ratio: float) -> str:
+    """A scale as it is written."""
+    return f"1 : {ratio:,.0f}" if ratio >= 10 else f"1 : {ratio:g}"
+
+
+def subtitle(section: SectionData, ratio: float, exaggeration: float) -> str:
+    """What a section is drawn at: its scale, and its exaggeration or its plane."""
+    text = f"Scale {scale_text(ratio)}"
     if is_vertical(section):
         return f"{text}, vertical exaggeration {exaggeration:g}"
     normal = _unit_normal(section)
@@ -364,7 +426,14 @@ def _turns(polyline: np.ndarray) -> np.ndarray:
     return np.degrees(np.abs(np.arctan2(across, along)))
 
 
-def _draw_ends(drawing: Drawing, axes: Axes, section: SectionData, ends: list[str], are_beside: bool) -> None:
+def _draw_ends(
+    drawing: Drawing,
+    axes: Axes,
+    section: SectionData,
+    ends: list[str],
+    are_beside: bool,
+    letters: tuple[str, str],
+) -> None:
     """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
     coordinates are on one line; else they are on lines of their own, with their letters."""
     x, y, width, height = axes.box
@@ -373,10 +442,10 @@ def _draw_ends(drawing: Drawing, axes: Axes, section: SectionData, ends: list[st
             ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
             drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")
     sides = ("start", "end")
-    if width < sum(text_width(letter, _SIZE + 1) for letter in "AB") + _SIZE:
+    if width < sum(text_width(letter, _SIZE + 1) for letter in letters) + _SIZE:
         sides = ("end", "start")  # no room for both over the section
     corners = (x, sides[0], 12), (x + width, sides[1], -12)
-    for number, (letter, text, (at, anchor, away)) in enumerate(zip("AB", ends, corners, strict=False)):
+    for number, (letter, text, (at, anchor, away)) in enumerate(zip(letters, ends, corners, strict=False)):
         drawing.text(at, y + height + 5, letter, _SIZE + 1, anchor=anchor, layer="Text")
         if are_beside:
             drawing.text(at + away, y + height + 5.5, text, _SIZE - 1, anchor=anchor, layer="Text")
