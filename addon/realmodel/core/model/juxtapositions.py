@@ -27,8 +27,8 @@ class Juxtaposition(JuxtapositionData):
     """What lies on both sides of a fault."""
 
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
-        """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .pdf, .dxf or .png. It
-        appears whole or not at all. exaggeration: of elevations. Raises UsageError, OutputFailed."""
+        """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .pdf, .dxf
+        or .png. It appears whole or not at all. exaggeration: of elevations. Raises UsageError, OutputFailed."""
         JUXTAPOSITION.save(self, path, exaggeration=exaggeration)
 
 
