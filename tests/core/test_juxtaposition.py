@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, UsageError, build
 from realmodel.core.drawing.drawing import FilledRings
-from realmodel.core.results.sections.juxtaposition_drawing import draw_juxtaposition, hatched
-from realmodel.core.results.sections.strike_line import StrikeLine
+from realmodel.core.results.faults.juxtaposition_drawing import draw_juxtaposition, hatched
+from realmodel.core.results.faults.strike_line import StrikeLine
 from sample_scripts import SAMPLES
 from structure_cases import SQUARE, plane_fault
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A model as one page of HTML, which opens in any browser without a network.
 
+Input: `ModelData`, the objects of a model. Output: the text of the page.
+
 three.js 0.111 draws it (MIT; license.txt); page.js is what the page does, page.css its looks. Each triangle
 is stored once, with the block on each of its sides. Coordinates count from a place near the middle of the
 model and have 32 bits, the arrays are compressed (deflate) and written as Base64.
