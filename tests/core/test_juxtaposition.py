@@ -183,5 +183,5 @@ def test_what_is_asked_for_wrongly_is_refused(out):  # noqa: F811 - the fixture
         "--juxtaposition: no fault is called 'east'; the project has main fault, branch, western fault"
     )
     assert "expected --juxtaposition FAULT=FILE" in refused(run(SAMPLE, "--juxtaposition", "east"), 2)
-    assert "not written as '.pdf'" in refused(run(SAMPLE, "--juxtaposition", "branch=a.pdf"), 2)
+    assert "not written as '.jpg'" in refused(run(SAMPLE, "--juxtaposition", "branch=a.jpg"), 2)
     assert not names(out)

@@ -92,7 +92,7 @@ def _blocks(model: ModelData, contents: Contents) -> list[dict[str, Any]]:
         blocks.append(
             {
                 "number": shell.number,
-                "name": shell.part.name,
+                "name": entry["name"],
                 "rock": entry["rock"],
                 "material": entry["property_name"],
                 "volume": entry["volume"],
