@@ -348,6 +348,7 @@ function readHash() {
 }
 
 function keepHash() {
+  if (location.protocol === "about:") return;  // in a notebook
   try { history.replaceState(null, "", hash()); } catch (error) { location.hash = hash(); }
 }
 
@@ -519,6 +520,7 @@ async function begin() {
   await addHoles();
   await addPoints();
   if (layers.Boreholes) state.layers.add("Boreholes");
+  byId("link").hidden = location.protocol === "about:";
   listBlocks();
   byId("summary").textContent = `${data.blocks.length} blocks, ${data.volume_text} ${data.units}³`;
   const ends = AXES.map((axis, k) => `${axis} ${number(low.getComponent(k) + data.origin[k])} to ${number(high.getComponent(k) + data.origin[k])}`);
