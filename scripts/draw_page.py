@@ -15,7 +15,13 @@ from realmodel.core import build, load_project
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = 1200, 760
 VIEW = "#s=y,0.55,1&t=light"
-FLAGS = ("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+FLAGS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
 
 
 def draw(folder: Path) -> None:

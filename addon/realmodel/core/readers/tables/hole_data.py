@@ -43,7 +43,9 @@ _NEEDED = {
 class HoleTables:
     """boreholes: what they were read from. collars, survey, picks, intervals: their rows, None where there is
     no such table. factors: to the units in which they are read, by kind of table and column, for those that
-    say others. problems: what was wrong with rows, as far as they are repaired. warnings: sentences."""
+    say others. problems: what was wrong with rows, as far as they are repaired. warnings: sentences.
+    lines: of holes of objects, in the units of the tables: the places (N, 3) of depths (N,); picks of objects
+    are at their own places. None of tables."""
 
     boreholes: Boreholes
     collars: list[Row] | None = None
@@ -53,6 +55,7 @@ class HoleTables:
     factors: dict[str, dict[str, float]] = field(default_factory=dict)
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    lines: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
 
     def scale(self, model_unit: str) -> np.ndarray:
         """(3,) the factors of x, y and of heights and depths to the model's unit."""
