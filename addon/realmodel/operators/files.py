@@ -17,7 +17,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..bl.display import shown_models
 from ..bl.jobs.export_job import ExportJob
 from ..bl.jobs.mesh_job import MeshJob
-from ..bl.project import results, settings
+from ..bl.project import library_rows, results, settings
 from ..bl.scene import live, scene_export
 from ..core import BuildFailed, InputRefused, UsageError
 from ..core.base.errors import BuildWarning
@@ -80,8 +80,11 @@ class Exporting(Reporting, ExportHelper):
         self.report({"INFO"}, f"Wrote {path}")
 
     def model(self, context):
-        """The whole displayed model, after `target`; where it is out of date, one of its warnings says so."""
+        """The whole displayed model, after `target`, with the panel's library of now, whose colors are seen;
+        where it is out of date, one of its warnings says so."""
         model = shown_models.whole(context.scene)
+        project = replace(model.project, library=library_rows.library_of(context.scene))
+        model = replace(model, project=project)
         if context.scene.realmodel.is_outdated:
             model = replace(model, warnings=[BuildWarning(_OUTDATED, "outdated"), *model.warnings])
         return model

@@ -359,8 +359,9 @@ class Boreholes:
     (depths are in the unit of z); None: those of the model.
     Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
     of its boreholes), and columns names its data `surface`, `block` and `hole`; `collars`, `survey`,
-    `separator`, `decimal`, `downward_dip` and `logs` are for tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops and LAS, those given
-    beside it count in their place; or one of objects. tolerance: up to which gaps and overlaps of intervals
+    `separator`, `decimal`, `downward_dip` and `logs` are for tables. file: a file that holds all tables at
+    once, as AGS, DIGGS, Petrel well tops and LAS, those given beside it count in their place; or one of
+    objects. tolerance: up to which gaps and overlaps of intervals
     are closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
     tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
     are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
