@@ -63,6 +63,13 @@ def with_gaps(site):
     return Site({**site.places, "TP1": (x + 0.3, y, z)}, {**logs, "TP1": [(0.0, 0.2, logs[hole][0][2])]})
 
 
+def drilled_again(site):
+    """A hole beside another, at the place that the file says of both, whose layers lie otherwise."""
+    hole, place = next(iter(site.places.items()))
+    log = [(a + 0.7 * (a > 0), b + 0.7, code) for a, b, code in site.logs[hole]]
+    return Site({**site.places, f"{hole}R": place}, {**site.logs, f"{hole}R": log})
+
+
 # the validation leaves the file of its rules open
 @pytest.mark.filterwarnings("ignore::ResourceWarning")
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
@@ -70,9 +77,9 @@ def with_gaps(site):
     ("seed", "change", "units"),
     [
         *((8, first_holes(1), "m"), (9, first_holes(2), "ft"), (10, in_a_line, "m")),
-        *((11, twice, "m"), (12, with_gaps, "m"), (13, moved, "us-ft")),
+        *((11, twice, "m"), (12, with_gaps, "m"), (13, moved, "us-ft"), (9, drilled_again, "m")),
     ],
-    ids=["one hole", "two holes in feet", "a line", "repeated", "gaps", "far away in feet"],
+    ids=["one hole", "two holes in feet", "a line", "repeated", "gaps", "far away in feet", "drilled again"],
 )
 def test_any_site_becomes_valid_ifc_by_one_command(tmp_path, seed, change, units):
     """Closed strata, each borehole with its layers, small numbers inside, where the grid is known."""
