@@ -27,6 +27,7 @@ _POINT, _LINE, _POLYGON = 1, 2, 3
 _COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any kind; of curves, of surfaces
 _CURVED = {8: "CircularString", 9: "CompoundCurve", 10: "CurvePolygon"}
 _DEEPEST = 50
+_ADVICE = "convert a raster to GeoTIFF, other databases to GeoPackage"
 _STEP = 1000  # features
 _SYSTEMS = """SELECT g.table_name, s.organization, s.organization_coordsys_id, s.definition
     FROM gpkg_geometry_columns g JOIN gpkg_spatial_ref_sys s ON s.srs_id = g.srs_id ORDER BY g.rowid"""
@@ -101,9 +102,9 @@ def _read(
             base.execute("SELECT table_name, column_name FROM gpkg_geometry_columns ORDER BY rowid")
         )
     except sqlite3.OperationalError as error:  # there is no such table
-        raise InputRefused("it has no layers of features", file=file) from error
+        raise InputRefused("it has no layers of features", file=file, advice=_ADVICE) from error
     if not layers:
-        raise InputRefused("it has no layers of features", file=file)
+        raise InputRefused("it has no layers of features", file=file, advice=_ADVICE)
     if layer is None and len(layers) > 1:
         advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
         raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)
