@@ -64,7 +64,7 @@ def quoted(*rows):
     return "".join(",".join(f'"{entry}"' for entry in row) + "\r\n" for row in rows)
 
 
-_WORDS = {code: words for code, words, _, _ in ROCKS} | {"SAND": "Dense grey fine SAND"}
+_WORDS = {code: words for code, words, _, _ in ROCKS} | {"SAND": "Dense grey fine SAND", "": ""}
 
 
 def ags4(site: Site, grid: str = "OSGB") -> str:

@@ -70,6 +70,20 @@ def test_raster_is_read_at_the_centers_of_its_pixels(tmp_path, name):
     assert np.allclose(points, expected, atol=1e-3)
 
 
+def test_a_dem_of_usgs_is_known_by_its_header(tmp_path):
+    """It is a text whose first word may be anything."""
+    y, x = np.mgrid[:4, :5]
+    write_raster(tmp_path / "a.tif", "GTiff", "EPSG:26713", (100 + x + y).astype("f4"))
+    try:
+        importlib.import_module("rasterio.shutil").copy(
+            tmp_path / "a.tif", tmp_path / "elevations", driver="USGSDEM"
+        )
+    except rasterio.errors.RasterioError as error:
+        pytest.skip(f"this GDAL does not write it: {error}")
+    points, _ = read_point_file(PointFile(tmp_path / "elevations"))
+    assert sorted(set(points[:, 2].tolist())) == [100.0 + height for height in range(8)]
+
+
 @pytest.mark.parametrize(
     ("name", "driver"),
     [

@@ -106,6 +106,7 @@ def test_heights_by_an_attribute(write, tmp_path):
         ("a.geojson", features(({"a": "high"}, point([1, 2]))), {"height": "a"}, "not a number: 'high'"),
         ("a.geojson", features(({"a": True}, point([1, 2]))), {"height": "a"}, "not a number"),
         ("a.geojson", features(({"a": None}, point([1, 2]))), {"height": "a"}, "'a' has no heights"),
+        ("a.geojson", features(({"ELEV": 7, "b": 1}, point([1, 2]))), {}, "no height; .*it has ELEV, b$"),
         ("a.geojson", features(), {}, "no points in it"),
         ("a.geojson", features(({}, point([1, 2, 3]))), {"columns": ["x", "y", "z"]}, "'columns' has no"),
         ("a.geojson", features(({}, point([1, 2, 3]))), {"layer": "a"}, "not a GeoPackage"),

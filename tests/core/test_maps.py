@@ -309,10 +309,10 @@ def test_degrees_are_no_lengths(tmp_path, system):
     assert len(read_region(file)[0]) == 1
     base = sqlite3.connect(tmp_path / "a.gpkg")
     base.execute("CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT, srs_id INT)")
-    columns = "srs_id INT, organization_coordsys_id INT, definition TEXT"
+    columns = "srs_id INT, organization TEXT, organization_coordsys_id INT, definition TEXT"
     base.execute(f"CREATE TABLE gpkg_spatial_ref_sys ({columns})")
     base.execute("INSERT INTO gpkg_geometry_columns VALUES ('a', 'geom', 7)")
-    base.execute("INSERT INTO gpkg_spatial_ref_sys VALUES (7, 4326, 'GEOGCS[]')")
+    base.execute("INSERT INTO gpkg_spatial_ref_sys VALUES (7, 'EPSG', 4326, 'GEOGCS[]')")
     base.execute("CREATE TABLE a (fid INTEGER PRIMARY KEY, geom BLOB)")
     line = struct.pack("<BII4d", 1, 2, 2, 7.0, 48.0, 7.1, 48.1)
     base.execute("INSERT INTO a VALUES (NULL, ?)", (b"GP" + struct.pack("<BBi", 0, 1, 7) + line,))

@@ -28,6 +28,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     for table in _TABLES:
         parser.add_argument(f"--{table}", type=Path, metavar="F", help=f"the table of {table} of boreholes")
+    parser.add_argument("--block", metavar="NAME", help="the column of boreholes that names units")
     parser.add_argument("--map", type=Path, metavar="F", help="polygons of units: a geological map")
     parser.add_argument("--map-layer", metavar="NAME", help="the layer of the map")
     parser.add_argument(
@@ -39,6 +40,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--dips", type=Path, metavar="F", help="the table of dips")
     parser.add_argument("--region", type=Path, metavar="F", help="the outline (default: around the data)")
     parser.add_argument("--units", metavar="UNIT", default="m", help="of lengths in the model (default: m)")
+    parser.add_argument(
+        "--crs", metavar="CODE", help="the coordinate system, EPSG:25832 (default: as files name it)"
+    )
     parser.add_argument("--out", type=Path, metavar="FOLDER", required=True, help="the folder, a new one")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     options, rest = parser.parse_known_args(arguments)
@@ -65,13 +69,19 @@ def run(options: argparse.Namespace) -> None:
     map_keys = {key: value for key, value in map_keys.items() if value is not None}
     if map_keys and options.map is None:
         raise UsageError("--map-layer and --map-block go with --map")
+    boreholes = {"file": options.file} if options.file else tables
+    if options.block is not None:
+        if not boreholes:
+            raise UsageError("--block goes with boreholes")
+        boreholes["columns"] = {"block": options.block}
     project = propose_project(
-        boreholes=options.file or tables or None,
+        boreholes=boreholes or None,
         map=map_keys or None,
         ground=options.ground,
         region=options.region,
         dips=options.dips,
         units=options.units,
+        crs=options.crs,
         name=options.out.resolve().name,
     )
     path = project.save(options.out)
@@ -79,6 +89,8 @@ def run(options: argparse.Namespace) -> None:
         for warning in project.proposal.warnings:
             print(f"warning: {warning}")
         print(f"units, oldest first: {', '.join(project.proposal.order)}")
+        system = [*([project.crs] if project.crs else []), project.proposal.reasons["crs"]]
+        print(f"coordinate system: {', '.join(system)}")
         print(f"{options.out}: {len(list(options.out.iterdir()))} files; build it: {PROGRAM} {path}")
     if options.build is not None:
         run_build(options.build)

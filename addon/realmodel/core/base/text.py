@@ -216,7 +216,8 @@ def line_of_word(content: Content, number: int, begin: int = 0, stop: int | None
 def require_text(file: Path, raw: bytes) -> None:
     """Refuses binary content."""
     if b"\0" in raw[:4096]:
-        raise InputRefused("this is a binary file, not text", file=file)
+        advice = "convert a raster to GeoTIFF, shapes to GeoPackage, a table to CSV"
+        raise InputRefused("this is a binary file, not text", file=file, advice=advice)
 
 
 def read_text(file: Path) -> str:

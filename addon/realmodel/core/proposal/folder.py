@@ -95,6 +95,8 @@ def _project_lines(project: Project, proposal: Proposal, files: _Files) -> list[
         "format = 1",
         f"name = {toml_value(project.name)}",
         *([f"units = {toml_value(project.units)}"] if project.units != MODEL_UNIT else []),
+        *_comment(f"The coordinate system: {proposal.reasons['crs']}"),
+        *([f"crs = {toml_value(project.crs)}"] if project.crs is not None else []),
         "# A color for each unit, by the rock that its name says",
         f'library = "{_LIBRARY}"',
         "",

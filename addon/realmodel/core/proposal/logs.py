@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -56,12 +56,17 @@ class Log:
 
 @dataclass
 class HoleLogs:
-    """logs: by name of the hole. picks: of each surface that picks name (N, 3). spellings: what the tables
-    write of a unit, other than its name. warnings: sentences."""
+    """logs: by name of the hole. boreholes: what they were read from, with the choices that were made. picks:
+    of each surface that picks name (N, 3). system: the coordinate system, as of HoleTables. is_in_its_unit:
+    whether their places are in the unit of the file. warnings: sentences.
+    """
 
     logs: list[Log]
+    boreholes: Boreholes
     picks: dict[str, np.ndarray] = field(default_factory=dict)
     pick_orders: list[list[tuple[str, float]]] = field(default_factory=list)
+    system: str = ""
+    is_in_its_unit: bool = True
     warnings: list[str] = field(default_factory=list)
 
     @property
@@ -100,8 +105,13 @@ def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
         if not any(log.hole == hole for log in logs)
     ]
     if not logs and not picks.of_surfaces:
-        raise InputRefused("no unit is known in any hole", file=given.files[-1])
-    return HoleLogs(logs, picks.points, orders, [*picks.warnings, *warnings])
+        advice = 'name the column of units: columns = { block = "..." }, or --block'
+        raise InputRefused("no unit is known in any hole", file=given.files[-1], advice=advice)
+    if tables.block_column:
+        given = replace(given, columns={**given.columns, "block": tables.block_column})
+    scale = tables.scale(units)[0] * tables.factors.get("collars", {}).get("x", 1.0)
+    texts = [*picks.warnings, *warnings]
+    return HoleLogs(logs, given, picks.points, orders, tables.system, scale == 1.0, texts)
 
 
 def _short_codes(intervals: Iterable[Row]) -> tuple[set[str], list[str]]:

@@ -22,7 +22,10 @@ from ..project.project_checks import check_project
 from ..project.structure_entries import Body
 from ..readers import read_mesh
 from ..readers.formats import MESH, RASTER, format_of
+from ..readers.map_input import system_of_map
 from ..readers.point_input import read_point_file, read_raster_heights, reading_keys
+from ..readers.rasters.geotiff import geotiff_system
+from ..settings.crs import projected_code
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
 from ..settings.dips import DipFile, dip_file_of
 from ..settings.method_options import OptionRefused
@@ -78,13 +81,14 @@ def propose_project(
     dips: DipFile | str | Path | None = None,
     units: str = MODEL_UNIT,
     name: str | None = None,
+    crs: str | None = None,
 ) -> ProposedProject:
     """A project that builds at once, from data alone.
 
     boreholes: a file that holds all tables, or Boreholes or their keys: {"collars": ..., "intervals": ...}.
     map: a file of polygons, or a MapFile or its keys; without `block`, the attribute of units is found.
     ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None: around the data.
-    dips: a table. units: of the model. name: of the project.
+    dips: a table. units: of the model. name: of the project. crs: as of Project; None: as files say.
 
     The order of units follows from which lies over which; see `ProposedProject.proposal`. Raises InputRefused
     naming the file, UsageError.
@@ -101,6 +105,7 @@ def propose_project(
         raise UsageError(f"a map alone has no heights: {advice}")
     if data.boreholes is not None:
         data.holes = read_logs(data.boreholes, units)
+        data.boreholes = data.holes.boreholes
     if data.map is not None:
         heights = None if data.ground is None else _heights_of(data.ground, units)
         data.mapped = read_map_units(data.map, data.dips, heights, units)
@@ -117,6 +122,7 @@ def propose_project(
     ]
     proposal = Proposal(list(order.order), alternatives, out.conflicts, out.lenses, out.repeats, rules)
     project = _Maker(data, out, proposal, units).project(name, region)
+    project.crs, proposal.reasons["crs"] = (crs, "as given") if crs else _system(data, units)
     check_project(project)
     project.rocks, proposal.reasons["method"] = with_methods(project, len(data.logs))
     _warn(proposal, data)
@@ -147,6 +153,29 @@ def _ground_of(given: Any) -> PointFile | MeshFile | None:
         return given
     file_format = format_of(given, RASTER, MESH)
     return MeshFile(given) if file_format is not None and file_format.holds == MESH else PointFile(given)
+
+
+def _system(data: _Data, units: str) -> tuple[str | None, str]:
+    """The coordinate system that the files name, and why; None where they name none, several, or one in
+    another unit than the model's."""
+    said: dict[str, Path] = {}
+    if data.holes is not None and data.holes.system:
+        said[data.holes.system] = data.holes.boreholes.files[0]
+    if isinstance(data.ground, PointFile) and (number := geotiff_system(data.ground.file)) is not None:
+        said.setdefault(f"EPSG:{number}", Path(data.ground.file))
+    if data.map is not None and (system := system_of_map(data.map.polygons)):
+        said.setdefault(projected_code(system) or system, data.map.file)
+    how = "name it by --crs EPSG:CODE, or the key 'crs'"
+    if not said:
+        return None, f"not known: no file names it; {how}"
+    (system, file), names = next(iter(said.items())), " and ".join(f"'{name}'" for name in said)
+    code = projected_code(system)
+    if len(said) > 1 or code is None:
+        return None, f"not known: files say {names}; {how}"
+    is_in_its_unit = units == MODEL_UNIT if data.holes is None else data.holes.is_in_its_unit
+    if not is_in_its_unit:
+        return None, f"none: {file.name} says {system}, whose unit is not the model's"
+    return code, f"as {file.name} says"
 
 
 def _heights_of(ground: PointFile | MeshFile, units: str) -> Callable[[np.ndarray], np.ndarray]:

@@ -209,7 +209,10 @@ def _heights(
 
 
 def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Kriging whose variogram is straight over the places; the drift is a plane where places show one."""
+    """Kriging whose variogram is straight over the places; the drift is a plane where places show one. Holes
+    at one place count as one of their mean."""
+    places, hole, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+    values = np.bincount(hole.ravel(), values) / count
     extent = max(float(np.ptp(places, axis=0).max()), 1e-12)
     has_plane = len(places) > 4 and principal_axes(places / extent)[0][-1] > 0.1
     method = "universal_kriging" if has_plane else "kriging"

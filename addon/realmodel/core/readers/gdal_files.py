@@ -33,6 +33,9 @@ _RASTERS = (
     *(b"CDF\x01", b"CDF\x02", b"CDF\x05", b"EHFA_HEADER_TAG", b"GRID1.", b"UHL1", b"\0\0\0\x0cjP  "),
     *(b"HF2\0", b"binterr1", b"<VRTDataset", b"DatasetHeader Begin"),
 )
+# USGS, *Standards for Digital Elevation Models* (1993): after the name and the level the pattern, regular or
+# random, and the system in plan.
+_DEM = re.compile(rb".{144} {5}[1-4] {5}[14](?: {5}[0-3]| -9999)", re.DOTALL)
 _GXF = re.compile(rb"(?m)^#(?:POINTS|ROWS)\s*$")
 _SHAPES = (b"fgb\x03", b"!table", b"Version 300", b"Version 450", b"EXP  0 ")
 _ZIP, _ZIPPED = b"PK\x03\x04", (b".gdb/", b".kml")  # a file geodatabase, KMZ
@@ -44,7 +47,9 @@ _ROOTS = (
 
 def begins_as_gdal_raster(head: bytes, _size: int = 0) -> bool:
     """Whether a file begins as a raster that is left to GDAL."""
-    return head.lstrip().startswith(_RASTERS) or len(_GXF.findall(head.replace(b"\r", b"\n"))) == 2
+    if head.lstrip().startswith(_RASTERS) or _DEM.match(head):
+        return True
+    return len(_GXF.findall(head.replace(b"\r", b"\n"))) == 2
 
 
 def begins_as_gdal_shapes(head: bytes, _size: int = 0) -> bool:

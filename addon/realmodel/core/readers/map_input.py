@@ -45,23 +45,24 @@ def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
         for corners in places
     ):
         return
-    file = Path(layer.file)
-    if shapes.system:
-        system = shapes.system
-    elif file.suffix.lower() == ".shp":
-        named = (file.with_suffix(ending) for ending in (".prj", ".PRJ"))
-        system = next((path.read_text("latin-1") for path in named if path.is_file()), "")
-    elif file.suffix.lower() == ".gpkg":
-        system = system_of(file, layer.layer)
-    else:
-        match = _CRS.search(read_bytes(file)[:_FIRST])
-        system = "" if match is None else match[1].decode("latin-1")
-    if is_in_degrees(system):
+    if is_in_degrees(shapes.system or system_of_map(layer)):
         raise InputRefused(
             "its coordinates are degrees of longitude and latitude, as it says itself",
-            file=file,
+            file=Path(layer.file),
             advice="project it (to UTM, say) in a GIS; if they are lengths, take its coordinate system out",
         )
+
+
+def system_of_map(layer: MapLayer) -> str:
+    """What a shapefile, a GeoPackage or GeoJSON says of its coordinate system; "" where nothing."""
+    file = Path(layer.file)
+    if file.suffix.lower() == ".shp":
+        named = (file.with_suffix(ending) for ending in (".prj", ".PRJ"))
+        return next((path.read_text("latin-1") for path in named if path.is_file()), "")
+    if file.suffix.lower() == ".gpkg":
+        return system_of(file, layer.layer)
+    match = _CRS.search(read_bytes(file)[:_FIRST])
+    return "" if match is None else match[1].decode("latin-1")
 
 
 def _read(layer: MapLayer, step: Step, heights: Heights | None) -> Shapes:

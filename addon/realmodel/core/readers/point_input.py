@@ -46,11 +46,15 @@ def read_map_points(
     with_height = positions[np.isfinite(positions[:, 2]) & ~np.isin(positions[:, 2], missing)]
     points = gather([with_height], np.empty((0, 3)))
     if not len(points):
+        with_attributes = Heights(with_attributes=True)
+        rows = read_shapes(MapLayer(file, given.layer, given.where), heights=with_attributes).attributes or {}
+        names = list(dict.fromkeys(str(name) for row in rows.values() for name in row))
         what = "its positions have no height"
         if given.height is not None:
             what = f"attribute '{given.height}' has no heights"
-        advice = 'name the attribute with the height: height = "ELEVATION"'
-        raise HeightsMissing(what, file=file, advice=advice if given.height is None else None)
+        advice = 'name the attribute with the height: height = "..."'
+        advice += f"; it has {names_shown(names)}" if names else ""
+        raise HeightsMissing(what, file=file, advice=advice)
     left_out = len(positions) - len(points)
     warnings = [f"{file}: left out: {counted(left_out, 'point')} without a value"] if left_out else []
     return points, warnings

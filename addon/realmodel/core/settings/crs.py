@@ -9,6 +9,10 @@ import re
 from .method_options import OptionRefused
 
 _CODE = re.compile(r"([A-Za-z][A-Za-z0-9_.-]*):([A-Za-z0-9_.-]+)")
+# As a number alone, "EPSG:25832", a URN or an address of OGC's, or at the end of well-known text.
+_NAMED = re.compile(
+    r'(?:EPSG[:/](?:[\d.]*[:/])?|(?:AUTHORITY|ID)\["EPSG",\s*"?|^)(\d{4,6})"?[\]\s]*$', re.IGNORECASE
+)
 _GEOGRAPHIC = (4258, 4267, 4269, 4326, 4490, 4979)  # those in degrees that are taken for projected ones most
 
 
@@ -32,6 +36,15 @@ def epsg_code(crs: str | None) -> int | None:
         return None
     authority, _, code = crs.partition(":")
     return int(code) if authority.upper() == "EPSG" and re.fullmatch(r"[1-9]\d{3,5}", code) else None
+
+
+def projected_code(system: str) -> str | None:
+    """What a project writes for a system that a file names by a code or as well-known text: "EPSG:25832".
+    None where that has no number of EPSG's, is in degrees, or has heights of its own."""
+    code = _NAMED.search(system.strip())
+    if code is None or is_in_degrees(system) or system.lstrip().upper().startswith("COMP"):
+        return None
+    return f"EPSG:{code[1]}"
 
 
 def is_in_degrees(system: str) -> bool:

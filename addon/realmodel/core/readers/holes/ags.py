@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...base.errors import InputRefused
@@ -27,6 +27,17 @@ _INSTEAD = {
     "HOLE_GL": "HOLE_LOCZ",
     "GEOL_GEOL": "GEOL_LEG",
     "HORN_ORNT": "HDPH_ORNT",
+}
+
+# Grids by the abbreviations of AGS and of common use, as EPSG numbers them.
+_GRIDS = {
+    "OSGB": 27700,
+    "OSGB36": 27700,
+    "BNG": 27700,
+    "OSI": 29902,
+    "ITM": 2157,
+    "HK80": 2326,
+    "HK1980": 2326,
 }
 
 
@@ -58,7 +69,26 @@ def read_ags(file: Path) -> dict[str, RawTable]:
         del sheets["survey"]
     if "collars" not in sheets:
         raise InputRefused("it has no rows of LOCA or HOLE", file=file)
+    sheets["collars"] = replace(sheets["collars"], system=_system(groups))
     return sheets
+
+
+def _system(groups: dict[str, _Group]) -> str:
+    """The grid of the places; "" where the file names none, or the places are those of a grid of the site."""
+    if not (_values(groups, "LOCA", "LOCA_NATE") or _values(groups, "HOLE", "HOLE_NATE")):
+        return ""
+    grids = _values(groups, "LOCA", "LOCA_GREF") or _values(groups, "PROJ", "PROJ_GRID")
+    codes = {grid: _GRIDS.get(grid.upper().replace(" ", "")) for grid in grids}
+    return ", ".join(sorted({f"EPSG:{code}" if code else grid for grid, code in codes.items()}))
+
+
+def _values(groups: dict[str, _Group], name: str, column: str) -> set[str]:
+    """What a column of a group says, where it says something."""
+    group = groups.get(name)
+    if group is None or column not in group.names:
+        return set()
+    at = group.names.index(column)
+    return {_entry(row, at) for _, row in group.rows} - {""}
 
 
 def _groups(file: Path) -> dict[str, _Group]:
@@ -116,14 +146,16 @@ def _sheet(group: _Group) -> RawTable:
     return RawTable(names, group.rows, group.line, group.units, _choice(names, group.rows))
 
 
-def _choice(names: list[str], rows: list[tuple[int, list[str]]]) -> str:
-    """What is said where two columns name units otherwise."""
+def _choice(names: list[str], rows: list[tuple[int, list[str]]]) -> tuple[str, str] | None:
+    """The column of units and what is said of it, where two name them otherwise."""
     if not {"GEOL_GEOL", "GEOL_LEG"} <= set(names):
-        return ""
+        return None
     pairs = {(_entry(row, names.index("GEOL_GEOL")), _entry(row, names.index("GEOL_LEG"))) for _, row in rows}
     if all(legend in ("", code) for code, legend in pairs):
-        return ""
-    return 'blocks are named by GEOL_GEOL; GEOL_LEG names them otherwise: columns = { block = "GEOL_LEG" }'
+        return None
+    empty = sum(not code for code, _ in pairs)
+    text = "GEOL_LEG names them otherwise" + (", also where GEOL_GEOL is empty" if empty else "")
+    return "GEOL_GEOL", f'blocks are named by GEOL_GEOL; {text}: columns = {{ block = "GEOL_LEG" }}'
 
 
 def _entry(row: list[str], at: int) -> str:

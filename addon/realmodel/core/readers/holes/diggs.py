@@ -30,7 +30,7 @@ def read_diggs(file: Path) -> dict[str, RawTable]:
     root = parse_xml(file, read_bytes(file), no_step)
     names: dict[str, str] = {}
     collars: list[tuple[int, list[str]]] = []
-    unit = unit_of_plan = unit_of_height = ""
+    unit = unit_of_plan = unit_of_height = system = ""
     for kind in _HOLES:
         for hole in _all(root, kind):
             name = _text(hole, "name") or _attribute(hole, "id")
@@ -60,7 +60,10 @@ def read_diggs(file: Path) -> dict[str, RawTable]:
             raise InputRefused(f"it has no {what}", file=file)
     return {
         "collars": RawTable(
-            ("hole", "x", "y", "z", "end"), collars, 1, ("", unit_of_plan, unit_of_plan, unit_of_height, unit)
+            ("hole", "x", "y", "z", "end"),
+            collars,
+            units=("", unit_of_plan, unit_of_plan, unit_of_height, unit),
+            system=system,
         ),
         "intervals": RawTable(("hole", "from", "to", "block"), intervals, 1, ("", unit, unit, "")),
     }

@@ -27,9 +27,10 @@ _POINT, _LINE, _POLYGON = 1, 2, 3
 _COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any kind; of curves, of surfaces
 _CURVED = {8: "CircularString", 9: "CompoundCurve", 10: "CurvePolygon"}
 _DEEPEST = 50
+_ADVICE = "convert a raster to GeoTIFF, other databases to GeoPackage"
 _STEP = 1000  # features
-_SYSTEMS = """SELECT g.table_name, s.organization_coordsys_id, s.definition FROM gpkg_geometry_columns g
-    JOIN gpkg_spatial_ref_sys s ON s.srs_id = g.srs_id ORDER BY g.rowid"""
+_SYSTEMS = """SELECT g.table_name, s.organization, s.organization_coordsys_id, s.definition
+    FROM gpkg_geometry_columns g JOIN gpkg_spatial_ref_sys s ON s.srs_id = g.srs_id ORDER BY g.rowid"""
 
 
 def is_geopackage(head: bytes, _size: int = 0) -> bool:
@@ -60,11 +61,13 @@ def geopackage_layers(file: Path) -> list[str]:
 
 
 def system_of(file: Path, layer: str | None) -> str:
-    """What a GeoPackage says of the coordinate system of a layer, or of its only one; "" where nothing."""
+    """What a GeoPackage says of the coordinate system of a layer, or of its only one: a code of EPSG's, or
+    well-known text; "" where nothing."""
     with suppress(*UNREADABLE), closing(connect(file)) as base:
-        for name, code, text in base.execute(_SYSTEMS):
+        for name, authority, code, text in base.execute(_SYSTEMS):
             if layer is None or name.lower() == layer.lower():
-                return f"{code}" if is_in_degrees(f"{code}") else text or ""
+                is_coded = f"{authority}".upper() == "EPSG" and not is_in_degrees(text or "")
+                return f"EPSG:{code}" if is_coded else text or ""
     return ""
 
 
@@ -99,9 +102,9 @@ def _read(
             base.execute("SELECT table_name, column_name FROM gpkg_geometry_columns ORDER BY rowid")
         )
     except sqlite3.OperationalError as error:  # there is no such table
-        raise InputRefused("it has no layers of features", file=file) from error
+        raise InputRefused("it has no layers of features", file=file, advice=_ADVICE) from error
     if not layers:
-        raise InputRefused("it has no layers of features", file=file)
+        raise InputRefused("it has no layers of features", file=file, advice=_ADVICE)
     if layer is None and len(layers) > 1:
         advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
         raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)

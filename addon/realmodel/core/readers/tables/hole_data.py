@@ -43,9 +43,10 @@ _NEEDED = {
 class HoleTables:
     """boreholes: what they were read from. collars, survey, picks, intervals: their rows, None where there is
     no such table. factors: to the units in which they are read, by kind of table and column, for those that
-    say others. problems: what was wrong with rows, as far as they are repaired. warnings: sentences.
-    lines: of holes of objects, in the units of the tables: the places (N, 3) of depths (N,); picks of objects
-    are at their own places. None of tables."""
+    say others. block_column: the one that was chosen among several, "" where there is no choice. system: the
+    coordinate system that the file names, as of RawTable. problems: what was wrong with rows, as far as they
+    are repaired. warnings: sentences. lines: of holes of objects, in the units of the tables: the places
+    (N, 3) of depths (N,); picks of objects are at their own places. None of tables."""
 
     boreholes: Boreholes
     collars: list[Row] | None = None
@@ -53,6 +54,8 @@ class HoleTables:
     picks: list[Row] | None = None
     intervals: list[Row] | None = None
     factors: dict[str, dict[str, float]] = field(default_factory=dict)
+    block_column: str = ""
+    system: str = ""
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     lines: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
@@ -88,8 +91,11 @@ def read_hole_rows(
         slow = step if kind in ("picks", "intervals") else no_step
         if kind in sheets:
             table_rows = sheet_rows(boreholes, Path(file), sheets[kind], known, required[kind])
-            if sheets[kind].choice and "block" not in boreholes.columns:
-                tables.warnings.append(f"{file}: {sheets[kind].choice}")
+            choice = sheets[kind].choice
+            if choice is not None and "block" not in boreholes.columns:
+                tables.block_column, text = choice
+                tables.warnings.append(f"{file}: {text}")
+            tables.system = tables.system or sheets[kind].system
         else:
             table_rows = list(rows(boreholes, Path(file), known, required[kind], slow))
         setattr(tables, kind, table_rows)

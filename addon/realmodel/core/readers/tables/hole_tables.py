@@ -184,14 +184,16 @@ class TableHeader:
 @dataclass(frozen=True)
 class RawTable:
     """A table in a file that holds several: the names of its columns, the lines and entries of its rows, what
-    units its columns have, as they are written, "" for none, what was chosen for the user to know, and what a
-    row is called."""
+    units its columns have, as they are written, "" for none. choice: the column of blocks that was chosen
+    among several, with a sentence about it. system: the coordinate system that the file names, by EPSG's code
+    where that is known, "" where it names none. row_name: what a row is called before its number."""
 
     names: Sequence[str]
     rows: Sequence[tuple[int, list[str]]]
     line: int = 1
     units: Sequence[str] = ()
-    choice: str = ""
+    choice: tuple[str, str] | None = None
+    system: str = ""
     row_name: str = LINE
 
 

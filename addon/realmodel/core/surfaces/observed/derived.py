@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...heights.bounded import consistent
-from ...heights.mis_ties import without_mis_ties
+from ...heights.mis_ties import contradictions, without_mis_ties
 from ...project.project import Rock, Surface
 from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, Origin, along_bounds
 from .columns import Succession, in_wrong_order
@@ -377,11 +377,15 @@ _LISTED = 4  # others that a text names; all are in `contradicts`
 def without_contradictions(
     rock: Rock, data: Sequence[SurfaceData]
 ) -> tuple[list[SurfaceData], list[LeftOut]]:
-    """The data of the surfaces of a rock mass without faults, without bounds that contradict; and these
-    bounds. Those of a surface that goes through places on its bounds, as it has no points, stay as they
+    """The data of the surfaces of a rock mass without faults, without contacts and bounds that contradict;
+    and these. The bounds of a surface that goes through places on them, as it has no points, stay as they
     are."""
     consistent_data, left_out = list(data), list[LeftOut]()
-    for number, (surface, surface_data) in enumerate(zip(rock.surfaces, data, strict=True)):
+    for number, surface in enumerate(rock.surfaces):
+        if not rock.is_level_set(surface):
+            consistent_data[number], doubles = _one_height_each(surface, data[number])
+            left_out += doubles
+        surface_data = consistent_data[number]
         bounds = surface_data.bounds
         if (
             not (len(bounds) and len(surface_data.points))
@@ -398,6 +402,25 @@ def without_contradictions(
         is_kept[wrong] = False
         consistent_data[number] = replace(surface_data, bounds=bounds.some(is_kept))
     return consistent_data, left_out
+
+
+def _one_height_each(surface: Surface, data: SurfaceData) -> tuple[SurfaceData, list[LeftOut]]:
+    """The data without contacts that are more than a mis-tie off the first point at their place in plan, as
+    those of two holes at one place may be; and these."""
+    wrong = contradictions(data.points)
+    _, first, place = np.unique(data.points[:, :2] + 0.0, axis=0, return_index=True, return_inverse=True)
+    wrong[: data.contacts_from] = False
+    wrong[first] = False
+    left_out = []
+    for row in np.flatnonzero(wrong).tolist():
+        texts = [
+            f"{data.source_text(number)}: '{surface.name}' lies at {data.points[number, 2]:.9g}"
+            for number in (row, int(first[place.ravel()[row]]))
+        ]
+        origin, at = data.source(row), tuple(data.points[row].tolist())
+        text = f"{texts[0]}, which contradicts {texts[1]}"
+        left_out.append(LeftOut("contradiction", text, "", origin.hole, origin.depth, at, tuple(texts[1:])))
+    return data.some(~wrong) if left_out else data, left_out
 
 
 def _listed(surface: Surface, data: SurfaceData, bounds: Bounds, wrong: np.ndarray, row: int) -> LeftOut:
