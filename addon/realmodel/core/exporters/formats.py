@@ -286,7 +286,7 @@ FORMATS = (
         ".epc",
         "RESQML 2.0.1",
         ("model and grid",),
-        "Closed blocks, surfaces and boreholes, with a corner-point grid where its size of cells is given",
+        "Closed blocks, surfaces and boreholes, with a corner-point grid where the size of cells is given",
         write_resqml,
         CORNER_POINT,
         has_files=True,

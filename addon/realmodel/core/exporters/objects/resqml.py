@@ -32,7 +32,7 @@ _UNITS = {"us-ft": "ft[US]"}  # the others have the names that they have here
 _LONG_AGO = "1970-01-01T00:00:00Z"  # of all that the library dates: the same model has the same bytes
 _DATES, _PERSONS = ("Creation", "created"), ("Originator", "creator")
 _UNKNOWN = -1  # in lists of names
-_VERTICAL, _LINEAR = 0, 1  # kinds of trajectories
+_LINEAR = 1  # the kind of a trajectory
 
 
 def write_resqml(
@@ -137,7 +137,7 @@ class _Objects:
             self._named(made, "surface", "faces", shell.surface, self._contents.boundary_names)
             self._named(made, "neighbor", "faces", shell.neighbor, self._contents.block_names)
         for hole in self._contents.holes:
-            self._hole(hole)
+            (self._hole if len(hole.places) > 1 else self._pick)(hole)
 
     def store(self) -> None:
         """Writes the files, with dates and names that are always the same."""
@@ -223,38 +223,52 @@ class _Objects:
         made.create_xml()
         return made
 
+    def _pick(self, hole: Hole) -> None:
+        """A pick alone, of a hole whose collar is not known: a trajectory takes two places."""
+        made = self._surface.PointSet(
+            self._file,
+            points_array=hole.places - self._origin,
+            crs_uuid=self._crs.uuid,
+            title=f"pick of {hole.name}",
+            extra_metadata={"hole": hole.name, "surface": hole.surfaces[0]},
+        )
+        if horizon := self._horizons.get(hole.surfaces[0]):
+            made.set_represented_interpretation_root(horizon.root)
+        made.write_hdf5()
+        made.create_xml()
+
     def _hole(self, hole: Hole) -> None:
         well, depths, places = self._well, hole.depths, hole.places - self._origin
         datum = well.MdDatum(
-            self._file, crs_uuid=self._crs.uuid, location=tuple(places[0]), md_reference="ground level"
+            self._file,
+            crs_uuid=self._crs.uuid,
+            location=tuple(places[0]),
+            md_reference="arbitrary point" if hole.surfaces[0] else "ground level",
         )
         datum.create_xml(title=f"datum of {hole.name}")
-        is_line = len(depths) > 1  # else it is a pick alone, of a hole whose collar is not known
         path = well.Trajectory(
             self._file,
             crs_uuid=self._crs.uuid,
             md_datum=datum,
             length_uom=self._unit,
             well_name=hole.name,
-            mds=depths if is_line else np.zeros(2),
-            control_points=places if is_line else places[[0, 0]],
+            mds=depths,
+            control_points=places,
         )
         path.create_feature_and_interpretation()
-        path.line_kind_index = _LINEAR if is_line else _VERTICAL
-        if is_line:
-            path.write_hdf5()
+        path.line_kind_index = _LINEAR
+        path.write_hdf5()
         path.create_xml()
-        if is_line:
-            frame = well.WellboreFrame(
-                self._file,
-                trajectory=path,
-                mds=depths,
-                represented_interp=path.wellbore_interpretation,
-                title=f"intervals of {hole.name}",
-            )
-            frame.write_hdf5()
-            frame.create_xml()
-            self._named(frame, "block", "intervals", hole.blocks, self._contents.block_names)
+        frame = well.WellboreFrame(
+            self._file,
+            trajectory=path,
+            mds=depths,
+            represented_interp=path.wellbore_interpretation,
+            title=f"intervals of {hole.name}",
+        )
+        frame.write_hdf5()
+        frame.create_xml()
+        self._named(frame, "block", "intervals", hole.blocks, self._contents.block_names)
         if any(hole.surfaces):
             self._markers(hole, path)
 
@@ -344,7 +358,7 @@ def _coordinate_lines(grid: CornerPointGrid) -> tuple[np.ndarray, ...]:
     one after another, and where these end (M,).
     """
     nx, ny, nz = grid.shape
-    corners = -grid.zcorn.reshape(nz, 2, ny, 2, nx, 2)
+    corners = 0.0 - grid.zcorn.reshape(nz, 2, ny, 2, nx, 2)
     corners = np.concatenate([corners[:, 0], corners[-1:, 1]])
     around = np.full((nz + 1, ny + 1, nx + 1, 4), np.nan)  # of the columns around each pillar
     column = np.full((ny + 1, nx + 1, 4), -1)
