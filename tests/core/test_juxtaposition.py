@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, UsageError, build
 from realmodel.core.drawing.drawing import FilledRings
-from realmodel.core.results.sections.juxtaposition_drawing import draw_juxtaposition, hatched
-from realmodel.core.results.sections.strike_line import StrikeLine
+from realmodel.core.results.faults.juxtaposition_drawing import draw_juxtaposition, hatched
+from realmodel.core.results.faults.strike_line import StrikeLine
 from sample_scripts import SAMPLES
 from structure_cases import SQUARE, plane_fault
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
@@ -183,5 +183,5 @@ def test_what_is_asked_for_wrongly_is_refused(out):  # noqa: F811 - the fixture
         "--juxtaposition: no fault is called 'east'; the project has main fault, branch, western fault"
     )
     assert "expected --juxtaposition FAULT=FILE" in refused(run(SAMPLE, "--juxtaposition", "east"), 2)
-    assert "not written as '.pdf'" in refused(run(SAMPLE, "--juxtaposition", "branch=a.pdf"), 2)
+    assert "not written as '.jpg'" in refused(run(SAMPLE, "--juxtaposition", "branch=a.jpg"), 2)
     assert not names(out)

@@ -22,10 +22,10 @@ from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
+from ..results.faults.juxtaposition import JuxtapositionData
+from ..results.faults.juxtaposition_drawing import draw_juxtaposition
 from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, draw_stereonet
 from ..results.samples import Probabilities, SectionSamples
-from ..results.sections.juxtaposition import JuxtapositionData
-from ..results.sections.juxtaposition_drawing import draw_juxtaposition
 from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh

@@ -21,7 +21,7 @@ from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
 from ..results.displacements import displacements
-from ..results.sections.juxtaposition import fault_areas
+from ..results.faults.juxtaposition import fault_areas
 from ..results.tables import block_entry
 from ..results.volumes import Erosion, volume_deviations
 from ..simulation import CornerPointGrid, cleaned_entry, corner_point_entry, mesh_entry

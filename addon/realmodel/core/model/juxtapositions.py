@@ -13,13 +13,13 @@ from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..exporters import JUXTAPOSITION
 from ..results.displacements import displacements
-from ..results.sections.juxtaposition import (
+from ..results.faults.juxtaposition import (
     JuxtapositionData,
     cutoff_lines,
     dip_direction,
     fault_faces,
 )
-from ..results.sections.strike_line import StrikeLine
+from ..results.faults.strike_line import StrikeLine
 from .cutting import section_arrays
 
 
@@ -27,8 +27,9 @@ class Juxtaposition(JuxtapositionData):
     """What lies on both sides of a fault."""
 
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
-        """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .pdf, .dxf or .png. It
-        appears whole or not at all. exaggeration: of elevations. Raises UsageError, OutputFailed."""
+        """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .pdf, .dxf
+        or .png. It appears whole or not at all. exaggeration: of elevations. Raises UsageError,
+        OutputFailed."""
         JUXTAPOSITION.save(self, path, exaggeration=exaggeration)
 
 

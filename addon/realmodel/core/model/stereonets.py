@@ -14,8 +14,8 @@ class Stereonet(StereonetData):
     """Dips on the lower hemisphere."""
 
     def save(self, path: str | Path, net: str = EQUAL_AREA) -> None:
-        """Draws the stereonet to a .svg, .pdf, .dxf or .png, which appears whole or not at all. net: "equal_area"
-        (Schmidt) or "equal_angle" (Wulff). Raises UsageError, OutputFailed."""
+        """Draws the stereonet to a .svg, .pdf, .dxf or .png, which appears whole or not at all. net:
+        "equal_area" (Schmidt) or "equal_angle" (Wulff). Raises UsageError, OutputFailed."""
         STEREONET.save(self, path, net=net)
 
 

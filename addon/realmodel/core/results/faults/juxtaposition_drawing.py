@@ -8,8 +8,8 @@ import numpy as np
 from ...base.errors import UsageError
 from ...drawing.charts import Axes, legend, legend_size
 from ...drawing.drawing import GRAY, Color, Drawing, text_width
+from ..sections.section_drawing import MOST_EXAGGERATION, outlines, page_scale
 from .juxtaposition import FOOTWALL, HANGING_WALL, SIDES, JuxtapositionData
-from .section_drawing import MOST_EXAGGERATION, outlines, page_scale
 
 _SIZE = 8.0
 _LEFT, _BELOW, _GAP, _ABOVE = 62.0, 44.0, 16.0, 62.0

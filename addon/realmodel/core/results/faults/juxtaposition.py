@@ -13,7 +13,7 @@ from ...base.work import Work, run
 from ...cells.model_data import ModelData
 from ...surfaces.rock_structure import FaultShape, fault_sides
 from ..displacements import Displacement
-from .section_data import SectionData
+from ..sections.section_data import SectionData
 from .strike_line import StrikeLine
 
 FOOTWALL, HANGING_WALL = 0, 1  # columns of `blocks` and `cells`
