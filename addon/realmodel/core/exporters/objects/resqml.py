@@ -372,9 +372,9 @@ def _coordinate_lines(grid: CornerPointGrid) -> tuple[np.ndarray, ...]:
     line[column < 0] = 4
     first = line.min(axis=2, keepdims=True)
     is_further = (column >= 0) & (line == np.arange(4)) & (line != first)
-    j, i, corner = np.nonzero(is_further)
+    j, i, at = np.nonzero(is_further)
     heights = np.take_along_axis(around, first[None], axis=3).reshape(nz + 1, -1)
-    heights = np.concatenate([heights, around[:, j, i, corner]], axis=1)
+    heights = np.concatenate([heights, around[:, j, i, at]], axis=1)
     number = np.zeros(line.shape, np.int64)
     number[is_further] = np.arange(len(j))
     is_user = (column >= 0) & (line != first)
