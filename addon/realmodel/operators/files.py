@@ -143,8 +143,8 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(MODEL.formats())
     cell_size: FloatVectorProperty(
         name="Cell Size",
-        description="Of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF and geoh5), in model "
-        "units; 0: automatic, and no cells in OMF and geoh5",
+        description="Of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF, geoh5 and RESQML), in "
+        "model units; 0: automatic, and no cells in OMF, geoh5 and RESQML",
         size=3,
         min=0.0,
         default=(0.0, 0.0, 0.0),
@@ -153,14 +153,15 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
 
     grid_layers: IntProperty(
         name="Grid Layers",
-        description="Layers of each block in corner-point grids (GRDECL)",
+        description="Layers of each block in corner-point grids (GRDECL, RESQML)",
         default=1,
         min=1,
     )
 
     grid_azimuth: FloatProperty(
         name="Grid Azimuth",
-        description="Direction of the columns of corner-point grids (GRDECL), degrees clockwise from north",
+        description="Direction of the columns of corner-point grids (GRDECL, RESQML), degrees clockwise "
+        "from north",
         default=0.0,
     )
 

@@ -74,13 +74,13 @@ class Model(ModelData):
         whole or not at all.
 
         cell_size: of regular grids (.csv, .vti, .tif, .asc) and maps of values (.gpkg), one number, two (in
-        plan, in height) or three; None: a hundredth of the longest side; in .omf and .geoh5 there are cells
-        only where it is given.
-        contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen levels. tolerance: of formats
-        with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as cleaned_cells does; None: the
-        exact cells. grid_layers, grid_azimuth: of corner-point grids (.grdecl), the layers of each block and
-        the direction of their columns, as of corner_point_grid. Raises UsageError for an
-        ending that is not known, or whose library is missing, OutputFailed where it cannot be written.
+        plan, in height) or three; None: a hundredth of the longest side; in .omf, .geoh5 and .epc there are
+        cells only where it is given. contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen
+        levels. tolerance: of formats with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as
+        cleaned_cells does; None: the exact cells. grid_layers, grid_azimuth: of corner-point grids (.grdecl,
+        .epc), the layers of each block and the direction of their columns, as of corner_point_grid. Raises
+        UsageError for an ending that is not known, or whose library is missing, OutputFailed where it cannot
+        be written.
         """
         check_tolerance(path, tolerance)
         MODEL.save(

@@ -462,8 +462,8 @@ class Project(Compared):
         label="CRS",
         tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
         check=checked_crs,
-        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 "
-        "and OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
+        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5, "
+        "OMF and RESQML files name it, GeoTIFF and GeoPackage the codes of EPSG",
     )
 
     def input_files(self) -> list[Path]:
