@@ -248,10 +248,13 @@ class _Columns:
         column, z, triangle = column[is_new], z[is_new], triangle[is_new]
         self.column, self.below = column, contacts.below[triangle]
         corners, pillar = self._on_pillars(frame, contacts, column, z, triangle)
-        rank = 2 * contacts.is_fault[triangle] + (pillar < 0).any(axis=1)
-        is_bent = _crossing(column, corners)
-        corners = _with_mean(corners, z, pillar, ~is_bent)
-        self.corners = _separate(column, np.where(is_bent, z, corners.mean(axis=1)), corners, rank)
+        leader = _leaders(column, z, corners)
+        corners = _with_mean(corners, z, pillar, leader == np.arange(len(z)))
+        corners = corners[leader] + (z - z[leader])[:, None]
+        goes_on = (column[1:] == column[:-1])[:, None]
+        while (is_high := goes_on & (corners[1:] > corners[:-1])).any():
+            corners[1:][is_high] = corners[:-1][is_high]
+        self.corners = corners
 
     @staticmethod
     def _on_pillars(
@@ -294,50 +297,34 @@ class _Columns:
         return corners, pillar
 
 
-def _crossing(column: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(N,) bool: contacts of columns in which a corner (N, 4) is above that of the contact before it."""
-    crosses = (column[1:] == column[:-1]) & (corners[1:] > corners[:-1]).any(axis=1)
+def _leaders(column: np.ndarray, z: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(N,) for each contact at height z (N,) the one whose shape it takes, so that none crosses another within
+    its column: of contacts that would, the flattest. So walls and faults are steps, and beds go on."""
+    leader, goes_on = np.arange(len(z)), column[1:] == column[:-1]
+    crosses = goes_on & (corners[1:] > corners[:-1]).any(axis=1)
     has_crossing = np.zeros(int(column.max(initial=-1)) + 1, bool)
     has_crossing[column[1:][crosses]] = True
-    return has_crossing[column]
+    rows = np.flatnonzero(has_crossing[column])
+    z, shape, goes_on = z[rows, None], corners[rows] - z[rows, None], goes_on[rows[:-1]]
+    group = of_group = np.arange(len(rows))
+    while True:
+        bent = z + shape[of_group[group]]
+        crosses = goes_on & (bent[1:] > bent[:-1]).any(axis=1) & (group[1:] != group[:-1])
+        if not crosses.any():
+            leader[rows] = rows[of_group[group]]
+            return leader
+        group = np.cumsum(np.append(True, (group[1:] != group[:-1]) & ~crosses)) - 1
+        of_group = ascending(group, np.ptp(shape, axis=1))[begins_run(group)]
 
 
 def _with_mean(corners: np.ndarray, z: np.ndarray, pillar: np.ndarray, is_free: np.ndarray) -> np.ndarray:
     """Corners (N, 4) of free contacts moved, those at one pillar (N, 4) alike, so that together they have the
     mean of the heights z (N,)."""
     change = np.broadcast_to((z - corners.mean(axis=1))[:, None], corners.shape).copy()
-    change[~is_free] = 0.0
     shared = (pillar >= 0) & is_free[:, None]
     number = pillar[shared]
     change[shared] = (np.bincount(number, change[shared]) / np.maximum(np.bincount(number), 1))[number]
     return corners + change
-
-
-def _separate(column: np.ndarray, z: np.ndarray, corners: np.ndarray, rank: np.ndarray) -> np.ndarray:
-    """Corners (N, 4) none of which is above that of the contact before it in its column.
-
-    Contacts that would cross within a column take one shape, the mean of those with the least rank, about
-    their heights z (N,): the mean thickness of blocks stays.
-    """
-    rows = np.flatnonzero(_crossing(column, corners))
-    column, rank, z = column[rows], rank[rows], z[rows]
-    shape = corners[rows] - corners[rows].mean(axis=1, keepdims=True)
-    goes_on = column[1:] == column[:-1]
-    while (is_high := goes_on & (z[1:] > z[:-1])).any():
-        z[1:][is_high] = z[:-1][is_high]
-    group, of_group = np.arange(len(rows)), shape
-    while len(rows):
-        bent = z[:, None] + of_group[group]
-        crosses = goes_on & (bent[1:] > bent[:-1]).any(axis=1) & (group[1:] != group[:-1])
-        if not crosses.any():
-            corners = corners.copy()
-            corners[rows] = bent
-            break
-        group = np.cumsum(np.append(True, (group[1:] != group[:-1]) & ~crosses)) - 1
-        first = np.flatnonzero(begins_run(group))
-        counts = (rank == np.minimum.reduceat(rank, first)[group]).astype(np.float64)
-        of_group = np.add.reduceat(shape * counts[:, None], first) / np.add.reduceat(counts, first)[:, None]
-    return corners
 
 
 @dataclass(frozen=True, eq=False)
