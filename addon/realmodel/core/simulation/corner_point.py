@@ -25,6 +25,7 @@ _ABSENT, _VOID = -2, -1  # among the blocks of a column: no more, and a gap betw
 _NO_THICKNESS = 1e-9  # of the heights of the model
 _OFF_EDGES = np.array([1.37e-7, 0.73e-7])  # of a column: so lines through centers pass no vertex and no edge
 _UPRIGHT = 1e-9  # of the square of its extent: twice the area in plan of a vertical face
+_INSIDE = 4e-7  # of a column, twice: so far inside of the model are its outermost pillars
 _NEAR = 1e-6  # of a column: more than rounding and the moves of lines
 _SIDES = np.array([[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]])  # corners of a column from its center
 _MOST_CHANGE = 0.01  # of the volume of a block, without a warning
@@ -160,7 +161,7 @@ class _Contacts:
         low, high = (end.reduceat(plan, offsets[:-1]) for end in (np.minimum, np.maximum))
         is_step = _are_steps(model, faces, _plan_areas(plan, offsets), (high - low).max(axis=1))
         self.has_steps = _touched(low[is_step], high[is_step], frame.counts)
-        faces = faces[(np.floor(2 * high + _NEAR) >= np.ceil(2 * low - _NEAR)).all(axis=1)]
+        faces = faces[_hold_whole(low, high) | _hold_whole(low + 0.5, high + 0.5)]
         offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
         rows, begins = native_module().triangulate_faces(model.vertices, offsets, corners)
         face = np.repeat(faces, np.diff(begins))
@@ -176,11 +177,12 @@ class _Contacts:
         self.is_fault = _on_fault(model, face)
         parts = np.append(model.cell_compartment, -1)
         under, over = parts[below], parts[above]
-        one = np.where(self.is_fault, under, np.maximum(under, over))
-        what = np.stack([model.face_surface[face], one, np.where(self.is_fault, over, 0), upper], axis=1)
-        self.sheet = np.unique(what, axis=0, return_inverse=True)[1].ravel()
+        count = int(parts.max()) + 2
+        one, two = np.where(self.is_fault, under, np.maximum(under, over)), np.where(self.is_fault, over, -1)
+        surface = model.face_surface[face].astype(np.int64) + 1
+        self.sheet = ((surface * count + one + 1) * count + two + 1) * 2 + upper
 
-    def on_lines(self, nx: int, ny: int, shift: np.ndarray, scale: float = 1.0) -> tuple:
+    def on_lines(self, nx: int, ny: int, shift: np.ndarray, scale: np.ndarray | float = 1.0) -> tuple:
         """(line, height, triangle) of each crossing of vertical lines, the centers of nx x ny columns of the
         triangles moved and scaled about the middle."""
         middle = np.array([nx, ny]) / 2
@@ -193,6 +195,11 @@ class _Contacts:
         """(N,) the heights of the planes of triangles (N,) at places (N, 2) in columns."""
         first = self.triangles[:, 0][triangle]
         return first[:, 2] + dot(self.slope[triangle], places - first[:, :2])
+
+
+def _hold_whole(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(N,) bool: the boxes from low to high (N, 2) that have a point of whole numbers."""
+    return (np.floor(high + _NEAR) >= np.ceil(low - _NEAR)).all(axis=1)
 
 
 def _on_fault(model: ModelData, faces: np.ndarray) -> np.ndarray:
@@ -266,7 +273,8 @@ class _Columns:
         nx, ny = frame.counts
         pillars = (nx + 1) * (ny + 1)
         # the outermost pillars stand just inside of the model
-        line, height, of = contacts.on_lines(nx + 1, ny + 1, np.array([0.5, 0.5]), 1.0 + 1e-9)
+        wider = 1.0 + _INSIDE / np.array(frame.counts)
+        line, height, of = contacts.on_lines(nx + 1, ny + 1, np.array([0.5, 0.5]), wider)
         code = contacts.sheet[of] * pillars + line
         order = ascending(code, height)
         code, height, of = code[order], height[order], of[order]
@@ -298,7 +306,7 @@ class _Columns:
 
 
 def _leaders(column: np.ndarray, z: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(N,) for each contact at height z (N,) the one whose shape it takes, so that none crosses another within
+    """(N,) for each contact at height z (N,) the one whose shape it takes, so that none crosses another in
     its column: of contacts that would, the flattest. So walls and faults are steps, and beds go on."""
     leader, goes_on = np.arange(len(z)), column[1:] == column[:-1]
     crosses = goes_on & (corners[1:] > corners[:-1]).any(axis=1)
