@@ -25,7 +25,7 @@ _ABSENT, _VOID = -2, -1  # among the blocks of a column: no more, and a gap betw
 _NO_THICKNESS = 1e-9  # of the heights of the model
 _OFF_EDGES = np.array([1.37e-7, 0.73e-7])  # of a column: so lines through centers pass no vertex and no edge
 _UPRIGHT = 1e-9  # of the square of its extent: twice the area in plan of a vertical face
-_INSIDE = 4e-7  # of a column, twice: so far inside of the model are its outermost pillars
+_INSIDE = 4e-7  # of a column: twice what the outermost pillars are moved into the model
 _NEAR = 1e-6  # of a column: more than rounding and the moves of lines
 _SIDES = np.array([[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]])  # corners of a column from its center
 _MOST_CHANGE = 0.01  # of the volume of a block, without a warning
@@ -148,8 +148,8 @@ class _Contacts:
     columns meet: as triangles (T, 3, 3) in columns.
 
     below: (T,) the block under each, -1 outside. sheet: (T,) equal where triangles go on in one another: of
-    one surface in one compartment, or between the same two, seen from one side. is_fault: (T,). slope: (T, 2)
-    over a column. has_steps: (ny * nx,) bool, columns with walls or tips of faults, where a sheet may jump.
+    one surface in one compartment, or between the same two, seen from one side. slope: (T, 2) over a
+    column. has_steps: (ny * nx,) bool, columns with walls or tips of faults, where a sheet may jump.
     """
 
     def __init__(self, model: ModelData, frame: _Frame):
@@ -174,11 +174,10 @@ class _Contacts:
         cells, number = model.face_cells[face], np.arange(len(face))
         below, above = cells[number, 1 - upper], cells[number, upper]
         self.below = np.append(model.cell_block, -1)[below].astype(np.int64)
-        self.is_fault = _on_fault(model, face)
         parts = np.append(model.cell_compartment, -1)
         under, over = parts[below], parts[above]
-        count = int(parts.max()) + 2
-        one, two = np.where(self.is_fault, under, np.maximum(under, over)), np.where(self.is_fault, over, -1)
+        count, is_fault = int(parts.max()) + 2, _on_fault(model, face)
+        one, two = np.where(is_fault, under, np.maximum(under, over)), np.where(is_fault, over, -1)
         surface = model.face_surface[face].astype(np.int64) + 1
         self.sheet = ((surface * count + one + 1) * count + two + 1) * 2 + upper
 
@@ -188,8 +187,9 @@ class _Contacts:
         middle = np.array([nx, ny]) / 2
         moved = self.triangles.copy()
         moved[:, :, :2] = (moved[:, :, :2] + (shift - middle)) * scale + middle
+        none = np.empty(0, np.int64)
         parts = [(line, z, triangle) for line, z, _, triangle in over_centers(moved, nx, ny)]
-        return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
+        return tuple(np.concatenate(column) for column in zip((none, none, none), *parts, strict=True))
 
     def at(self, triangle: np.ndarray, places: np.ndarray) -> np.ndarray:
         """(N,) the heights of the planes of triangles (N,) at places (N, 2) in columns."""
@@ -246,6 +246,10 @@ class _Columns:
     def __init__(self, model: ModelData, frame: _Frame):
         contacts = _Contacts(model, frame)
         column, z, triangle = contacts.on_lines(*frame.counts, _OFF_EDGES)
+        if not len(column):
+            raise UsageError(
+                f"no column of {frame.size.tolist()} has its center in the model; take smaller ones"
+            )
         order = ascending(column, -z, triangle)
         column, z, triangle = column[order], z[order], triangle[order]
         goes_on = np.append(column[1:] == column[:-1], False)
@@ -279,7 +283,10 @@ class _Columns:
         order = ascending(code, height)
         code, height, of = code[order], height[order], of[order]
         first = np.flatnonzero(begins_run(code))
-        sizes, code = np.diff(np.append(first, len(code))), code[first]
+        sizes, code = (
+            np.diff(np.append(first, len(code))),
+            np.append(code[first], -1),
+        )  # the last is no pillar
         same = _NO_THICKNESS * float(np.ptp(height))
         j, i = np.divmod(column, nx)
         centers = np.stack([i, j], axis=1) + 0.5
@@ -287,9 +294,9 @@ class _Columns:
         pillar = np.full(corners.shape, -1)
         for corner, near in enumerate(corners.T):
             wanted = contacts.sheet[triangle] * pillars + (j + corner // 2) * (nx + 1) + i + corner % 2
-            run = np.minimum(np.searchsorted(code, wanted), len(code) - 1)
+            run = np.searchsorted(code[:-1], wanted)
             is_met = code[run] == wanted
-            best, count = first[run], np.where(is_met, sizes[run], 1)
+            best, count = np.append(first, 0)[run], np.append(sizes, 0)[run] * is_met
             for step in range(1, int(count.max(initial=1))):  # the nearest of several
                 rows = np.flatnonzero(count > step)
                 other = first[run[rows]] + step
@@ -470,22 +477,22 @@ def _assembled(
     grid.actnum[:] = is_active
     volume = thickness[is_active] * frame.size.prod()
     grid.volumes[:] = np.bincount(fipnum[is_active] - 1, volume, len(model.blocks))
-    grid.warnings.extend(_warnings(model, grid, of_blocks))
+    grid.warnings.extend(_warnings(grid, of_blocks))
     return grid
 
 
-def _warnings(model: ModelData, grid: CornerPointGrid, of_blocks: _Layers) -> list[BuildWarning]:
+def _warnings(grid: CornerPointGrid, of_blocks: _Layers) -> list[BuildWarning]:
     """What the grid shows otherwise than the model."""
-    warnings = [
-        BuildWarning(
-            f"block '{block.name}' has a volume of {volume:.6g} in the corner-point grid, "
-            f"{100 * change:+.2g} % of {block.volume:.6g} in the model; smaller columns change less",
-            "corner_point_volume",
-            model.rock_inputs[block.rock].rock.name if model.rock_inputs else None,
+    warnings = []
+    order = np.argsort(-np.abs(grid.difference), kind="stable")
+    changes = [(grid.names[block], float(grid.difference[block])) for block in order]
+    large = [f"'{name}' {100 * change:+.2g} %" for name, change in changes if abs(change) > _MOST_CHANGE]
+    if large:
+        text = (
+            "blocks that are few columns wide, or whose border is not along columns, have volumes in the "
+            "corner-point grid that differ by more than 1 % from the model; smaller columns change less: "
         )
-        for block, volume, change in zip(model.blocks, grid.volumes, grid.difference.tolist(), strict=True)
-        if abs(change) > _MOST_CHANGE
-    ]
+        warnings.append(BuildWarning(text + number_list(large), "corner_point_volume"))
     repeats = zip(grid.names, of_blocks.repeats.tolist(), strict=True)
     repeated = [f"'{name}' in {count}" for name, count in repeats if count]
     if repeated:
