@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Corner-point grids of a model, with vertical pillars: Model.corner_point_grid.
 
-A column of cells takes its blocks from the exact vertical line through its center, and its corners from the
-lines along its pillars. Where a pillar does not meet the surface of a column, as beyond a fault, the triangle
-that the center meets goes on to it; there heights of neighboring columns differ, which is a step (Ponting
-1989, "Corner Point Geometry in Reservoir Simulation").
+A column of cells takes its blocks and their thickness from the exact vertical line through its center, and the
+shape of contacts from the lines along its pillars. Where a pillar does not meet the surface of a column, as
+beyond a fault, the triangle that the center meets goes on to it; there heights of neighboring columns differ,
+which is a step (Ponting 1989, "Corner Point Geometry in Reservoir Simulation").
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ..results.samples import MOST_CELLS, CellSize, checked_size, over_centers
 _ABSENT, _VOID = -2, -1  # among the blocks of a column: no more, and a gap between two
 _NO_THICKNESS = 1e-9  # of the heights of the model
 _OFF_EDGES = np.array([1.37e-7, 0.73e-7])  # of a column: so lines through centers pass no vertex and no edge
-_UPRIGHT = 1e-9  # of the square of its extent: twice the area in plan of a vertical face
+_UPRIGHT = 1e-9  # of the square of its extent: the area in plan of a vertical face
 _INSIDE = 4e-7  # of a column: twice what the outermost pillars are moved into the model
 _NEAR = 1e-6  # of a column: more than rounding and the moves of lines
 _SIDES = np.array([[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]])  # corners of a column from its center
