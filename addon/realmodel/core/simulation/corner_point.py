@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Corner-point grids of a model, with vertical pillars: Model.corner_point_grid.
 
-A column of cells takes its blocks and their thickness from the exact vertical line through its center, and the
-shape of contacts from the lines along its pillars. Where a pillar does not meet the surface of a column, as
-beyond a fault, the triangle that the center meets goes on to it; there heights of neighboring columns differ,
-which is a step (Ponting 1989, "Corner Point Geometry in Reservoir Simulation").
+A column of cells takes its blocks and their thickness from the exact vertical line through its center, and
+the shape of contacts from the lines along its pillars. Where a pillar does not meet the surface of a column,
+as beyond a fault, the triangle that the center meets goes on to it; there heights of neighboring columns
+differ, which is a step (Ponting 1989, "Corner Point Geometry in Reservoir Simulation").
 """
 
 from __future__ import annotations
@@ -199,12 +199,12 @@ class _Contacts:
 
 def _hold_whole(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """(N,) bool: the boxes from low to high (N, 2) that have a point of whole numbers."""
-    return (np.floor(high + _NEAR) >= np.ceil(low - _NEAR)).all(axis=1)
+    holds = np.floor(high + _NEAR) >= np.ceil(low - _NEAR)
+    return np.asarray(holds[:, 0] & holds[:, 1])
 
 
 def _on_fault(model: ModelData, faces: np.ndarray) -> np.ndarray:
-    surface = model.face_surface[faces]
-    return (surface >= 0) & (np.append(model.surface_kind, 0)[surface] == 1)
+    return np.append(model.surface_kind, 0)[model.face_surface[faces]] == 1  # -1 is no surface
 
 
 def _plan_areas(corners: np.ndarray, offsets: np.ndarray) -> np.ndarray:
@@ -246,17 +246,16 @@ class _Columns:
     def __init__(self, model: ModelData, frame: _Frame):
         contacts = _Contacts(model, frame)
         column, z, triangle = contacts.on_lines(*frame.counts, _OFF_EDGES)
-        if not len(column):
-            raise UsageError(
-                f"no column of {frame.size.tolist()} has its center in the model; take smaller ones"
-            )
         order = ascending(column, -z, triangle)
         column, z, triangle = column[order], z[order], triangle[order]
-        goes_on = np.append(column[1:] == column[:-1], False)
+        goes_on = np.append(column[1:] == column[:-1], False)[: len(column)]
         is_thin = goes_on & (z - np.append(z[1:], 0.0) <= _NO_THICKNESS * np.ptp(model.vertices[:, 2]))
         column, z, triangle = column[~is_thin], z[~is_thin], triangle[~is_thin]
         is_new = begins_run(np.stack([column, contacts.below[triangle]], axis=1))
         column, z, triangle = column[is_new], z[is_new], triangle[is_new]
+        if not (column[1:] == column[:-1]).any():
+            size = frame.size.tolist()
+            raise UsageError(f"no column of {size} has its center in the model; take smaller ones")
         self.column, self.below = column, contacts.below[triangle]
         corners, pillar = self._on_pillars(frame, contacts, column, z, triangle)
         leader = _leaders(column, z, corners)
