@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Corner-point grids of a model, with vertical pillars: Model.corner_point_grid.
 
-A column of cells takes its blocks from the exact vertical line through its center, and its corners from the
-lines along its pillars. Where a pillar does not meet the surface of a column, as beyond a fault, the triangle
-that the center meets goes on to it; there heights of neighboring columns differ, which is a step (Ponting
-1989, "Corner Point Geometry in Reservoir Simulation").
+A column of cells takes its blocks and their thickness from the exact vertical line through its center, and
+the shape of contacts from the lines along its pillars. Where a pillar does not meet the surface of a column,
+as beyond a fault, the triangle that the center meets goes on to it; there heights of neighboring columns
+differ, which is a step (Ponting 1989, "Corner Point Geometry in Reservoir Simulation").
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.algebra import ascending, begins_run, cos, dot, norm, ranks_in_runs, sin
+from ..base.algebra import ascending, begins_run, cos, dot, ranks_in_runs, sin
 from ..base.errors import BuildWarning, InputRefused, UsageError, number_list
 from ..base.work import native_module
 from ..cells.model_data import ModelData
@@ -24,8 +24,10 @@ from ..results.samples import MOST_CELLS, CellSize, checked_size, over_centers
 _ABSENT, _VOID = -2, -1  # among the blocks of a column: no more, and a gap between two
 _NO_THICKNESS = 1e-9  # of the heights of the model
 _OFF_EDGES = np.array([1.37e-7, 0.73e-7])  # of a column: so lines through centers pass no vertex and no edge
-_UPRIGHT = 1e-9  # of the square of its longest side: twice the area in plan of a vertical triangle
-_AROUND = [(u, v) for u in (-0.5, 0.0, 0.5) for v in (-0.5, 0.0, 0.5)]  # of a place, in columns
+_UPRIGHT = 1e-9  # of the square of its extent: the area in plan of a vertical face
+_INSIDE = 4e-7  # of a column: twice what the outermost pillars are moved into the model
+_NEAR = 1e-6  # of a column: more than rounding and the moves of lines
+_SIDES = np.array([[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]])  # corners of a column from its center
 _MOST_CHANGE = 0.01  # of the volume of a block, without a warning
 
 
@@ -90,15 +92,13 @@ def corner_point_grid(
     if not len(model.cell_block):
         raise InputRefused("the model has no cells", advice="its surfaces enclose no block")
     frame = _Frame.of(model, size, float(azimuth) % 360.0)
-    contacts = _Contacts(model, frame)
-    columns = _Columns(model, frame, contacts)
-    order = _order_of_layers(columns.blocks)
+    columns = _Columns(model, frame)
     nx, ny = frame.counts
-    if float(nx) * ny * len(order) * layers > MOST_CELLS:
-        raise UsageError(
-            f"columns of {size.tolist()} give {nx} x {ny} x {len(order) * layers} cells; take larger ones"
-        )
-    return _assembled(model, frame, columns, order, int(layers))
+    of_blocks = _Layers.of(columns, nx * ny, len(model.blocks))
+    nz = len(of_blocks.blocks) * layers
+    if float(nx) * ny * nz > MOST_CELLS:
+        raise UsageError(f"columns of {size.tolist()} give {nx} x {ny} x {nz} cells; take larger ones")
+    return _assembled(model, frame, columns, of_blocks, int(layers))
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,164 +144,241 @@ class _Frame:
 
 
 class _Contacts:
-    """The faces of a model between two blocks, or a block and the outside, as triangles (T, 3, 3) in columns.
+    """The faces of a model between two blocks, or a block and the outside, that lines through the centers of
+    columns meet: as triangles (T, 3, 3) in columns.
 
-    above, below: (T,) the block on each side, -1 outside. sheet: (T,) equal where triangles go on in one
-    another: of one surface in one compartment, or between the same two.
+    below: (T,) the block under each, -1 outside. sheet: (T,) equal where triangles go on in one another: of
+    one surface in one compartment, or between the same two, seen from one side. slope: (T, 2) over a
+    column. has_steps: (ny * nx,) bool, columns with walls or tips of faults, where a sheet may jump.
     """
 
     def __init__(self, model: ModelData, frame: _Frame):
         blocks = model.face_blocks
         faces = np.flatnonzero(blocks[:, 0] != blocks[:, 1])
         offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+        vertices = frame.in_columns(model.vertices)
+        plan = vertices[corners, :2]
+        low, high = (end.reduceat(plan, offsets[:-1]) for end in (np.minimum, np.maximum))
+        is_step = _are_steps(model, faces, _plan_areas(plan, offsets), (high - low).max(axis=1))
+        self.has_steps = _touched(low[is_step], high[is_step], frame.counts)
+        faces = faces[_hold_whole(low, high) | _hold_whole(low + 0.5, high + 0.5)]
+        offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
         rows, begins = native_module().triangulate_faces(model.vertices, offsets, corners)
-        self.triangles = frame.in_columns(model.vertices)[rows]
         face = np.repeat(faces, np.diff(begins))
-        a, b = (self.triangles[:, k, :2] - self.triangles[:, 0, :2] for k in (1, 2))
-        twice = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        self.triangles = vertices[rows]
+        (ax, ay, az), (bx, by, bz) = ((self.triangles[:, k] - self.triangles[:, 0]).T for k in (1, 2))
+        twice = ax * by - ay * bx
+        slopes = np.stack([az * by - bz * ay, ax * bz - bx * az], axis=1)
+        self.slope = np.divide(slopes, twice[:, None], out=np.zeros_like(slopes), where=twice[:, None] != 0)
         upper = np.where(twice > 0, 1, 0)  # a face is seen from above from its second cell
-        cells = model.face_cells[face]
-        below, above = cells[np.arange(len(face)), 1 - upper], cells[np.arange(len(face)), upper]
-        self.below, self.above = (np.append(model.cell_block, -1)[side] for side in (below, above))
-        parts = np.append(model.cell_compartment, -1).astype(np.int64) + 1
+        cells, number = model.face_cells[face], np.arange(len(face))
+        below, above = cells[number, 1 - upper], cells[number, upper]
+        self.below = np.append(model.cell_block, -1)[below].astype(np.int64)
+        parts = np.append(model.cell_compartment, -1)
         under, over = parts[below], parts[above]
-        surface = model.face_surface[face].astype(np.int64)
-        is_fault = (surface >= 0) & (np.append(model.surface_kind, 0)[np.maximum(surface, -1)] == 1)
-        one, two = np.where(is_fault, under, np.maximum(under, over)), np.where(is_fault, over, 0)
-        count = int(parts.max()) + 1
-        self.sheet = ((surface - surface.min()) * count + one) * count + two
-        self._twice = twice
-        sides = self.triangles[:, [1, 2, 0], :2] - self.triangles[:, :, :2]
-        is_upright = np.abs(twice) <= _UPRIGHT * dot(sides, sides).max(axis=1)
-        self._is_step = (is_upright | (is_fault & (under == over))) & (cells >= 0).all(axis=1)
+        count, is_fault = int(parts.max()) + 2, _on_fault(model, face)
+        one, two = np.where(is_fault, under, np.maximum(under, over)), np.where(is_fault, over, -1)
+        surface = model.face_surface[face].astype(np.int64) + 1
+        self.sheet = ((surface * count + one + 1) * count + two + 1) * 2 + upper
 
-    def columns_with_steps(self, nx: int, ny: int) -> np.ndarray:
-        """(nx * ny,) bool: columns at walls within the model and at tips of faults: a sheet may jump."""
-        start = self.triangles[self._is_step][:, :, :2]
-        side = start[:, [1, 2, 0]] - start
-        parts = np.ceil(2 * norm(side)).astype(np.int64).ravel() + 1
-        share = ranks_in_runs(parts + 1) / np.repeat(parts, parts + 1)
-        places = np.repeat(start.reshape(-1, 2), parts + 1, axis=0)
-        places = places + share[:, None] * np.repeat(side.reshape(-1, 2), parts + 1, axis=0)
-        is_near = np.zeros((ny, nx), bool)
-        for shift in _AROUND:
-            i, j = np.floor(places + shift).astype(np.int64).T
-            is_near[np.clip(j, 0, ny - 1), np.clip(i, 0, nx - 1)] = True
-        return is_near.ravel()
-
-    def on_lines(self, nx: int, ny: int, shift: np.ndarray, scale: float = 1.0) -> tuple:
+    def on_lines(self, nx: int, ny: int, shift: np.ndarray, scale: np.ndarray | float = 1.0) -> tuple:
         """(line, height, triangle) of each crossing of vertical lines, the centers of nx x ny columns of the
-        triangles moved and scaled about the middle; by line, from above."""
+        triangles moved and scaled about the middle."""
         middle = np.array([nx, ny]) / 2
         moved = self.triangles.copy()
-        moved[:, :, :2] = (moved[:, :, :2] + shift - middle) * scale + middle
+        moved[:, :, :2] = (moved[:, :, :2] + (shift - middle)) * scale + middle
+        none = np.empty(0, np.int64)
         parts = [(line, z, triangle) for line, z, _, triangle in over_centers(moved, nx, ny)]
-        line, z, triangle = (np.concatenate(column) for column in zip(*parts, strict=True))
-        order = ascending(line, -z, triangle)
-        return line[order], z[order], triangle[order]
+        return tuple(np.concatenate(column) for column in zip((none, none, none), *parts, strict=True))
 
     def at(self, triangle: np.ndarray, places: np.ndarray) -> np.ndarray:
         """(N,) the heights of the planes of triangles (N,) at places (N, 2) in columns."""
-        p, q, r = self.triangles[triangle].transpose(1, 0, 2)
-        a, b, d = q - p, r - p, places - p[:, :2]
-        s = (d[:, 0] * b[:, 1] - d[:, 1] * b[:, 0]) / self._twice[triangle]
-        t = (a[:, 0] * d[:, 1] - a[:, 1] * d[:, 0]) / self._twice[triangle]
-        return p[:, 2] + s * a[:, 2] + t * b[:, 2]
+        first = self.triangles[:, 0][triangle]
+        return first[:, 2] + dot(self.slope[triangle], places - first[:, :2])
+
+
+def _hold_whole(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(N,) bool: the boxes from low to high (N, 2) that have a point of whole numbers."""
+    holds = np.floor(high + _NEAR) >= np.ceil(low - _NEAR)
+    return np.asarray(holds[:, 0] & holds[:, 1])
+
+
+def _on_fault(model: ModelData, faces: np.ndarray) -> np.ndarray:
+    return np.append(model.surface_kind, 0)[model.face_surface[faces]] == 1  # -1 is no surface
+
+
+def _plan_areas(corners: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """(F,) the areas in plan of faces, whose corners (N, 2) follow one another."""
+    after = np.arange(1, len(corners) + 1)
+    after[offsets[1:] - 1] = offsets[:-1]
+    x, y = (corners - np.repeat(corners[offsets[:-1]], np.diff(offsets), axis=0)).T
+    return np.abs(np.add.reduceat(x * y[after] - x[after] * y, offsets[:-1])) / 2
+
+
+def _are_steps(model: ModelData, faces: np.ndarray, areas: np.ndarray, extents: np.ndarray) -> np.ndarray:
+    """(F,) bool: faces within a compartment that are upright, or on a fault that ends there."""
+    cells = model.face_cells[faces]
+    one, other = np.append(model.cell_compartment, -1)[cells].T
+    is_wall = (areas <= _UPRIGHT * extents**2) | _on_fault(model, faces)
+    return is_wall & (one == other) & (cells >= 0).all(axis=1)
+
+
+def _touched(low: np.ndarray, high: np.ndarray, counts: tuple[int, int]) -> np.ndarray:
+    """(ny * nx,) bool: the columns that boxes from low to high (N, 2) touch."""
+    nx, ny = counts
+    i, j = np.clip(np.ceil(low - _NEAR) - 1, 0, counts).astype(np.int64).T
+    to_i, to_j = np.clip(np.floor(high + _NEAR) + 1, 0, counts).astype(np.int64).T
+    change = np.zeros((ny + 1, nx + 1), np.int64)
+    for row, column, sign in ((j, i, 1), (j, to_i, -1), (to_j, i, -1), (to_j, to_i, 1)):
+        np.add.at(change, (row, column), sign)
+    return (change.cumsum(axis=0).cumsum(axis=1)[:ny, :nx] > 0).ravel()
 
 
 class _Columns:
-    """What each column has, from above.
+    """The contacts of blocks along the lines through the centers of columns, one column after another, from
+    above.
 
-    blocks: (C, M) int64, _VOID for a gap, _ABSENT behind the last. heights: (C, M + 1, 4) of the contacts
-    between them at the corners: of lower j and lower i, lower j and upper i, upper j and lower i, both upper.
+    column: (N,). below: (N,) the block, _VOID for none. corners: (N, 4) heights at the pillars: of lower j
+    and lower i, lower j and upper i, upper j and lower i, both upper. Over all columns their mean is that of
+    the heights at the centers, so blocks have their volume.
     """
 
-    def __init__(self, model: ModelData, frame: _Frame, contacts: _Contacts):
-        nx, ny = frame.counts
-        column, z, triangle = contacts.on_lines(nx, ny, _OFF_EDGES)
-        heights, is_met = self._corners(frame, contacts, column, z, triangle)
-        first = np.flatnonzero(begins_run(column))
-        counts = np.diff(np.append(first, len(column)))
-        rank = ranks_in_runs(counts)
-        most = int(counts.max(initial=1))
-        shape = (nx * ny, most, 4)
-        filled, met = np.full(shape, -np.inf), np.zeros(shape, bool)
-        filled[column, rank], met[column, rank] = heights, is_met
-        self.heights = _in_order(filled, met)
-        center = np.full(shape[:2], np.nan)
-        center[column, rank] = z
-        blocks = np.full((nx * ny, most), _ABSENT)
-        blocks[column, rank] = contacts.below[triangle]
-        thick = center[:, :-1] - center[:, 1:]
-        is_thin = thick <= _NO_THICKNESS * np.ptp(model.vertices[:, 2])
-        blocks[:, :-1][is_thin] = _ABSENT
-        last = np.append(first[1:], len(column)) - 1
-        blocks[column[last], rank[last]] = _ABSENT  # below is the outside
-        self.blocks = blocks[:, :-1]
+    def __init__(self, model: ModelData, frame: _Frame):
+        contacts = _Contacts(model, frame)
+        column, z, triangle = contacts.on_lines(*frame.counts, _OFF_EDGES)
+        order = ascending(column, -z, triangle)
+        column, z, triangle = column[order], z[order], triangle[order]
+        goes_on = np.append(column[1:] == column[:-1], False)[: len(column)]
+        is_thin = goes_on & (z - np.append(z[1:], 0.0) <= _NO_THICKNESS * np.ptp(model.vertices[:, 2]))
+        column, z, triangle = column[~is_thin], z[~is_thin], triangle[~is_thin]
+        is_new = begins_run(np.stack([column, contacts.below[triangle]], axis=1))
+        column, z, triangle = column[is_new], z[is_new], triangle[is_new]
+        if not (column[1:] == column[:-1]).any():
+            size = frame.size.tolist()
+            raise UsageError(f"no column of {size} has its center in the model; take smaller ones")
+        self.column, self.below = column, contacts.below[triangle]
+        corners, pillar = self._on_pillars(frame, contacts, column, z, triangle)
+        leader = _leaders(column, z, corners)
+        corners = _with_mean(corners, z, pillar, leader == np.arange(len(z)))
+        corners = corners[leader] + (z - z[leader])[:, None]
+        goes_on = (column[1:] == column[:-1])[:, None]
+        while (is_high := goes_on & (corners[1:] > corners[:-1])).any():
+            corners[1:][is_high] = corners[:-1][is_high]
+        self.corners = corners
 
     @staticmethod
-    def _corners(
+    def _on_pillars(
         frame: _Frame, contacts: _Contacts, column: np.ndarray, z: np.ndarray, triangle: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """(N, 4) the heights of contacts at the pillars of their columns, and whether their sheet is there.
-        Where it is not, the columns around take the mean of what goes on to it."""
+        """(N, 4) the heights at pillars of contacts at heights z (N,) in the centers of columns; and (N, 4)
+        the number of what meets the pillar there. Where the sheet does not, its plane goes on to the pillar,
+        and the number is -1."""
         nx, ny = frame.counts
         pillars = (nx + 1) * (ny + 1)
         # the outermost pillars stand just inside of the model
-        line, height, of = contacts.on_lines(nx + 1, ny + 1, np.array([0.5, 0.5]), 1.0 + 1e-9)
-        number = np.unique(contacts.sheet, return_inverse=True)[1]
-        number = number.ravel().astype(np.int64)
-        code = number[of] * pillars + line
+        wider = 1.0 + _INSIDE / np.array(frame.counts)
+        line, height, of = contacts.on_lines(nx + 1, ny + 1, np.array([0.5, 0.5]), wider)
+        code = contacts.sheet[of] * pillars + line
         order = ascending(code, height)
         code, height, of = code[order], height[order], of[order]
+        first = np.flatnonzero(begins_run(code))
+        sizes, code = (
+            np.diff(np.append(first, len(code))),
+            np.append(code[first], -1),
+        )  # the last is no pillar
         same = _NO_THICKNESS * float(np.ptp(height))
-        has_steps = contacts.columns_with_steps(nx, ny)[column]
-        centers = np.column_stack([column % nx, column // nx]) + 0.5
-        result, is_met = np.empty((len(column), 4)), np.empty((len(column), 4), bool)
-        places = np.empty((len(column), 4), np.int64)
-        for corner in range(4):
-            i, j = column % nx + corner % 2, column // nx + corner // 2
-            near = contacts.at(triangle, np.column_stack([i, j]).astype(np.float64))
-            wanted = number[triangle] * pillars + j * (nx + 1) + i
-            begin, end = np.searchsorted(code, wanted), np.searchsorted(code, wanted, "right")
-            is_met[:, corner] = end > begin
-            best = np.minimum(begin, len(code) - 1)
-            for step in range(1, int((end - begin).max(initial=0))):  # the nearest of several
-                other = np.minimum(begin + step, len(code) - 1)
-                is_nearer = np.abs(height[other] - near) < np.abs(height[best] - near)
-                best = np.where((begin + step < end) & is_nearer, other, best)
-            at_step = np.flatnonzero(is_met[:, corner] & has_steps)
-            jump = height[best[at_step]] - near[at_step]
-            back = z[at_step] - contacts.at(of[best[at_step]], centers[at_step])
+        j, i = np.divmod(column, nx)
+        centers = np.stack([i, j], axis=1) + 0.5
+        corners = contacts.at(triangle, centers)[:, None] + contacts.slope[triangle] @ _SIDES.T
+        pillar = np.full(corners.shape, -1)
+        for corner, near in enumerate(corners.T):
+            wanted = contacts.sheet[triangle] * pillars + (j + corner // 2) * (nx + 1) + i + corner % 2
+            run = np.searchsorted(code[:-1], wanted)
+            is_met = code[run] == wanted
+            best, count = np.append(first, 0)[run], np.append(sizes, 0)[run] * is_met
+            for step in range(1, int(count.max(initial=1))):  # the nearest of several
+                rows = np.flatnonzero(count > step)
+                other = first[run[rows]] + step
+                is_nearer = np.abs(height[other] - near[rows]) < np.abs(height[best[rows]] - near[rows])
+                best[rows] = np.where(is_nearer, other, best[rows])
+            rows = np.flatnonzero(is_met & contacts.has_steps[column])
+            up = height[best[rows]] - near[rows]
+            back = z[rows] - contacts.at(of[best[rows]], centers[rows])
             # where two planes meet on the way, both go on to the same side of the other
-            is_met[at_step, corner] = (jump * back >= 0) | (np.minimum(np.abs(jump), np.abs(back)) <= same)
-            result[:, corner] = np.where(is_met[:, corner], height[best], near)
-            places[:, corner] = wanted
-        beyond = ~is_met
-        _, group = np.unique(places[beyond], return_inverse=True)
-        group = group.ravel()
-        if len(group):
-            result[beyond] = (np.bincount(group, result[beyond]) / np.bincount(group))[group]
-        lowest, highest = height.min(), height.max()
-        return np.clip(result, lowest, highest), is_met
+            is_met[rows] = (up * back >= 0) | (np.minimum(np.abs(up), np.abs(back)) <= same)
+            pillar[is_met, corner] = best[is_met]
+            corners[is_met, corner] = height[best[is_met]]
+        return corners, pillar
 
 
-def _in_order(heights: np.ndarray, is_met: np.ndarray) -> np.ndarray:
-    """Heights (C, M, 4) none of which is above the one before it; those that were met bind the others."""
-    upper = np.minimum.accumulate(np.where(is_met, heights, np.inf), axis=1)
-    lower = np.where(is_met, heights, -np.inf)[:, ::-1]
-    lower = np.maximum.accumulate(lower, axis=1)[:, ::-1]
-    bound = np.where(is_met, heights, np.minimum(np.maximum(heights, lower), upper))
-    return np.minimum.accumulate(bound, axis=1)
+def _leaders(column: np.ndarray, z: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(N,) for each contact at height z (N,) the one whose shape it takes, so that none crosses another in
+    its column: of contacts that would, the flattest. So walls and faults are steps, and beds go on."""
+    leader, goes_on = np.arange(len(z)), column[1:] == column[:-1]
+    crosses = goes_on & (corners[1:] > corners[:-1]).any(axis=1)
+    has_crossing = np.zeros(int(column.max(initial=-1)) + 1, bool)
+    has_crossing[column[1:][crosses]] = True
+    rows = np.flatnonzero(has_crossing[column])
+    z, shape, goes_on = z[rows, None], corners[rows] - z[rows, None], goes_on[rows[:-1]]
+    group = of_group = np.arange(len(rows))
+    while True:
+        bent = z + shape[of_group[group]]
+        crosses = goes_on & (bent[1:] > bent[:-1]).any(axis=1) & (group[1:] != group[:-1])
+        if not crosses.any():
+            leader[rows] = rows[of_group[group]]
+            return leader
+        group = np.cumsum(np.append(True, (group[1:] != group[:-1]) & ~crosses)) - 1
+        of_group = ascending(group, np.ptp(shape, axis=1))[begins_run(group)]
 
 
-def _order_of_layers(blocks: np.ndarray) -> list[int]:
-    """The blocks of the layers from above, of which those of each column (C, M) are some, in this order."""
-    stacks = [tuple(b for b in row if b != _ABSENT) for row in np.unique(blocks, axis=0).tolist()]
-    order = _sorted_blocks(stacks)
-    for stack in sorted(set(stacks), key=lambda stack: (-len(stack), stack)):
-        order = _with_stack(order, stack)
-    return order
+def _with_mean(corners: np.ndarray, z: np.ndarray, pillar: np.ndarray, is_free: np.ndarray) -> np.ndarray:
+    """Corners (N, 4) of free contacts moved, those at one pillar (N, 4) alike, so that together they have the
+    mean of the heights z (N,)."""
+    change = np.broadcast_to((z - corners.mean(axis=1))[:, None], corners.shape).copy()
+    shared = (pillar >= 0) & is_free[:, None]
+    number = pillar[shared]
+    change[shared] = (np.bincount(number, change[shared]) / np.maximum(np.bincount(number), 1))[number]
+    return corners + change
+
+
+@dataclass(frozen=True, eq=False)
+class _Layers:
+    """blocks: (L,) of the layers from above, _VOID for one of none. is_present: (L, C) bool, in each column.
+    repeats: (B,) in how many columns a block is several times. voids: columns with one."""
+
+    blocks: np.ndarray
+    is_present: np.ndarray
+    repeats: np.ndarray
+    voids: int
+
+    @classmethod
+    def of(cls, columns: _Columns, count: int, blocks: int) -> _Layers:
+        column = columns.column
+        sizes = np.bincount(column, minlength=count)
+        rows = np.full((count, int(sizes.max(initial=1)) - 1), _ABSENT)
+        rank, inner = (
+            ranks_in_runs(sizes),
+            np.append(column[1:] == column[:-1], False),
+        )  # below the last is the outside
+        rows[column[inner], rank[inner]] = columns.below[inner]
+        begins = begins_run(rows)
+        table, number = np.unique(rows[begins], axis=0, return_inverse=True)
+        stack_of = number.ravel()[np.cumsum(begins) - 1]
+        stacks = [tuple(block for block in row if block != _ABSENT) for row in table.tolist()]
+        order = _sorted_blocks(stacks)
+        for stack in sorted(stacks, key=lambda stack: (-len(stack), stack)):
+            order = _with_stack(order, stack)
+        has = np.zeros((len(stacks), len(order)), bool)
+        for row, stack in zip(has, stacks, strict=True):
+            row[_places(order, stack)] = True
+        widths = np.bincount(stack_of, minlength=len(stacks))
+        times = np.array([[stack.count(block) for block in range(blocks)] for stack in stacks])
+        return cls(
+            np.array(order, np.int64),
+            has[stack_of].T,
+            ((times > 1) * widths[:, None]).sum(axis=0),
+            int(widths[[_VOID in stack for stack in stacks]].sum()),
+        )
 
 
 def _sorted_blocks(stacks: list[tuple[int, ...]]) -> list[int]:
@@ -358,30 +435,27 @@ def _places(order: list[int], stack: tuple[int, ...]) -> list[int] | None:
 
 
 def _assembled(
-    model: ModelData, frame: _Frame, columns: _Columns, order: list[int], layers: int
+    model: ModelData, frame: _Frame, columns: _Columns, of_blocks: _Layers, layers: int
 ) -> CornerPointGrid:
-    (nx, ny), count = frame.counts, len(order)
-    layer = _layers_of(columns.blocks, order)
+    (nx, ny), count = frame.counts, len(of_blocks.blocks)
+    sizes = np.bincount(columns.column, minlength=nx * ny)
     # of a column without rock the cells have no thickness; they are at the middle of the model
-    is_rock = (columns.blocks != _ABSENT).any(axis=1)
-    first = (columns.blocks != _ABSENT).argmax(axis=1)
-    bottom = columns.heights[np.arange(nx * ny), first]
     middle = (model.vertices[:, 2].min() + model.vertices[:, 2].max()) / 2
-    bottom = np.where(is_rock[:, None], bottom, middle)
-    depth = np.empty((count, layers, 2, ny, 2, nx, 2))
-    for number in range(count):
-        top = bottom.copy()
-        column, rank = np.nonzero(layer == number)
-        top[column] = columns.heights[column, rank]
-        bottom = top.copy()
-        bottom[column] = columns.heights[column, rank + 1]
+    corners = np.concatenate([columns.corners, np.full((1, 4), middle)])
+    contact = np.where(sizes > 0, np.cumsum(sizes) - sizes, len(columns.corners))
+    depth = np.empty((count * layers, 2, ny, 2, nx, 2))
+    bottom = corners[contact]
+    for number, is_present in enumerate(of_blocks.is_present):
+        contact = contact + is_present
+        top, bottom = bottom, corners[contact]
         for part in range(layers):
             for side in range(2):
                 share = (part + side) / layers
                 z = bottom if share == 1.0 else top + share * (bottom - top)
-                depth[number, part, side] = -z.reshape(ny, nx, 2, 2).transpose(0, 2, 1, 3)
-    zcorn = depth.reshape(2 * count * layers, 2 * ny, 2 * nx) + 0.0
-    fipnum = np.repeat(np.array(order, np.int32) + 1, layers)[:, None, None]
+                depth[number * layers + part, side] = -z.reshape(ny, nx, 2, 2).transpose(0, 2, 1, 3)
+    zcorn = depth.reshape(-1, 2 * ny, 2 * nx)
+    zcorn += 0.0  # no -0
+    fipnum = np.repeat(of_blocks.blocks.astype(np.int32) + 1, layers)[:, None, None]
     fipnum = np.broadcast_to(fipnum, (count * layers, ny, nx)).copy()
     pillars = frame.pillars()
     ends = np.broadcast_to([zcorn.min(), zcorn.max()], (*pillars.shape[:2], 2))
@@ -402,37 +476,24 @@ def _assembled(
     grid.actnum[:] = is_active
     volume = thickness[is_active] * frame.size.prod()
     grid.volumes[:] = np.bincount(fipnum[is_active] - 1, volume, len(model.blocks))
-    grid.warnings.extend(_warnings(model, grid, columns.blocks))
+    grid.warnings.extend(_warnings(grid, of_blocks))
     return grid
 
 
-def _layers_of(blocks: np.ndarray, order: list[int]) -> np.ndarray:
-    """(C, M) the place in the order of each block of each column, -1 for none."""
-    stacks, stack_of = np.unique(blocks, axis=0, return_inverse=True)
-    layer = np.full(stacks.shape, -1)
-    for number, stack in enumerate(stacks.tolist()):
-        ranks = [rank for rank, block in enumerate(stack) if block != _ABSENT]
-        layer[number, ranks] = _places(order, tuple(stack[rank] for rank in ranks))
-    return layer[stack_of.ravel()]
-
-
-def _warnings(model: ModelData, grid: CornerPointGrid, blocks: np.ndarray) -> list[BuildWarning]:
+def _warnings(grid: CornerPointGrid, of_blocks: _Layers) -> list[BuildWarning]:
     """What the grid shows otherwise than the model."""
-    warnings = [
-        BuildWarning(
-            f"block '{block.name}' has a volume of {volume:.6g} in the corner-point grid, "
-            f"{100 * change:+.2g} % of {block.volume:.6g} in the model; smaller columns change less",
-            "corner_point_volume",
-            model.rock_inputs[block.rock].rock.name if model.rock_inputs else None,
+    warnings = []
+    order = np.argsort(-np.abs(grid.difference), kind="stable")
+    changes = [(grid.names[block], float(grid.difference[block])) for block in order]
+    large = [f"'{name}' {100 * change:+.2g} %" for name, change in changes if abs(change) > _MOST_CHANGE]
+    if large:
+        text = (
+            "blocks that are few columns wide, or whose border is not along columns, have volumes in the "
+            "corner-point grid that differ by more than 1 % from the model; smaller columns change less: "
         )
-        for block, volume, change in zip(model.blocks, grid.volumes, grid.difference.tolist(), strict=True)
-        if abs(change) > _MOST_CHANGE
-    ]
-    repeated = [
-        f"'{name}' in {count}"
-        for number, name in enumerate(grid.names)
-        if (count := int(((blocks == number).sum(axis=1) > 1).sum()))
-    ]
+        warnings.append(BuildWarning(text + number_list(large), "corner_point_volume"))
+    repeats = zip(grid.names, of_blocks.repeats.tolist(), strict=True)
+    repeated = [f"'{name}' in {count}" for name, count in repeats if count]
     if repeated:
         text = (
             "pillars are vertical, so a block that is above and below another one, as at reverse faults, "
@@ -440,8 +501,10 @@ def _warnings(model: ModelData, grid: CornerPointGrid, blocks: np.ndarray) -> li
             "columns: "
         )
         warnings.append(BuildWarning(text + number_list(repeated), "corner_point_repeats"))
-    if gaps := int((blocks == _VOID).any(axis=1).sum()):
-        text = f"{gaps} columns of the corner-point grid go through a void, whose cells are inactive"
+    if of_blocks.voids:
+        text = (
+            f"{of_blocks.voids} columns of the corner-point grid go through a void, whose cells are inactive"
+        )
         warnings.append(BuildWarning(text, "corner_point_voids"))
     return warnings
 
