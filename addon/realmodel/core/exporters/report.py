@@ -21,6 +21,7 @@ from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
 from ..results.displacements import displacements
+from ..results.orientations.stereonet import StereonetData, dip_names, dip_sets, normals_of
 from ..results.sections.juxtaposition import fault_areas
 from ..results.tables import block_entry
 from ..results.volumes import Erosion, volume_deviations
@@ -128,6 +129,8 @@ def model_report(
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
         report["bodies"] = [body_entry(body) for body in model.structures.bodies]
+    if dips := _dips(model):
+        report["dips"] = dips
     if any(rock.observed is not None for rock in model.project.rocks):
         report |= observation_entries(observed(model))
     if erosion is not None:
@@ -243,6 +246,14 @@ def fault_entry(fault: Fault) -> dict:
         "ends_at": list(fault.ends_at),
         "dies_out": fault.dies_out,
     }
+
+
+def _dips(model: ModelData) -> list[dict]:
+    """The numbers of the stereonets of all dips but those of faults, of null, and of whatever some are of."""
+    sets = dip_sets(model.project)
+    has_beds = any(entry.dips.in_use.any() for entry in sets if not entry.of_fault)
+    names = [*([None] if has_beds else []), *dip_names(sets)]
+    return [{"of": name, **StereonetData(normals_of(sets, name)).numbers} for name in names]
 
 
 def _mean_and_largest(values: np.ndarray, mean: float) -> dict:
