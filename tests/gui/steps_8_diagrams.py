@@ -2,6 +2,8 @@
 """A stereonet beside the model: dips are brushed over in the viewport, a pole that is clicked leads to its
 dip; and what lies on both sides of a fault in an image editor."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 from realmodel.bl.field import handle, shown_net
@@ -14,6 +16,8 @@ from steps_2_view import in_the_viewport
 from steps_3_import import invoked
 from steps_5_structures import _show_alone
 from steps_8_wells import empty_file
+
+_SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 
 
 def _pixel_of_pole(walk, pole):
@@ -29,20 +33,17 @@ def _pixel_of_pole(walk, pole):
 def dips_are_brushed_over(walk):
     yield from empty_file(walk)
     walk.panels = _show_alone({"REALMODEL_PT_field", "REALMODEL_PT_structures"})
-    walk.over_viewport()
-    invoked(walk, bpy.ops.realmodel.open_sample, sample="faulted_dome")
-    yield lambda: idle() and len(model().results) > 0
-    for row in model().results:
-        row.object.hide_set(True)
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.open_project(filepath=str(_SAMPLES / "faulted_dome" / "project.toml"))
     view = model().view
     view.show_dips = view.show_stereonet = True
     with in_the_viewport(walk):
         bpy.ops.realmodel.view(direction="TOP")
+        bpy.ops.view3d.view_all()
     yield walk.redrawn(3)
     walk.shot("stereonet")
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.dips_pick)
-    x, y = walk.pixel_of((0.0, 0.0, 0.0))
     group = next(group for group in shown_net.data.groups(bpy.context.scene, shown_net.data.DIPS))
     origin = project_settings.model_origin(bpy.context.scene)
     for number in (0, 7, 9):
@@ -74,14 +75,16 @@ def a_pole_leads_to_its_dip(walk):
 
 
 def a_fault_in_an_image_editor(walk):
-    model().view.show_stereonet = False
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.open_sample, sample="fault_blocks")
+    yield lambda: idle() and len(model().results) > 0
     model().structure_kind = "FAULT"
     with in_the_viewport(walk):
         bpy.ops.realmodel.view_juxtaposition()
     yield walk.redrawn(3)
     windows = bpy.context.window_manager.windows
     areas = [area for window in windows for area in window.screen.areas if area.type == "IMAGE_EDITOR"]
-    assert [area.spaces.active.image.name for area in areas] == ["Juxtaposition eastern fault"]
+    assert [area.spaces.active.image.name for area in areas] == ["Juxtaposition main fault"]
     walk.shot("juxtaposition")
     with in_the_viewport(walk):
         bpy.ops.realmodel.view_juxtaposition(exaggeration=2.0)
