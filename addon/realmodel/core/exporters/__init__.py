@@ -22,6 +22,7 @@ from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
+from ..results.corner_point import CornerPointGrid, corner_point_grid
 from ..results.faults.juxtaposition import JuxtapositionData
 from ..results.faults.juxtaposition_drawing import draw_juxtaposition
 from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, draw_stereonet
@@ -30,7 +31,6 @@ from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
 from ..simulation.cleaned_cells import cleaned_cells
-from ..simulation.corner_point import CornerPointGrid, corner_point_grid
 from ..simulation.elements import ElementFaces
 from ..simulation.patches import solver_names
 from .formats import CORNER_POINT, FORMATS

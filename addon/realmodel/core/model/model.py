@@ -22,6 +22,7 @@ from ..proof.misfits import misfits
 from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
+from ..results.corner_point import corner_point_grid
 from ..results.geological_map import geological_map
 from ..results.layer_values import field_of, rock_fields
 from ..results.model_holes import borehole
@@ -30,7 +31,7 @@ from ..results.sheets import DEFAULT_SIZE, draw_sheets
 from ..results.tables import block_table, borehole_table, map_dataset
 from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
-from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, corner_point_grid, simulation_mesh
+from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
 from . import cutting, notebook_view
 from .juxtapositions import juxtaposition
 from .model_file import read_model

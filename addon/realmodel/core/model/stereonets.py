@@ -7,7 +7,9 @@ from pathlib import Path
 
 from ..cells.model_data import ModelData
 from ..exporters import STEREONET
-from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, normals_of
+from ..project.project import Project
+from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, dip_sets, normals_of
+from ..surfaces.prepare import with_arrays
 
 
 class Stereonet(StereonetData):
@@ -26,4 +28,17 @@ def stereonet(model: ModelData, of: str | None = None) -> Stereonet:
     Raises UsageError where there are none; InputRefused for a model without its project.
     """
     model.require_project("a stereonet")
-    return Stereonet(normals_of(model.project, of), of or model.project.name)
+    return _of_read(model.project, of)
+
+
+def _stereonet(project: Project, of: str | None = None) -> Stereonet:
+    """The dips of this project, which needs no build: its tables are read. As of Model.stereonet; raises
+    UsageError where there are none, InputRefused for what cannot be read."""
+    return _of_read(with_arrays(project), of)
+
+
+def _of_read(project: Project, of: str | None) -> Stereonet:
+    return Stereonet(normals_of(dip_sets(project), of), of or project.name)
+
+
+Project.stereonet = _stereonet

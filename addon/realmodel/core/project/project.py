@@ -449,6 +449,7 @@ class Project(Compared):
     """
 
     save: ClassVar[Callable[..., Path]]  # set by project_writer, which knows projects
+    stereonet: ClassVar[Callable[..., Any]]  # likewise by model/stereonets
 
     name: str = declared(kind="name", is_needed=True)
     rocks: list[Rock] = declared(kind="tables", key="rock", of=Rock, is_needed=True)

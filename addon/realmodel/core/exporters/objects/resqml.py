@@ -22,8 +22,8 @@ from ...base.atomic import Outputs
 from ...base.packages import extra
 from ...base.text import Step
 from ...cells.model_data import ModelData
+from ...results.corner_point import CornerPointGrid
 from ...settings.crs import epsg_code
-from ...simulation import CornerPointGrid
 from ..model_arrays import model_arrays
 from ..shapes.shape_parts import Part, block_materials
 from .object_contents import BODIES, FAULTS, Contents, Hole, SurfaceShape, stable_uuid

@@ -13,7 +13,7 @@ from ...base.algebra import begins_run
 from ...base.errors import number_list
 from ...base.text import Step
 from ...base.units import METERS, MODEL_UNIT
-from ...simulation import CornerPointGrid
+from ...results.corner_point import CornerPointGrid
 from ..encodings.text_rows import write_wrapped
 
 _A_LINE = 8

@@ -19,7 +19,7 @@ from ..base.errors import BuildWarning, InputRefused, UsageError, number_list
 from ..base.work import native_module
 from ..cells.model_data import ModelData
 from ..notebook import ShortRepr
-from ..results.samples import MOST_CELLS, CellSize, checked_size, over_centers
+from .samples import MOST_CELLS, CellSize, checked_size, over_centers
 
 _ABSENT, _VOID = -2, -1  # among the blocks of a column: no more, and a gap between two
 _NO_THICKNESS = 1e-9  # of the heights of the model
