@@ -32,7 +32,7 @@ def _pixel_of_pole(walk, pole):
 
 def dips_are_brushed_over(walk):
     yield from empty_file(walk)
-    walk.panels = _show_alone({"REALMODEL_PT_field", "REALMODEL_PT_structures"})
+    walk.panels = _show_alone({"REALMODEL_PT_field"})
     with in_the_viewport(walk):
         bpy.ops.realmodel.open_project(filepath=str(_SAMPLES / "faulted_dome" / "project.toml"))
     view = model().view
@@ -72,9 +72,13 @@ def a_pole_leads_to_its_dip(walk):
     assert color[0] > 0.8 and 0.4 < color[1] < 0.7 and color[2] < 0.2, "the pole is not marked"
     with in_the_viewport(walk):
         bpy.ops.realmodel.datum_leave()
+    for cls in walk.panels:
+        if not cls.is_registered:
+            bpy.utils.register_class(cls)
 
 
 def a_fault_in_an_image_editor(walk):
+    yield from empty_file(walk)
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.open_sample, sample="fault_blocks")
     yield lambda: idle() and len(model().results) > 0
@@ -89,9 +93,6 @@ def a_fault_in_an_image_editor(walk):
     with in_the_viewport(walk):
         bpy.ops.realmodel.view_juxtaposition(exaggeration=2.0)
     assert len(bpy.context.window_manager.windows) == 2, "the open editor shows it"
-    for cls in walk.panels:
-        if not cls.is_registered:
-            bpy.utils.register_class(cls)
     with bpy.context.temp_override(window=windows[1]):
         bpy.ops.wm.window_close()
     yield walk.redrawn(2)

@@ -117,13 +117,19 @@ class DipSet(NamedTuple):
 
 def dip_sets(project: Project) -> list[DipSet]:
     """The dips of a project that is read."""
-    sets = []
+    rows: list[tuple[Any, tuple[str | None, ...], bool]] = []
     for rock in project.rocks:
-        rows = [(rock.dips, None, None), *((series.dips, series.name, None) for series in rock.series)]
-        rows += [(surface.dips, surface.name, surface.series) for surface in rock.surfaces]
-        sets += [(dips, (rock.name, *filter(None, names)), False) for dips, *names in rows]
-    sets += [(fault.dips, (fault.name,), True) for fault in project.faults]
-    return [DipSet(dips, *more) for dips, *more in sets if isinstance(dips, Dips | SpaceDips)]
+        rows.append((rock.dips, (rock.name,), False))
+        rows += [(series.dips, (rock.name, series.name), False) for series in rock.series]
+        rows += [
+            (surface.dips, (rock.name, surface.name, surface.series), False) for surface in rock.surfaces
+        ]
+    rows += [(fault.dips, (fault.name,), True) for fault in project.faults]
+    return [
+        DipSet(dips, tuple(name for name in names if name is not None), of_fault)
+        for dips, names, of_fault in rows
+        if isinstance(dips, Dips | SpaceDips)
+    ]
 
 
 def dip_names(sets: Iterable[DipSet]) -> list[str]:
