@@ -356,11 +356,8 @@ class _Layers:
         column = columns.column
         sizes = np.bincount(column, minlength=count)
         rows = np.full((count, int(sizes.max(initial=1)) - 1), _ABSENT)
-        rank, inner = (
-            ranks_in_runs(sizes),
-            np.append(column[1:] == column[:-1], False),
-        )  # below the last is the outside
-        rows[column[inner], rank[inner]] = columns.below[inner]
+        inner = np.append(column[1:] == column[:-1], False)  # below the last is the outside
+        rows[column[inner], ranks_in_runs(sizes)[inner]] = columns.below[inner]
         begins = begins_run(rows)
         table, number = np.unique(rows[begins], axis=0, return_inverse=True)
         stack_of = number.ravel()[np.cumsum(begins) - 1]
@@ -503,7 +500,7 @@ def _warnings(grid: CornerPointGrid, of_blocks: _Layers) -> list[BuildWarning]:
         warnings.append(BuildWarning(text + number_list(repeated), "corner_point_repeats"))
     if of_blocks.voids:
         text = (
-            f"{of_blocks.voids} columns of the corner-point grid go through a void, whose cells are inactive"
+            f"{of_blocks.voids} columns of the corner-point grid go through a void, which has no active cells"
         )
         warnings.append(BuildWarning(text, "corner_point_voids"))
     return warnings
