@@ -3,8 +3,8 @@
 with its arrays.
 
 Surfaces are triangulated sets of horizons, faults and boundaries of geobodies. Blocks are closed ones of
-geologic units and geobodies: few programs read the format's sealed frameworks. Boreholes are trajectories
-with frames of intervals and of markers.
+stratigraphic units and geobodies: resqpy has no sealed frameworks. Boreholes are trajectories with frames of
+intervals and of markers.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ _LONG_AGO = "1970-01-01T00:00:00Z"  # of all that the library dates: the same mo
 _DATES, _PERSONS = ("Creation", "created"), ("Originator", "creator")
 _UNKNOWN = -1  # in lists of names
 _LINEAR = 1  # the kind of a trajectory
+_ROUNDING = 1e-9  # of the heights of a grid: less is no step
 
 
 def write_resqml(
@@ -68,7 +69,7 @@ def _digest(model: ModelData, grid: CornerPointGrid | None) -> str:
 
 @contextmanager
 def _numbered(digest: str) -> Iterator[None]:
-    """Within it the library's identifiers count on from one that the digest gives."""
+    """Within it the library's identifiers count on from one that the digest gives, in all threads."""
     identifiers = extra("resqpy.olio.uuid", "writing RESQML", "resqml")
     identifiers.switch_on_test_mode(stable_uuid("resqml", digest).int)
     try:
@@ -365,9 +366,11 @@ def _coordinate_lines(grid: CornerPointGrid) -> tuple[np.ndarray, ...]:
     for corner, (j, i) in enumerate(np.ndindex(2, 2)):
         around[:, j : j + ny, i : i + nx, corner] = corners[:, :, j, :, i]
         column[j : j + ny, i : i + nx, corner] = np.arange(ny * nx).reshape(ny, nx)
+    same = _ROUNDING * np.ptp(corners)
     line = np.tile(np.arange(4), (ny + 1, nx + 1, 1))  # that of the first column with these heights
     for corner, other in ((1, 0), (2, 0), (3, 0), (2, 1), (3, 1), (3, 2)):
-        is_same = (around[..., corner] == around[..., other]).all(axis=0) & (line[..., corner] == corner)
+        is_same = (abs(around[..., corner] - around[..., other]) <= same).all(axis=0)
+        is_same &= line[..., corner] == corner
         line[is_same, corner] = line[is_same, other]
     line[column < 0] = 4
     first = line.min(axis=2, keepdims=True)
