@@ -118,12 +118,13 @@ class _Objects:
         )
         self._crs.create_xml()
         self._lookups: dict[tuple[str, ...], Any] = {}
-        self._horizons: dict[str, Any] = {}
+        self._horizons: dict[tuple[int, str], Any] = {}  # by rock mass and surface
 
     def write(self) -> None:
         """All but the grid."""
-        for name, shape in zip(self._model.surface_names, self._contents.surfaces, strict=True):
-            self._add_surface(name, shape)
+        boundaries = iter([self._add_surface(shape) for shape in self._contents.surfaces])
+        for number, rock in enumerate(self._model.project.rocks):  # their surfaces are the first ones
+            self._horizons.update({(number, surface.name): next(boundaries) for surface in rock.surfaces})
         for shell in self._contents.blocks:
             block = self._model.blocks[shell.number]
             about = {
@@ -163,11 +164,9 @@ class _Objects:
         elif node.get(kind) == "resqml2:Hdf5Dataset":
             node.set(kind, "eml:Hdf5Dataset")
 
-    def _add_surface(self, name: str, shape: SurfaceShape) -> None:
+    def _add_surface(self, shape: SurfaceShape) -> Any:
+        """Returns the interpretation that it represents."""
         boundary = self._boundary(shape)
-        if shape.group not in (FAULTS, BODIES):
-            # picks name a surface of their rock mass, so a name that two have says too little
-            self._horizons[name] = None if name in self._horizons else boundary
         made = self._triangles(shape.part, boundary, {})
         for key, values in shape.values.items():
             is_variance = key == "variance"
@@ -181,6 +180,7 @@ class _Objects:
                 indexable_element="nodes",
                 uom=self._unit,
             )
+        return boundary
 
     def _boundary(self, shape: SurfaceShape) -> Any:
         """The interpretation that a surface represents."""
@@ -233,8 +233,8 @@ class _Objects:
             title=f"pick of {hole.name}",
             extra_metadata={"hole": hole.name, "surface": hole.surfaces[0]},
         )
-        if horizon := self._horizons.get(hole.surfaces[0]):
-            made.set_represented_interpretation_root(horizon.root)
+        horizon = self._horizons[hole.rock, hole.surfaces[0]]
+        made.set_represented_interpretation_root(horizon.root)
         made.write_hdf5()
         made.create_xml()
 
@@ -282,11 +282,10 @@ class _Objects:
         frame.marker_list = []
         for rank, number in enumerate(at):
             name = hole.surfaces[number]
-            horizon = self._horizons.get(name)
+            horizon = self._horizons.get((hole.rock, name))  # a pick may name what is no surface
+            identifier = None if horizon is None else horizon.uuid
             frame.marker_list.append(
-                self._well.WellboreMarker(
-                    self._file, frame, rank, None, "horizon", horizon and horizon.uuid, name
-                )
+                self._well.WellboreMarker(self._file, frame, rank, None, "horizon", identifier, name)
             )
         frame.write_hdf5()
         frame.create_xml()
