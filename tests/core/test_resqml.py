@@ -243,11 +243,15 @@ def test_markers_are_of_the_surfaces_of_their_rock_mass(tmp_path):
     rocks = []
     for number, x in enumerate((0.0, 20.0)):
         surfaces = [
-            Surface(f"S{k}", np.column_stack([PLAN + (x, 0.0), np.full(4, 4.0 * k)]), [[0, 1, 2], [0, 2, 3]])
+            Surface(
+                f"S{k}",
+                np.column_stack([PLAN + np.array([x, 0.0]), np.full(4, 4.0 * k)]),
+                [[0, 1, 2], [0, 2, 3]],
+            )
             for k in range(2)
         ]
         place = np.array([x + 2.0, 3.0, 4.0])
-        picks = {f"H{number} & <é>": (place + (0.0, 0.0, 5.0), [("S1", place)])}
+        picks = {f"H{number} & <é>": (place + np.array([0.0, 0.0, 5.0]), [("S1", place)])}
         rocks.append(Rock(f"r{number}", surfaces, hole_picks=picks))
     build(Project("two", rocks)).save(tmp_path / "m.epc")
     known = {name: markers for name, (*_, markers) in holes(Read(tmp_path / "m.epc")).items()}
