@@ -4,11 +4,13 @@
 import json
 import re
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from object_models import assert_closed, assert_shared, crossing_model, logged_model, volume
 from realmodel.core import Body, Fault, OutputFailed, Project, Rock, Surface, build
+from realmodel.core.exporters import MODEL
 from realmodel.core.exporters.objects import resqml
 from structure_cases import ball, plane_fault
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
@@ -237,6 +239,25 @@ def test_a_pick_alone_is_a_point_of_its_horizon(tmp_path):
     assert read.represents(made) == ["HorizonInterpretation", "GeneticBoundaryFeature"]
 
 
+def test_markers_are_of_the_surfaces_of_their_rock_mass(tmp_path):
+    rocks = []
+    for number, x in enumerate((0.0, 20.0)):
+        surfaces = [
+            Surface(
+                f"S{k}",
+                np.column_stack([PLAN + np.array([x, 0.0]), np.full(4, 4.0 * k)]),
+                [[0, 1, 2], [0, 2, 3]],
+            )
+            for k in range(2)
+        ]
+        place = np.array([x + 2.0, 3.0, 4.0])
+        picks = {f"H{number} & <é>": (place + np.array([0.0, 0.0, 5.0]), [("S1", place)])}
+        rocks.append(Rock(f"r{number}", surfaces, hole_picks=picks))
+    build(Project("two", rocks)).save(tmp_path / "m.epc")
+    known = {name: markers for name, (*_, markers) in holes(Read(tmp_path / "m.epc")).items()}
+    assert known == {"H0 & <é>": [("S1", 5.0, "S1")], "H1 & <é>": [("S1", 5.0, "S1 (2)")]}
+
+
 @pytest.mark.parametrize("azimuth", [0.0, 30.0])
 @pytest.mark.parametrize("name", [*MODELS, "structured", "void"])
 def test_the_grid_is_the_corner_point_grid(name, azimuth, tmp_path):
@@ -250,7 +271,7 @@ def test_the_grid_is_the_corner_point_grid(name, azimuth, tmp_path):
     corners = grid.corner_points() + read.origin
     assert corners.shape == (nz, ny, nx, 2, 2, 2, 3)
     depths = wanted.zcorn.reshape(nz, 2, ny, 2, nx, 2).transpose(0, 2, 4, 1, 3, 5)
-    assert np.array_equal(-corners[..., 2], depths)
+    assert np.allclose(-corners[..., 2], depths, rtol=0, atol=1e-9 * np.ptp(depths))
     for j, i in np.ndindex(2, 2):
         pillars = wanted.coord[j : j + ny, i : i + nx, :2]
         assert np.allclose(corners[:, :, :, 0, j, i, :2], pillars, rtol=0, atol=1e-9)
@@ -262,6 +283,18 @@ def test_the_grid_is_the_corner_point_grid(name, azimuth, tmp_path):
     )
     i, j, k = (corners[-1, 0, 0][at] - corners[-1, 0, 0, 0, 0, 0] for at in ((0, 0, 1), (0, 1, 0), (1, 0, 0)))
     assert (np.dot(np.cross(i, j), k) > 0) == bool(grid.grid_is_right_handed)
+
+
+@pytest.mark.parametrize(("name", "splits"), [("layered", 0), ("faulted", 11)])
+def test_pillars_are_split_at_faults_and_not_by_rounding(name, splits, tmp_path):
+    model = MODELS[name]()
+    grid = model.corner_point_grid(10.0)
+    noise = np.random.default_rng(1).uniform(-1e-13, 1e-13, grid.zcorn.shape)
+    noise[2::2] = noise[1:-1:2]  # of one corner in two cells
+    noisy = replace(grid, zcorn=grid.zcorn + noise)
+    MODEL.save(model, tmp_path / "m.epc", cell_size=10.0, grid=noisy)
+    read = Read(tmp_path / "m.epc").grid()
+    assert (read.split_pillars_count if read.has_split_coordinate_lines else 0) == splits
 
 
 def test_there_is_no_grid_without_a_size_of_cells(model, tmp_path):

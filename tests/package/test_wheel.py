@@ -161,7 +161,7 @@ def test_what_pip_and_pypi_are_told(wheels):
         assert (about["Name"], about["Version"]) == ("realmodel", VERSION)
         assert about["Requires-Python"] == ">=3.11"
         assert about["License-Expression"] == "GPL-3.0-or-later"
-        assert {"dask", "geoh5", "ifc", "notebook", "omf"} <= set(about.get_all("Provides-Extra"))
+        assert {"dask", "geoh5", "ifc", "notebook", "omf", "resqml"} <= set(about.get_all("Provides-Extra"))
         assert about.get_payload().lstrip().startswith("<!-- SPDX"), name
 
 

@@ -21,7 +21,8 @@ from ..shapes.shape_parts import FaceTriangles, Part, distinct_names, model_part
 
 WALL, BASE, CUT = "wall", "base", "cut"
 _OF_NO_SURFACE = (CUT, BASE, WALL)  # face_surface -3, -2, -1
-_KINDS = _, FAULTS, BODIES = ("Interfaces", "Faults", "Bodies")  # surface_kind
+FAULTS, BODIES = "Faults", "Bodies"
+_KINDS = ("Interfaces", FAULTS, BODIES)  # surface_kind
 _BODY = _KINDS.index(BODIES)
 _OF_PROPERTY = ("name", "rock", "age", "structure", "density", "description")
 
@@ -58,12 +59,14 @@ class SurfaceShape:
 class Hole:
     """A borehole of the project. places (N, 3): its collar, if that is known, the ends of its intervals and
     its picks, downward. blocks (N - 1,): the number of the block between two of them, -1 where that is not
-    known, as core was lost. surfaces (N,): the surface there, "" where there is none."""
+    known, as core was lost. surfaces (N,): the surface there, "" where there is none. rock: the index of the
+    rock mass that has them."""
 
     name: str
     places: np.ndarray
     blocks: list[int]
     surfaces: list[str]
+    rock: int = 0
 
     @property
     def depths(self) -> np.ndarray:
@@ -142,14 +145,16 @@ def _known_values(model: ModelData, number: int) -> dict[str, np.ndarray]:
 
 def _holes(model: ModelData) -> list[Hole]:
     """The boreholes of all rock masses: as they were logged; of those without intervals their picks."""
-    holes, first = [], 0
+    holes: list[Hole] = []
+    hole: Hole | None
+    first = 0
     number_of = {block.surface: number for number, block in enumerate(model.blocks) if block.cells}
     bodies = {
         model.surface_names[surface]: number
         for surface, number in number_of.items()
         if model.surface_kind[surface] == _BODY
     }
-    for rock, entry in zip(model.project.rocks, model.rock_inputs, strict=True):
+    for number, (rock, entry) in enumerate(zip(model.project.rocks, model.rock_inputs, strict=True)):
         beneath = [number_of.get(first + k, -1) for k in range(len(rock.surfaces))]
         first += len(rock.surfaces)
         logs = {} if rock.observed is None else rock.observed.logs()
@@ -158,9 +163,10 @@ def _holes(model: ModelData) -> list[Hole]:
             if name in logs:
                 numbers = BlockNumbers(rock, list(bodies)).of(logs[name].blocks)
                 blocks = np.array([*beneath, *bodies.values(), -1])[numbers]
-                holes.append(_logged(entry, logs[name], blocks.tolist(), collar, picks))
-            elif (hole := _picked(rock, name, beneath, collar, picks)) is not None:
-                holes.append(hole)
+                hole = _logged(entry, logs[name], blocks.tolist(), collar, picks)
+            else:
+                hole = _picked(rock, name, beneath, collar, picks)
+            holes += [] if hole is None else [replace(hole, rock=number)]
     return holes
 
 

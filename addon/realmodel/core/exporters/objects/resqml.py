@@ -3,8 +3,8 @@
 with its arrays.
 
 Surfaces are triangulated sets of horizons, faults and boundaries of geobodies. Blocks are closed ones of
-geologic units and geobodies: few programs read the format's sealed frameworks. Boreholes are trajectories
-with frames of intervals and of markers.
+stratigraphic units and geobodies: resqpy has no sealed frameworks. Boreholes are trajectories with frames of
+intervals and of markers.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ _LONG_AGO = "1970-01-01T00:00:00Z"  # of all that the library dates: the same mo
 _DATES, _PERSONS = ("Creation", "created"), ("Originator", "creator")
 _UNKNOWN = -1  # in lists of names
 _LINEAR = 1  # the kind of a trajectory
+_ROUNDING = 1e-9  # of the heights of a grid: less is no step
 
 
 def write_resqml(
@@ -68,7 +69,7 @@ def _digest(model: ModelData, grid: CornerPointGrid | None) -> str:
 
 @contextmanager
 def _numbered(digest: str) -> Iterator[None]:
-    """Within it the library's identifiers count on from one that the digest gives."""
+    """Within it the library's identifiers count on from one that the digest gives, in all threads."""
     identifiers = extra("resqpy.olio.uuid", "writing RESQML", "resqml")
     identifiers.switch_on_test_mode(stable_uuid("resqml", digest).int)
     try:
@@ -117,12 +118,13 @@ class _Objects:
         )
         self._crs.create_xml()
         self._lookups: dict[tuple[str, ...], Any] = {}
-        self._horizons: dict[str, Any] = {}
+        self._horizons: dict[tuple[int, str], Any] = {}  # by rock mass and surface
 
     def write(self) -> None:
         """All but the grid."""
-        for name, shape in zip(self._model.surface_names, self._contents.surfaces, strict=True):
-            self._add_surface(name, shape)
+        boundaries = iter([self._add_surface(shape) for shape in self._contents.surfaces])
+        for number, rock in enumerate(self._model.project.rocks):  # their surfaces are the first ones
+            self._horizons.update({(number, surface.name): next(boundaries) for surface in rock.surfaces})
         for shell in self._contents.blocks:
             block = self._model.blocks[shell.number]
             about = {
@@ -162,11 +164,9 @@ class _Objects:
         elif node.get(kind) == "resqml2:Hdf5Dataset":
             node.set(kind, "eml:Hdf5Dataset")
 
-    def _add_surface(self, name: str, shape: SurfaceShape) -> None:
+    def _add_surface(self, shape: SurfaceShape) -> Any:
+        """Returns the interpretation that it represents."""
         boundary = self._boundary(shape)
-        if shape.group not in (FAULTS, BODIES):
-            # picks name a surface of their rock mass, so a name that two have says too little
-            self._horizons[name] = None if name in self._horizons else boundary
         made = self._triangles(shape.part, boundary, {})
         for key, values in shape.values.items():
             is_variance = key == "variance"
@@ -180,6 +180,7 @@ class _Objects:
                 indexable_element="nodes",
                 uom=self._unit,
             )
+        return boundary
 
     def _boundary(self, shape: SurfaceShape) -> Any:
         """The interpretation that a surface represents."""
@@ -232,8 +233,8 @@ class _Objects:
             title=f"pick of {hole.name}",
             extra_metadata={"hole": hole.name, "surface": hole.surfaces[0]},
         )
-        if horizon := self._horizons.get(hole.surfaces[0]):
-            made.set_represented_interpretation_root(horizon.root)
+        horizon = self._horizons[hole.rock, hole.surfaces[0]]
+        made.set_represented_interpretation_root(horizon.root)
         made.write_hdf5()
         made.create_xml()
 
@@ -281,11 +282,10 @@ class _Objects:
         frame.marker_list = []
         for rank, number in enumerate(at):
             name = hole.surfaces[number]
-            horizon = self._horizons.get(name)
+            horizon = self._horizons.get((hole.rock, name))  # a pick may name what is no surface
+            identifier = None if horizon is None else horizon.uuid
             frame.marker_list.append(
-                self._well.WellboreMarker(
-                    self._file, frame, rank, None, "horizon", horizon and horizon.uuid, name
-                )
+                self._well.WellboreMarker(self._file, frame, rank, None, "horizon", identifier, name)
             )
         frame.write_hdf5()
         frame.create_xml()
@@ -365,9 +365,11 @@ def _coordinate_lines(grid: CornerPointGrid) -> tuple[np.ndarray, ...]:
     for corner, (j, i) in enumerate(np.ndindex(2, 2)):
         around[:, j : j + ny, i : i + nx, corner] = corners[:, :, j, :, i]
         column[j : j + ny, i : i + nx, corner] = np.arange(ny * nx).reshape(ny, nx)
+    same = _ROUNDING * np.ptp(corners)
     line = np.tile(np.arange(4), (ny + 1, nx + 1, 1))  # that of the first column with these heights
     for corner, other in ((1, 0), (2, 0), (3, 0), (2, 1), (3, 1), (3, 2)):
-        is_same = (around[..., corner] == around[..., other]).all(axis=0) & (line[..., corner] == corner)
+        is_same = (abs(around[..., corner] - around[..., other]) <= same).all(axis=0)
+        is_same &= line[..., corner] == corner
         line[is_same, corner] = line[is_same, other]
     line[column < 0] = 4
     first = line.min(axis=2, keepdims=True)
