@@ -24,7 +24,6 @@ from ...base.text import Step
 from ...cells.model_data import ModelData
 from ...results.corner_point import CornerPointGrid
 from ...settings.crs import epsg_code
-from ..model_arrays import model_arrays
 from ..shapes.shape_parts import Part, block_materials
 from .object_contents import BODIES, FAULTS, Contents, Hole, SurfaceShape, stable_uuid
 
@@ -61,8 +60,10 @@ def write_resqml(
 
 def _digest(model: ModelData, grid: CornerPointGrid | None) -> str:
     """Of the geometry, so that files of different models have no object in common."""
-    digest = hashlib.blake2b(model.project.name.encode(), digest_size=16)
-    for array in [*model_arrays(model).values(), *([] if grid is None else [grid.zcorn])]:
+    names = "\n".join([model.project.name, *(block.name for block in model.blocks)])
+    digest = hashlib.blake2b(names.encode(), digest_size=16)
+    arrays = [model.vertices, model.face_vertices, model.face_cells, model.cell_block, model.surface_vertices]
+    for array in [*arrays, *([] if grid is None else [grid.zcorn])]:
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()
 
