@@ -94,9 +94,8 @@ def _names_of(axis: str) -> tuple[str, ...]:
 
 
 AXES = {axis: _names_of(axis) for axis in _WORDS}
-_WKT_FIRST = re.compile(
-    rb'(?:\xef\xbb\xbf)?"?WKT"?\s*[,;\t\r\n]', re.IGNORECASE
-)  # as GDAL writes a table of shapes
+# As GDAL writes a table of shapes.
+_WKT_FIRST = re.compile(rb'(?:\xef\xbb\xbf)?"?WKT"?\s*[,;\t\r\n]', re.IGNORECASE)
 # Taken where no column has one of those names, with a warning.
 _DEGREES = {
     "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),
