@@ -268,9 +268,12 @@ def mapped(walk):
 
 
 def structures(walk):
-    """The compartments of a graben moved apart."""
+    """The compartments of a graben moved apart, what lies on both sides of a fault of Fault Blocks, and the
+    dips of Recumbent Fold."""
     import bpy
     from driver import save_picture
+    from realmodel.core import build as build_model
+    from realmodel.core import load_project
 
     yield from settled(walk)
     guide_scenes.graben()
@@ -281,6 +284,12 @@ def structures(walk):
     frame(walk, 0.74)  # of the blocks where they belong
     yield from settled(walk)
     save_picture(viewed(walk), walk.folder / "structures.png")
+    projects = {
+        name: guide_scenes.SAMPLES / name / "project.toml" for name in ("fault_blocks", "recumbent_fold")
+    }
+    faulted = build_model(load_project(projects["fault_blocks"]))
+    faulted.juxtaposition("main fault").save(walk.folder / "juxtaposition.png")
+    load_project(projects["recumbent_fold"]).stereonet().save(walk.folder / "stereonet.png")
 
 
 OF_PANELS = (start, tour, csv_panel)  # pictures of the sidebar alone

@@ -16,7 +16,7 @@ from bpy.props import (
 
 from .bl import changes
 from .bl.display import cuts, fields
-from .bl.field import boreholes, shown_log
+from .bl.field import boreholes, shown_log, shown_net
 from .bl.objects.stored_arrays import ArraysProperty
 from .core.proof.misfits import DIP_TOLERANCE
 
@@ -215,6 +215,30 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.overlay,
     )
+    show_stereonet: BoolProperty(
+        name="Stereonet",
+        description="Show the poles of dips with their density, mean plane and fold axis beside the model, "
+        "in the viewport and in pictures. Pick Datum finds the dip of a pole that is clicked; dips that were "
+        "not picked are light gray",
+        options=set(),
+        update=changes.field_data,
+    )
+    stereonet_of: StringProperty(
+        name="Dips Of",
+        description="Surface, block, series, rock mass or fault whose dips the stereonet has; empty: those "
+        "that were picked, else all but those of faults",
+        search=lambda self, _context, _text: shown_net.names(self.id_data),
+        options=set(),
+        update=changes.field_data,
+    )
+    net: EnumProperty(
+        name="Net",
+        description="How the lower hemisphere is projected",
+        items=shown_net.NET_ITEMS,
+        options=set(),
+        update=changes.overlay,
+    )
+    picked_dips: StringProperty(options={"HIDDEN"})  # JSON of the texts of the picked data
     hole_width: FloatProperty(
         name="Holes Within",
         description="Distance from the section plane within which boreholes, contacts and dips are shown on "

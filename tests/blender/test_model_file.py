@@ -102,3 +102,16 @@ class Opened(PanelCase):
         before = inventory()
         self.refused(ops.open_project, r"m\.npz: not an \.npz file", filepath=str(bad))
         self.assertEqual(inventory(), before)
+
+    def test_a_page_is_shared_in_the_colors_that_are_seen(self):
+        stack(0.0, 20.0, 40.0)
+        ops.library_add(name="Sand")
+        row = self.model.library[-1]
+        row.has_color, row.color = True, (0.1, 0.2, 0.3)
+        self.model.rocks[0].surfaces[1].property_id = row.id
+        ops.build()
+        row.color = (0.25, 0.5, 1.0)
+        page = self.folder / "model.html"
+        self.assertEqual(ops.share(filepath=str(page)), {"FINISHED"})
+        self.assertTrue('"material":"Sand"' in page.read_text() and '"color":"#4080ff"' in page.read_text())
+        self.refused(ops.share, "must end in .html", filepath=str(self.folder / "model.txt"))

@@ -26,6 +26,7 @@ CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a vi
         "estimate",
         "report",
         "save_section",
+        *("save_juxtaposition", "view_juxtaposition", "save_stereonet"),
         "save_sheets",
         "save_chart",
         "planned_hole_save",

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small faults, surfaces and rock masses for the tests of structures."""
 
+from collections import Counter
+
 import numpy as np
+import pytest
 from realmodel.core.base.mapped_arrays import unchanged
 from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
@@ -98,3 +101,25 @@ def ball(center, radius, n=9):
         triangles += [np.column_stack([low + turn, high + turn, high + k])]
     triangles.append(np.column_stack([last - 2 * n + k, last - 2 * n + turn, last + 0 * k]))
     return np.asarray(center) + radius * vertices, np.concatenate(triangles).astype(np.int32)
+
+
+def assert_areas_of_faces(model):
+    """The areas of each juxtaposition diagram are those of the model's faces on the fault, summed by
+    themselves, without sides."""
+    size = np.ptp(model.vertices, axis=0).max()
+    for number, surface in enumerate(np.flatnonzero(model.surface_kind == 1)):
+        sums = Counter()
+        for face in np.flatnonzero(model.face_surface == surface).tolist():
+            corners = model.vertices[model.face_vertices[slice(*model.face_offsets[face : face + 2])]]
+            cells = model.face_cells[face].tolist()
+            pair = frozenset(
+                model.blocks[model.cell_block[cell]].name if cell >= 0 else None for cell in cells
+            )
+            spokes = corners[1:] - corners[0]
+            sums[pair] += np.linalg.norm(np.cross(spokes[:-1], spokes[1:]).sum(axis=0)) / 2
+        if not sums:
+            continue
+        areas = Counter()
+        for pair, area in model.juxtaposition(number).areas.items():
+            areas[frozenset(pair)] += area
+        assert areas == pytest.approx(sums, rel=1e-11, abs=1e-12 * size**2)

@@ -14,6 +14,7 @@ from realmodel.core.base.work import run
 from realmodel.core.results.displacements import displacements
 from realmodel.core.structures.shapes.reading import read_structures
 from stacks import places, real_faults
+from structure_cases import assert_areas_of_faces
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "blend_samples" / "fault_blocks"
@@ -65,8 +66,9 @@ def test_sticks_of_a_real_reservoir():
 
 
 def checked(project_path, model, tmp_path):
-    """Passes the proof, and the outside checker where it is there."""
+    """Passes the proof, and the outside checker where it is there; what lies across its faults adds up."""
     assert model.validate(1000).passed
+    assert_areas_of_faces(model)
     check = places.CHECK / "check_model.py"
     if check.is_file():
         model.save(tmp_path / "model.npz")

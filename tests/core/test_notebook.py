@@ -23,6 +23,7 @@ from realmodel.core import (
     build_surfaces,
     load_project,
 )
+from realmodel.core.model import notebook_view
 from sample_models import three_layers
 from structure_cases import ball, plane_fault
 
@@ -96,10 +97,13 @@ def test_a_model_without_cells_is_shown(model):
     apart = model.cut_by_plane((0, 0, 9), (0, 0, 1)).above
     assert repr(apart).splitlines()[2] == "  no cells m; 0 warnings"
     assert "<img" not in apart._repr_html_()
+    assert "<iframe" not in apart._repr_html_()
     assert apart.to_pyvista().n_cells == 0
 
 
-def test_a_notebook_shows_the_blocks_and_a_picture(model):
+def test_a_notebook_shows_the_blocks_and_a_picture(model, monkeypatch):
+    assert "<iframe" in model._repr_html_()  # test_page.py opens it
+    monkeypatch.setattr(notebook_view, "_LARGEST_PAGE", 0)
     html = model._repr_html_()
     assert Cells(html).rows[1:] == [
         ["", "soil", "hill", "8", "16.7 %", "1", "2"],

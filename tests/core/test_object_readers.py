@@ -205,6 +205,67 @@ def test_intervals_of_a_group_of_drillholes_are_picks_at_their_tops(tmp_path):
     assert [(each.kind, each.hole) for each in unknown.left_out] == [("unknown_block", hole) for hole in "AB"]
 
 
+def group_of_drillholes(path, tables):
+    """A geoh5 file of inclined holes; tables: the ends of the intervals of each hole, and their units."""
+    geoh5py, groups, objects = geoh5_modules()
+    with geoh5py.Workspace.create(path) as workspace:
+        group = groups.DrillholeGroup.create(workspace, name="holes")
+        for number, (name, (ends, units)) in enumerate(tables.items()):
+            hole = objects.Drillhole.create(
+                workspace,
+                name=name,
+                parent=group,
+                collar=[10.0 * number, 0.0, 100.0],
+                surveys=np.array([[0.0, 90.0, -45.0]]),
+            )
+            values = {"values": np.array(units), "from-to": np.array(ends, float), "type": "text"}
+            hole.add_data({"Lithology": values})
+    return path
+
+
+def test_intervals_of_objects_are_repaired_as_those_of_tables(tmp_path):
+    ends = [[2, 5], [5.00390625, 8], [7.5, 9]]  # begins below the collar, with a gap and an overlap
+    path = group_of_drillholes(
+        tmp_path / "d.geoh5", {name: (ends, ["soil", "clay", "rock"]) for name in ("A", "B")}
+    )
+    names = ["rock", "clay", "soil"]
+    picks = read_picks(Boreholes(intervals=path), units=UnitNames(names, names), plan_step=100.0)
+    assert [(problem.kind, problem.hole) for problem in picks.problems] == [
+        ("gap", "A"),
+        ("overlap", "A"),
+        ("gap", "B"),
+        ("overlap", "B"),
+    ]
+    assert picks.problems[0].text.startswith(
+        "row 2, hole 'A' at 5.00195312, 'clay': gap of 0.00390625 beside row 1,"
+    )
+    (seen,) = picks.observations
+    ours = seen.holes == "A"
+    assert seen.depths[ours].tolist() == [2, 5.001953125, 5.001953125, 7.5, 8, 9]
+    along = seen.depths[ours] * np.sqrt(0.5)
+    wanted = np.column_stack([along, 0 * along, 100 - along])
+    assert np.allclose(seen.places[ours], wanted, atol=1e-5)
+
+    kept = read_picks(
+        Boreholes(intervals=path, unrepaired=["d.geoh5:1"], left_out=["d.geoh5:3"]),
+        units=UnitNames(names, names),
+    )
+    assert [problem.kind for problem in kept.problems if problem.hole == "A"] == [
+        "unrepaired",
+        "switched_off",
+    ]
+
+
+def test_picks_and_intervals_of_two_files_of_objects(tmp_path):
+    logged = group_of_drillholes(tmp_path / "i.geoh5", {"A": ([[0, 4], [4, 9]], ["soil", "clay"])})
+    met = group_of_drillholes(tmp_path / "p.geoh5", {"A": ([[1, 3], [3, 5]], ["top", "base"])})
+    names = ["clay", "soil", "base", "top"]
+    picks = read_picks(Boreholes(met, intervals=logged), units=UnitNames(names, names))
+    assert set(picks.points) == {"top", "base"}
+    assert np.allclose(picks.points["base"][0, 2], 100 - 3 * np.sqrt(0.5), atol=1e-5)
+    assert [name for name, _ in picks.holes["A"][1]] == ["soil", "top", "base", "clay"]
+
+
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_logged_intervals_of_objects_are_those_of_a_table(write, tmp_path, ending):
     """A model from intervals in a table; its file; and a model from that."""

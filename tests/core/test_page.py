@@ -199,4 +199,23 @@ def test_names_are_text_whatever_they_hold(tmp_path):
     found, said = browse(model.to_html(), script, tmp_path)
     assert said == []
     assert found["title"] == "</title><script>said.push('run')</script>"
-    assert found["rows"] == [" ".join(name.split()) for name in reversed(names)]
+    assert found["rows"] == names[::-1]
+
+
+@_NEEDS_BROWSER
+def test_a_notebook_shows_the_page_in_a_frame(tmp_path):
+    script = """
+    const frame = document.querySelector("iframe");
+    while (!(frame.contentWindow.realmodel)) await new Promise(done => setTimeout(done, 20));
+    const inside = frame.contentDocument, { realmodel } = frame.contentWindow;
+    inside.getElementById("top").click();
+    return { blocks: realmodel.data.blocks.length, address: frame.contentWindow.location.href,
+             hasLink: !inside.getElementById("link").hidden, width: inside.getElementById("canvas").width };
+    """
+    page = (
+        f"<!DOCTYPE html><html data-ready=yes><head></head><body>{build(cake())._repr_html_()}</body></html>"
+    )
+    shown, said = browse(page, script, tmp_path)
+    assert said == []
+    assert (shown["blocks"], shown["address"], shown["hasLink"]) == (3, "about:srcdoc", False)
+    assert shown["width"] > 300

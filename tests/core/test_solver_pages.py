@@ -28,6 +28,7 @@ CHAPTERS = {
     "OpenGeoSys": ogs_program,
     "CalculiX": lambda: shutil.which("ccx") and importlib.util.find_spec("meshio"),
     "MODFLOW": lambda: importlib.util.find_spec("flopy"),
+    "OPM Flow": lambda: shutil.which("flow"),
 }
 
 

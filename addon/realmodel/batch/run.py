@@ -307,9 +307,18 @@ def _cleaned_cells(options: argparse.Namespace, model, progress):
     )
 
 
+def _with_grid(options: argparse.Namespace) -> list[Path]:
+    """The files of --export that have a corner-point grid: RESQML's where the size of cells is given."""
+    return [
+        path
+        for path in _with_option(options.export, "grid")
+        if options.cell_size is not None or "corner point" in MODEL.format(path).takes
+    ]
+
+
 def _corner_point(options: argparse.Namespace, model, progress):
     """The corner-point grid of --export, or None."""
-    if not _with_option(options.export, "grid_layers"):
+    if not _with_grid(options):
         return None
     progress(1.0, "making the corner-point grid")
     return model.corner_point_grid(options.cell_size, options.grid_layers or 1, options.grid_azimuth or 0.0)
@@ -341,10 +350,12 @@ def _checked_targets(options: argparse.Namespace, requests: list, meshes: list[M
             able = ", ".join(MODEL.endings("tolerance"))
             raise UsageError(f"--cell-tolerance goes with --export or --cut to a file with cells: {able}")
     for name in ("grid_layers", "grid_azimuth"):
-        is_able = not options.surfaces_only and _with_option(exported, name)
+        is_able = not options.surfaces_only and exported and _with_grid(options)
         if getattr(options, name) is not None and not is_able:
             option, able = name.replace("_", "-"), ", ".join(MODEL.endings(name))
-            raise UsageError(f"--{option} goes with --export to a corner-point grid: {able}")
+            raise UsageError(
+                f"--{option} goes with --export to a corner-point grid: {able} (.epc: with --cell-size)"
+            )
     if options.origin is not None and (options.surfaces_only or not _with_option(exported, "origin")):
         raise UsageError(f"--origin goes with --export of blocks to {', '.join(MODEL.endings('origin'))}")
     single = (options.export_field, options.report, options.blend, options.render)

@@ -63,6 +63,7 @@ class InViewport(Pointing):
     """
 
     keys = ""
+    has_line = True  # through the marks
 
     _held = None
     _handler = None
@@ -135,7 +136,7 @@ class InViewport(Pointing):
         if not len(points):
             return
         drawing = Drawing(region.width, region.height)
-        if len(points) > 1:
+        if len(points) > 1 and self.has_line:
             drawing.line(points, _COLOR, 2.0)
         drawing.dots(points, 4.0, _COLOR)
         overlay.draw_items(drawing, 1.0)

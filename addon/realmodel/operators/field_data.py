@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 
-from ..bl.field import data, edits, handle, heights
+from ..bl.field import data, edits, handle, heights, shown_net
 from ..bl.objects import viewports
+from ..bl.overlay import viewport as overlay
 from ..bl.pictures import capture
 from ..bl.project import project_settings
 from ..bl.scene import data_objects, live
@@ -13,7 +14,7 @@ from ..core import InputRefused
 from .drawing import Pointing
 from .reporting import Reporting, place_property
 
-_NEAR = 24  # pixels between the mouse and a datum, at most
+NEAR = 24  # pixels between the mouse and a datum, at most
 
 
 def any_data(context):
@@ -29,11 +30,11 @@ def any_switched_off(context):
     return None if data.switched_off(context.scene) else "no datum is switched off"
 
 
-def _shown_places(scene):
-    """(groups, numbers, places): of each datum its Group, its number in that, and where it is shown, (N,
-    3)."""
+def shown_places(scene, kinds=data.KINDS):
+    """(groups, numbers, places): of each datum of these kinds its Group, its number in that, and where it is
+    shown, (N, 3)."""
     groups, numbers, places = [], [], [np.empty((0, 3))]
-    for group in data.groups(scene):
+    for group in data.groups(scene, kinds):
         at = group.places.copy()
         if group.kind in data.DIPS:
             at[:, 2] = heights.of_dips(scene, group.rock, group.names, at)
@@ -51,8 +52,8 @@ def _changed(scene):
 
 
 class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
-    """Pick a datum in the viewport - a point, a dip, an outcrop or an interval - to move it, or to switch it
-    off; move its sphere as any object (G)"""
+    """Pick a datum in the viewport - a point, a dip, an outcrop, an interval, or a pole in the stereonet - to
+    move it, or to switch it off; move its sphere as any object (G)"""
 
     bl_label = "Pick Datum"
     needs = (any_data,)
@@ -62,7 +63,7 @@ class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
     def act(self, context):
         has_location = self.properties.is_property_set("location")
         at = np.array(self.location if has_location else context.scene.cursor.location)
-        groups, numbers, places = _shown_places(context.scene)
+        groups, numbers, places = shown_places(context.scene)
         if not groups:
             raise InputRefused("there are no data with a place", advice="import points, boreholes or dips")
         best = int(np.linalg.norm(places - at, axis=1).argmin())
@@ -91,14 +92,18 @@ class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
 
 
 def _under_mouse(context, event):
-    """The datum nearest to the mouse in whatever 3D viewport that is; None where none is near."""
+    """The datum nearest to the mouse in whatever 3D viewport that is, in its stereonet the nearest pole; None
+    where none is near."""
     viewport = viewports.under_mouse(context, event)
     if viewport is None:
         return None
     area, mouse = viewport
-    groups, numbers, places = _shown_places(context.scene)
+    in_net = overlay.at_net(context.scene, area, mouse)
+    if in_net is not None:
+        return shown_net.datum_at(context.scene, in_net)
+    groups, numbers, places = shown_places(context.scene)
     away = np.linalg.norm(viewports.pixels(area, places) - mouse, axis=1)
-    if not (len(away) and away.min() <= _NEAR):
+    if not (len(away) and away.min() <= NEAR):
         return None
     best = int(away.argmin())
     return groups[best].datum(numbers[best])

@@ -17,7 +17,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..bl.display import shown_models
 from ..bl.jobs.export_job import ExportJob
 from ..bl.jobs.mesh_job import MeshJob
-from ..bl.project import results, settings
+from ..bl.project import library_rows, results, settings
 from ..bl.scene import live, scene_export
 from ..core import BuildFailed, InputRefused, UsageError
 from ..core.base.errors import BuildWarning
@@ -80,8 +80,11 @@ class Exporting(Reporting, ExportHelper):
         self.report({"INFO"}, f"Wrote {path}")
 
     def model(self, context):
-        """The whole displayed model, after `target`; where it is out of date, one of its warnings says so."""
+        """The whole displayed model, after `target`, with the panel's library of now, whose colors are seen;
+        where it is out of date, one of its warnings says so."""
         model = shown_models.whole(context.scene)
+        project = replace(model.project, library=library_rows.library_of(context.scene))
+        model = replace(model, project=project)
         if context.scene.realmodel.is_outdated:
             model = replace(model, warnings=[BuildWarning(_OUTDATED, "outdated"), *model.warnings])
         return model
@@ -140,8 +143,8 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(MODEL.formats())
     cell_size: FloatVectorProperty(
         name="Cell Size",
-        description="Of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF and geoh5), in model "
-        "units; 0: automatic, and no cells in OMF and geoh5",
+        description="Of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF, geoh5 and RESQML), in "
+        "model units; 0: automatic, and no cells in OMF, geoh5 and RESQML",
         size=3,
         min=0.0,
         default=(0.0, 0.0, 0.0),
@@ -150,14 +153,15 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
 
     grid_layers: IntProperty(
         name="Grid Layers",
-        description="Layers of each block in corner-point grids (GRDECL)",
+        description="Layers of each block in corner-point grids (GRDECL, RESQML)",
         default=1,
         min=1,
     )
 
     grid_azimuth: FloatProperty(
         name="Grid Azimuth",
-        description="Direction of the columns of corner-point grids (GRDECL), degrees clockwise from north",
+        description="Direction of the columns of corner-point grids (GRDECL, RESQML), degrees clockwise "
+        "from north",
         default=0.0,
     )
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sections: the movable plane that shows the model cut open, and exact sections as mesh objects."""
 
-from dataclasses import replace
-
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -12,7 +10,7 @@ from ..bl import display
 from ..bl.display import cuts, sections
 from ..bl.field import boreholes, hole_curves
 from ..bl.objects import exaggeration, viewports, visible
-from ..bl.project import interval_values, library_rows, project_settings, settings
+from ..bl.project import interval_values, project_settings, settings
 from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
 from ..core.exporters import SECTION, SHEETS
@@ -364,10 +362,8 @@ class REALMODEL_OT_save_sheets(_DrawsSections, bpy.types.Operator):
         made = list(_of_scene(context))
         for section in made:
             section.hole_values = interval_values.of_scene(context.scene)
-        model = self.model(context)
-        project = replace(model.project, library=library_rows.library_of(context.scene))
-        model = replace(model, project=project)  # in the colors that sections have
-        model.save_sheets(path, made, self.size, settings.plain(self.scale) or None, *self.of_sections())
+        scale = settings.plain(self.scale) or None
+        self.model(context).save_sheets(path, made, self.size, scale, *self.of_sections())
 
 
 def _of_scene(context):

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl.field import boreholes, data, handle, shown_log
+from ..bl.field import boreholes, data, handle, shown_log, shown_net
 from ..core import RealModelError
 from .lists import OfRows
 from .panel import FoldedPanel, OfAModel, hint, message, right_label
@@ -47,7 +47,22 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
             row.prop(group.view, "log_hole")
             row.operator("realmodel.hole_log", text="", icon="EYEDROPPER")
         _draw_datum(layout, context)
-        layout.operator("realmodel.save_stereonet", text="Save Stereonet...", icon="FILE_TICK")
+        if shown_net.are_there(context.scene):
+            _draw_stereonet(layout, group.view)
+
+
+def _draw_stereonet(layout, view):
+    layout.prop(view, "show_stereonet", toggle=True)
+    if not view.show_stereonet:
+        return
+    column = layout.column(align=True)
+    column.prop(view, "stereonet_of")
+    column.prop(view, "net")
+    row = layout.row(align=True)
+    row.operator("realmodel.dips_pick", icon="RESTRICT_SELECT_OFF")
+    if view.picked_dips:
+        row.operator("realmodel.dips_pick", text="", icon="X").dips = "[]"
+    row.operator("realmodel.save_stereonet", text="Save...", icon="FILE_TICK")
 
 
 def _draw_datum(layout, context):

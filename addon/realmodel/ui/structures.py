@@ -82,7 +82,9 @@ def _draw_fault(layout, context, fault):
     panel.draw(layout, fault, "extend", FAULT)
     _draw_names(layout, fault, "ends_at")
     _draw_names(layout, fault, "rocks")
-    layout.operator("realmodel.save_juxtaposition", text="Save Juxtaposition...", icon="FILE_TICK")
+    row = layout.row(align=True)
+    row.operator("realmodel.view_juxtaposition", text="Juxtaposition", icon="IMAGE_DATA")
+    row.operator("realmodel.save_juxtaposition", text="Save...", icon="FILE_TICK")
 
 
 def _draw_names(layout, fault, key):

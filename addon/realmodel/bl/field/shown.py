@@ -14,11 +14,12 @@ from .. import display
 from ..display import bodies, colors, cuts
 from ..objects import exaggeration, marks
 from ..project import project_settings, settings
-from . import boreholes, data, handle, heights, hole_curves, map_settings, misfits
+from . import boreholes, data, handle, heights, hole_curves, map_settings, misfits, shown_net
 
 MAP, CONTACTS, DIPS, MISFITS = "map", "contacts", "dips", "misfits"
 KINDS = (CONTACTS, DIPS, MISFITS)  # shaped for the exaggeration
 _OFF, _RED = ("Switched Off", "#8c8c8c"), ("Misfit", "#e01818")
+_NOT_PICKED = ("Not Picked", "#d9d9d9")
 _STRETCH = "realmodel_stretch"  # on an object: the vertical exaggeration that it is shaped for
 _MOST = 20_000  # data of a kind shown at most
 _LIFT = 1e-3  # of a map over the ground, of the size of all, against flickering
@@ -160,7 +161,12 @@ def _dips(scene):
         at[:, 2] = heights.of_dips(scene, group.rock, names, at)
         places.append(at)
         normals.append(group.normals[:_MOST])
-        materials += map(material_of, names.tolist(), group.used[:_MOST].tolist())
+        of_group = map(material_of, names.tolist(), group.used[:_MOST].tolist())
+        are_picked = shown_net.are_picked(scene, group).tolist()
+        materials += [
+            material if is_picked else colors.plain_material(*_NOT_PICKED)
+            for material, is_picked in zip(of_group, are_picked, strict=False)
+        ]
     indices, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
     if not len(indices):
         return

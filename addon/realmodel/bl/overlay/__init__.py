@@ -10,15 +10,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core import UsageError
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from ...core.results.hole_log import draw_hole_log
+from ...core.results.orientations.stereonet import draw_beside, small_net
 from ..display import colors, ensembles, explosion, fields, residuals
-from ..field import boreholes, shown_log
+from ..field import boreholes, shown_log, shown_net
 from ..host import caches
 from ..objects import exaggeration
 from ..project import project_settings
 
-_BESIDE_LOG = 12.0  # points between a log and the right border
+_BESIDE_LOG = 12.0  # points between a log or a stereonet and what is at its right
+_FOOT_OF_NET = 95.0  # points: the north arrow is below it
 _FOOT_OF_LOG, _HEIGHT_OF_LOG = 0.12, 0.62  # of the height of a picture: below the north arrow
 WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
@@ -48,7 +51,8 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     if group.explode and "axes" in parts:
         parts.remove("axes")
     has_log = view_settings.log_hole in shown_log.names(scene)
-    if not (keys or parts or labels or has_log):
+    has_net = view_settings.show_stereonet and shown_net.are_there(scene)
+    if not (keys or parts or labels or has_log or has_net):
         return None
     if not (parts or labels):
         picture = picture._replace(projection=np.eye(4), matrix=np.eye(4))  # of legends: it may turn
@@ -74,14 +78,42 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     )
     of_parts = of_keys, *parts, *labels, tuple(margins)
     of_parts += shown_log.key(scene) if has_log else ()
+    of_parts += shown_net.key(scene) if has_net else ()
     name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, *of_parts)
     if name not in _drawings:
         drawing = draw_overlay(eye, shown, keys, parts, margins, labels)
+        right = drawing.width - margins[1] - _BESIDE_LOG
+        if has_net:
+            right = _draw_net(scene, drawing, margins) - _BESIDE_LOG
         if has_log:
-            right, high = drawing.width - margins[1] - _BESIDE_LOG, drawing.height * _HEIGHT_OF_LOG
-            draw_hole_log(drawing, shown_log.of_scene(scene), (right, drawing.height * _FOOT_OF_LOG, high))
+            place = right, drawing.height * _FOOT_OF_LOG, drawing.height * _HEIGHT_OF_LOG
+            draw_hole_log(drawing, shown_log.of_scene(scene), place)
         _drawings[name] = drawing
     return _drawings[name]
+
+
+def corner_of_net(width, margins):
+    return width - margins[1] - _BESIDE_LOG, _FOOT_OF_NET
+
+
+def _draw_net(scene, drawing, margins):
+    """Draws the stereonet; returns its left border."""
+    view, corner = scene.realmodel.view, corner_of_net(drawing.width, margins)
+    try:
+        dips = shown_net.shown_dips(scene, view.stereonet_of)
+    except UsageError:  # none of what is asked for
+        return corner[0]
+    return draw_beside(drawing, dips, view.net.lower(), corner, shown_net.marked(scene))
+
+
+def place_in_net(scene, width, margins, at):
+    """(2,) where a place of a picture, so wide, is in the stereonet, whose radius is 1; all in points. None
+    beside it, and where there is none."""
+    if not (scene.realmodel.view.show_stereonet and shown_net.are_there(scene)):
+        return None
+    middle, radius = small_net(corner_of_net(width, margins))
+    place = (np.array(at) - middle) / radius
+    return place if place @ place <= 1.0 else None
 
 
 def _keys(scene):

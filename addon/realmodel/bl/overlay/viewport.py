@@ -13,7 +13,7 @@ from ...core.drawing.drawing import ANCHORS, Text
 from ...core.drawing.png import item_shapes
 from ..host import caches, versions
 from ..host.draw_handler import DrawHandler
-from . import View, drawing_for
+from . import View, drawing_for, place_in_net
 
 _FONT = 0  # Blender's own
 _PIXELS = 1.25  # for a point, where Blender's interface is not scaled
@@ -27,9 +27,20 @@ def draw():
     scene, region, space = context.scene, context.region, context.space_data
     if not hasattr(scene, "realmodel") or not space.overlay.show_overlays:
         return
-    scale = _PIXELS * context.preferences.system.ui_scale
+    scale = _scale()
     size = region.width, region.height
     draw_for(scene, size, context.region_data, scale, _margins(context.area, scale))
+
+
+def _scale():
+    """Pixels for a point."""
+    return _PIXELS * bpy.context.preferences.system.ui_scale
+
+
+def at_net(scene, area, at):
+    """(2,) the place in the stereonet of a viewport at a pixel of its window region, as of place_in_net."""
+    region, scale = next(r for r in area.regions if r.type == "WINDOW"), _scale()
+    return place_in_net(scene, region.width / scale, _margins(area, scale), np.array(at) / scale)
 
 
 def draw_for(scene, size, view, scale, margins=(0.0, 0.0, 0.0), projection=None):

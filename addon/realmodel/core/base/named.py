@@ -30,7 +30,8 @@ def number_of(key: int | str, names: Sequence[str], noun: str) -> int:
     if matches:
         raise UsageError(f"there are {len(matches)} {noun}s named '{key}': give its number")
     missing = f"no {noun} named '{key}'" if isinstance(key, str) else f"no {noun} {key!r}"
-    raise UsageError(f"there is {missing}; {noun}s are {', '.join(names)}, numbered from 0")
+    names_text = f"{noun}s are {', '.join(names)}, numbered from 0" if names else f"there are no {noun}s"
+    raise UsageError(f"there is {missing}; {names_text}")
 
 
 class NamedList(list[T], Generic[T]):

@@ -63,6 +63,7 @@ VERSIONS = {
     "pyogrio": ("0.10", None),
     "pyvista": ("0.45", None),
     "rasterio": ("1.4", None),
+    "resqpy": ("5.2", None),
     "vtk": ("9.4", None),
 }
 

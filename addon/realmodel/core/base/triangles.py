@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -150,6 +151,27 @@ def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     edges = edges_of(welded(vertices)[triangles])
     numbers, times = np.unique(edge_numbers(edges, len(vertices)), return_counts=True)
     return edges_numbered(numbers[times % 2 == 1], len(vertices))
+
+
+def joined_edges(edges: np.ndarray) -> list[list[int]]:
+    """Edges (E, 2) between vertices joined to lines that end where not two meet; others are closed."""
+    around: dict[int, list[int]] = defaultdict(list)
+    for a, b in edges.tolist():
+        around[a].append(b)
+        around[b].append(a)
+    lines = []
+    for first in sorted(around, key=lambda vertex: (len(around[vertex]) == 2, vertex)):
+        while around[first]:
+            line = [first]
+            while around[line[-1]]:
+                at, after = line[-1], around[line[-1]][0]
+                around[at].remove(after)
+                around[after].remove(at)
+                line.append(after)
+                if len(around[after]) != 1:
+                    break
+            lines.append(line)
+    return lines
 
 
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:

@@ -104,7 +104,7 @@ class Axes:
 
 def _y_ticks(y_range: tuple[float, float], height: float, size: float) -> tuple[np.ndarray, list[str], float]:
     """Values and texts of the ticks of an upright axis, and how wide the widest text is."""
-    values = ticks(*y_range, max(3, int(height / (2.6 * size))))
+    values = ticks(*y_range, max(1, int(height / (2.6 * size))))
     texts = tick_texts(values)
     return values, texts, max(text_width(text, size) for text in texts)
 

@@ -51,6 +51,7 @@ def _font() -> dict:
 
 Color = tuple[float, ...]  # red, green, blue, and where it is not opaque alpha: sRGB from 0 to 1
 BLACK, GRAY, WHITE = (0.0, 0.0, 0.0), (0.55, 0.55, 0.55), (1.0, 1.0, 1.0)
+PAPER = (1.0, 1.0, 1.0, 0.9)  # behind what is drawn over a picture
 ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
 
 

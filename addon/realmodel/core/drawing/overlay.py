@@ -20,12 +20,11 @@ from .charts import (
     tick_texts,
     ticks,
 )
-from .drawing import BLACK, WHITE, Color, Drawing, text_width
+from .drawing import BLACK, PAPER, WHITE, Color, Drawing, text_width
 
 SIZE = 9.0  # of texts, points
 _MARGIN = 12.0
 _PAD = 0.8 * SIZE
-_PAPER = (1.0, 1.0, 1.0, 0.9)
 _BAR = (12.0, 110.0)  # width, height of a color bar
 _LEAST_AXIS = 40.0  # points: an axis that looks shorter has no ticks
 _LIFT = 6.0  # of a label over its place, points
@@ -128,12 +127,12 @@ def _labels(
         if not is_seen or any(begin < b and a < end and abs(low - c) < 1.3 * SIZE for a, b, c in taken):
             continue
         taken.append((begin, end, low))
-        drawing.rectangle((begin, low - 2, end - begin, 1.25 * SIZE), _PAPER, None)
+        drawing.rectangle((begin, low - 2, end - begin, 1.25 * SIZE), PAPER, None)
         drawing.text(x, low, text, SIZE, anchor="middle")
 
 
 def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) -> None:
-    drawing.rectangle((x, y, width, height), _PAPER, (0.0, 0.0, 0.0, 0.25), 0.6)
+    drawing.rectangle((x, y, width, height), PAPER, (0.0, 0.0, 0.0, 0.25), 0.6)
 
 
 def legend_extent(key: ColorKey) -> tuple[float, float]:
@@ -155,7 +154,7 @@ def _legend(drawing: Drawing, key: ColorKey, left: float, below: float) -> float
     counted in the last line."""
     most = max(int((drawing.height - below - _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
     if len(key.entries) > most:
-        more = (f"and {len(key.entries) - most + 1} more", _PAPER)
+        more = (f"and {len(key.entries) - most + 1} more", PAPER)
         key = replace(key, entries=[*key.entries[: most - 1], more])
     width, height = legend_extent(key)
     _paper(drawing, left, below, width, height)

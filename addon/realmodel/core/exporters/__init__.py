@@ -22,18 +22,18 @@ from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
+from ..results.corner_point import CornerPointGrid, corner_point_grid
+from ..results.faults.juxtaposition import JuxtapositionData
+from ..results.faults.juxtaposition_drawing import draw_juxtaposition
 from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, draw_stereonet
 from ..results.samples import Probabilities, SectionSamples
-from ..results.sections.juxtaposition import JuxtapositionData
-from ..results.sections.juxtaposition_drawing import draw_juxtaposition
 from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
 from ..simulation.cleaned_cells import cleaned_cells
-from ..simulation.corner_point import CornerPointGrid, corner_point_grid
 from ..simulation.elements import ElementFaces
 from ..simulation.patches import solver_names
-from .formats import FORMATS
+from .formats import CORNER_POINT, FORMATS
 from .section_files import draw_probabilities
 from .shapes.shape_parts import Part, model_parts, section_parts, surface_parts
 
@@ -56,9 +56,14 @@ def _polyhedra(model: ModelData, options: dict) -> PolyhedralMesh:
 
 def _corner_point(model: ModelData, options: dict) -> CornerPointGrid:
     """The corner-point grid of a model; `grid` is one that is made already."""
-    size, layers, azimuth = (options.pop(name, None) for name in ("cell_size", "grid_layers", "grid_azimuth"))
-    grid = options.pop("grid", None)
+    size, layers, azimuth, grid = (options.pop(name, None) for name in CORNER_POINT)
     return corner_point_grid(model, size, layers or 1, azimuth or 0.0) if grid is None else grid
+
+
+def _with_grid(model: ModelData, options: dict) -> tuple[ModelData, CornerPointGrid | None]:
+    """A model, and its corner-point grid where the size of cells is given."""
+    of_grid = {name: options.pop(name, None) for name in CORNER_POINT}
+    return model, None if of_grid["cell_size"] is None else _corner_point(model, of_grid)
 
 
 def _blocks(model: ModelData, options: dict) -> list[Part]:
@@ -158,7 +163,13 @@ class Exporter:
 
 MODEL = Exporter(
     "files ending in {} are not supported",
-    {"model": _as_it_is, "polyhedra": _polyhedra, "parts": _blocks, "corner point": _corner_point},
+    {
+        "model": _as_it_is,
+        "polyhedra": _polyhedra,
+        "parts": _blocks,
+        "corner point": _corner_point,
+        "model and grid": _with_grid,
+    },
     lambda model: model.project.units,
 )
 SURFACES = Exporter(

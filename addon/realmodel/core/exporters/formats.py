@@ -13,6 +13,7 @@ from .model_arrays import write_npz
 from .objects.geoh5 import write_geoh5
 from .objects.ifc import write_ifc
 from .objects.omf import write_omf
+from .objects.resqml import write_resqml
 from .page import write_page
 from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
 from .report import write_report
@@ -47,6 +48,7 @@ from .surface_files import write_fields, write_surfaces_npz, write_surfaces_vtu
 
 _ANY_SAMPLES = ("section samples", "hole samples", "grid samples")
 _CLEANED = ("tolerance", "cells")  # cells that are cleaned already
+CORNER_POINT = ("cell_size", "grid_layers", "grid_azimuth", "grid")  # how it is made, or one that is
 _VTK = "VTK Unstructured Grid"
 
 FORMATS = (
@@ -121,7 +123,7 @@ FORMATS = (
         ("corner point",),
         "Layers of columns that follow the blocks, for reservoir simulators (Eclipse, OPM Flow)",
         write_grdecl,
-        ("cell_size", "grid_layers", "grid_azimuth", "grid", "unit"),
+        (*CORNER_POINT, "unit"),
     ),
     Format(".obj", "Wavefront OBJ", ("section",), "Triangles, a group for each block", write_section_obj),
     Format(
@@ -279,6 +281,16 @@ FORMATS = (
         write_ifc,
         has_files=True,
         needs=("ifcopenshell", "ifc"),
+    ),
+    Format(
+        ".epc",
+        "RESQML 2.0.1",
+        ("model and grid",),
+        "Closed blocks, surfaces and boreholes, with a corner-point grid where the size of cells is given",
+        write_resqml,
+        CORNER_POINT,
+        has_files=True,
+        needs=("resqpy", "resqml"),
     ),
     Format(
         ".json",

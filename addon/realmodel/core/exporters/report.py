@@ -20,11 +20,13 @@ from ..project.structure_entries import Body, Fault
 from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
+from ..results.corner_point import CornerPointGrid, corner_point_entry
 from ..results.displacements import displacements
-from ..results.sections.juxtaposition import fault_areas
+from ..results.faults.juxtaposition import fault_areas
+from ..results.orientations.stereonet import StereonetData, dip_names, dip_sets, normals_of
 from ..results.tables import block_entry
 from ..results.volumes import Erosion, volume_deviations
-from ..simulation import CornerPointGrid, cleaned_entry, corner_point_entry, mesh_entry
+from ..simulation import cleaned_entry, mesh_entry
 from ..simulation.cleaned_cells import CleanedCells
 from ..simulation.simulation_mesh import SimulationMesh
 from ..surfaces.surface_heights import used_vertices
@@ -127,7 +129,10 @@ def model_report(
     if model.structures.is_divided:
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
+        report["juxtapositions"] = _juxtapositions(model)
         report["bodies"] = [body_entry(body) for body in model.structures.bodies]
+    if dips := _dips(model):
+        report["dips"] = dips
     if any(rock.observed is not None for rock in model.project.rocks):
         report |= observation_entries(observed(model))
     if erosion is not None:
@@ -206,8 +211,7 @@ def _compartments(model: ModelData) -> list[dict]:
 
 def _faults(model: ModelData) -> list[dict]:
     """Throw and heave along each fault: their means, and the largest values; whether a throw is found; and
-    the length of the cutoff lines below it along which the surface is on both sides; and the areas on it by
-    pair of blocks."""
+    the length of the cutoff lines below it along which the surface is on both sides."""
     all_displacements = displacements(model)
     return [
         {
@@ -225,12 +229,17 @@ def _faults(model: ModelData) -> list[dict]:
                 for displacement in all_displacements
                 if displacement.fault == fault.name
             ],
-            "juxtaposition": [
-                {"footwall": low, "hanging_wall": high, "area": area}
-                for (low, high), area in fault_areas(model, number).items()
-            ],
         }
+        for fault in model.structures.faults
+    ]
+
+
+def _juxtapositions(model: ModelData) -> list[dict]:
+    """The areas on each fault by pair of blocks."""
+    return [
+        {"fault": fault.name, "footwall": low, "hanging_wall": high, "area": area}
         for number, fault in enumerate(model.structures.faults)
+        for (low, high), area in fault_areas(model, number).items()
     ]
 
 
@@ -243,6 +252,14 @@ def fault_entry(fault: Fault) -> dict:
         "ends_at": list(fault.ends_at),
         "dies_out": fault.dies_out,
     }
+
+
+def _dips(model: ModelData) -> list[dict]:
+    """The numbers of the stereonets of all dips but those of faults, of null, and of whatever some are of."""
+    sets = dip_sets(model.project)
+    has_beds = any(entry.dips.in_use.any() for entry in sets if not entry.of_fault)
+    names = [*([None] if has_beds else []), *dip_names(sets)]
+    return [{"of": name, **StereonetData(normals_of(sets, name)).numbers} for name in names]
 
 
 def _mean_and_largest(values: np.ndarray, mean: float) -> dict:

@@ -5,21 +5,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from ..base.errors import UsageError
 from ..base.named import number_of
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..exporters import JUXTAPOSITION
 from ..results.displacements import displacements
-from ..results.sections.juxtaposition import (
+from ..results.faults.juxtaposition import (
+    CutoffLine,
     JuxtapositionData,
     cutoff_lines,
     dip_direction,
     fault_faces,
 )
-from ..results.sections.strike_line import StrikeLine
+from ..results.faults.strike_line import StrikeLine
 from .cutting import section_arrays
 
 
@@ -27,8 +26,8 @@ class Juxtaposition(JuxtapositionData):
     """What lies on both sides of a fault."""
 
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
-        """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .pdf, .dxf or .png. It
-        appears whole or not at all. exaggeration: of elevations. Raises UsageError, OutputFailed."""
+        """Draws the juxtaposition diagram, with the throws of the surfaces below, to a .svg, .pdf, .dxf or
+        .png. It appears whole or not at all. exaggeration: of elevations. Raises UsageError, OutputFailed."""
         JUXTAPOSITION.save(self, path, exaggeration=exaggeration)
 
 
@@ -42,24 +41,23 @@ def juxtaposition(model: ModelData, fault: int | str) -> Juxtaposition:
     model.require_project("a juxtaposition diagram")
     structures = model.structures
     number = number_of(fault, [entry.name for entry in structures.faults], "fault")
-    surface = int(np.flatnonzero(model.surface_kind == 1)[number])
-    name = structures.faults[number].name
-    shape = structures.fault_shapes()[number]
-
-    def task(work: Work) -> tuple[np.ndarray, dict]:
-        return fault_faces(work, model, surface, shape)
-
-    faces, arrays = run(task, threads=model.threads)
-    if not len(faces):
-        raise UsageError(f"nothing of fault '{name}' is in the model")
+    name, shape = structures.faults[number].name, structures.fault_shapes()[number]
     throws = displacements(model, name)
     displaced = {entry.surface for entry in throws}
     surfaces = [k for k, other in enumerate(model.surface_names) if other in displaced]
     surfaces = [k for k in surfaces if model.surface_kind[k] == 0]
+
+    def task(work: Work) -> tuple[dict, list[CutoffLine]]:
+        faces, arrays = fault_faces(work, model, number)
+        return arrays, cutoff_lines(work, model, faces, number, surfaces)
+
+    arrays, cutoffs = run(task, threads=model.threads)
+    if not len(arrays["cells"]):
+        raise UsageError(f"nothing of fault '{name}' is in the model")
     return Juxtaposition(
         **section_arrays(model, arrays),
         fault=name,
         strike=StrikeLine.of(shape.vertices, shape.triangles, arrays["vertices"], dip_direction(arrays)),
-        cutoffs=cutoff_lines(model, faces, arrays["cells"], surfaces),
+        cutoffs=cutoffs,
         throws=throws,
     )

@@ -22,6 +22,7 @@ from ..proof.misfits import misfits
 from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
+from ..results.corner_point import corner_point_grid
 from ..results.geological_map import geological_map
 from ..results.layer_values import field_of, rock_fields
 from ..results.model_holes import borehole
@@ -30,7 +31,7 @@ from ..results.sheets import DEFAULT_SIZE, draw_sheets
 from ..results.tables import block_table, borehole_table, map_dataset
 from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
-from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, corner_point_grid, simulation_mesh
+from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
 from . import cutting, notebook_view
 from .juxtapositions import juxtaposition
 from .model_file import read_model
@@ -74,13 +75,13 @@ class Model(ModelData):
         whole or not at all.
 
         cell_size: of regular grids (.csv, .vti, .tif, .asc) and maps of values (.gpkg), one number, two (in
-        plan, in height) or three; None: a hundredth of the longest side; in .omf and .geoh5 there are cells
-        only where it is given.
-        contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen levels. tolerance: of formats
-        with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as cleaned_cells does; None: the
-        exact cells. grid_layers, grid_azimuth: of corner-point grids (.grdecl), the layers of each block and
-        the direction of their columns, as of corner_point_grid. Raises UsageError for an
-        ending that is not known, or whose library is missing, OutputFailed where it cannot be written.
+        plan, in height) or three; None: a hundredth of the longest side; in .omf, .geoh5 and .epc there are
+        cells only where it is given. contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen
+        levels. tolerance: of formats with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as
+        cleaned_cells does; None: the exact cells. grid_layers, grid_azimuth: of corner-point grids (.grdecl,
+        .epc), the layers of each block and the direction of their columns, as of corner_point_grid. Raises
+        UsageError for an ending that is not known, or whose library is missing, OutputFailed where it cannot
+        be written.
         """
         check_tolerance(path, tolerance)
         MODEL.save(

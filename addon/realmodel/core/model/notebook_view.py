@@ -14,6 +14,7 @@ from ..base.units import number_text
 from ..cells.model_data import ModelData, UsedSurfaces
 from ..drawing.drawing import BLACK, Drawing
 from ..drawing.png import write_png
+from ..exporters.page import page_of
 from ..notebook import blocks_of_meshes, polygon_mesh, with_data
 from ..results.automatic_library import model_with_library
 from ..results.sections.section_data import SectionData, rgb_bytes
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
 _PICTURE = (240.0, 150.0)  # points, at most
 _MOST_EXAGGERATION = 20.0
+_LARGEST_PAGE = 2_000_000  # characters
+_MOST_FACES = 100_000  # pages of more are larger
+_FRAME = "width:100%;height:480px;border:0"
 _BOX = "display:inline-block;width:1em;height:1em"
 _NUMBERS = "text-align:right;font-variant-numeric:tabular-nums"
 
@@ -62,7 +66,7 @@ def _count(number: int, one: str, several: str = "") -> str:
 
 
 def html(model: ModelData) -> str:
-    """The summary, a section through the middle and the table of blocks, youngest first, as HTML."""
+    """The summary, a picture and the table of blocks, youngest first, as HTML."""
     model = model_with_library(model)
     unit, total = escape(model.project.units), model.volume
     colors = rgb_bytes(model.block_colors).tolist()
@@ -84,9 +88,16 @@ def html(model: ModelData) -> str:
 
 
 def _picture(model: ModelData) -> str:
-    """A vertical section through the middle, along the longer side, as an image."""
+    """The page of the model in a frame; of a large one a vertical section through the middle, along the
+    longer side, as an image."""
     if not len(model.vertices):
         return ""
+    has_page = model.lacks_project is None and len(model.face_cells) <= _MOST_FACES
+    page = page_of(model) if has_page else ""
+    if 0 < len(page) <= _LARGEST_PAGE:
+        return (
+            f'<iframe srcdoc="{escape(page)}" title="{escape(model.project.name)}" style="{_FRAME}"></iframe>'
+        )
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     normal = (0.0, -1.0, 0.0) if high[0] - low[0] >= high[1] - low[1] else (-1.0, 0.0, 0.0)
     cut = section(model, (low + high) / 2, normal, threads=model.threads)

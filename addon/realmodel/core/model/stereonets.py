@@ -7,15 +7,17 @@ from pathlib import Path
 
 from ..cells.model_data import ModelData
 from ..exporters import STEREONET
-from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, normals_of
+from ..project.project import Project
+from ..results.orientations.stereonet import EQUAL_AREA, StereonetData, dip_sets, normals_of
+from ..surfaces.prepare import with_arrays
 
 
 class Stereonet(StereonetData):
     """Dips on the lower hemisphere."""
 
     def save(self, path: str | Path, net: str = EQUAL_AREA) -> None:
-        """Draws the stereonet to a .svg, .pdf, .dxf or .png, which appears whole or not at all. net: "equal_area"
-        (Schmidt) or "equal_angle" (Wulff). Raises UsageError, OutputFailed."""
+        """Draws the stereonet to a .svg, .pdf, .dxf or .png, which appears whole or not at all. net:
+        "equal_area" (Schmidt) or "equal_angle" (Wulff). Raises UsageError, OutputFailed."""
         STEREONET.save(self, path, net=net)
 
 
@@ -26,4 +28,17 @@ def stereonet(model: ModelData, of: str | None = None) -> Stereonet:
     Raises UsageError where there are none; InputRefused for a model without its project.
     """
     model.require_project("a stereonet")
-    return Stereonet(normals_of(model.project, of), of or model.project.name)
+    return _of_read(model.project, of)
+
+
+def _stereonet(project: Project, of: str | None = None) -> Stereonet:
+    """The dips of this project, which needs no build: its tables are read. As of Model.stereonet; raises
+    UsageError where there are none, InputRefused for what cannot be read."""
+    return _of_read(with_arrays(project), of)
+
+
+def _of_read(project: Project, of: str | None) -> Stereonet:
+    return Stereonet(normals_of(dip_sets(project), of), of or project.name)
+
+
+Project.stereonet = _stereonet

@@ -449,6 +449,7 @@ class Project(Compared):
     """
 
     save: ClassVar[Callable[..., Path]]  # set by project_writer, which knows projects
+    stereonet: ClassVar[Callable[..., Any]]  # likewise by model/stereonets
 
     name: str = declared(kind="name", is_needed=True)
     rocks: list[Rock] = declared(kind="tables", key="rock", of=Rock, is_needed=True)
@@ -462,8 +463,8 @@ class Project(Compared):
         label="CRS",
         tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
         check=checked_crs,
-        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 "
-        "and OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
+        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5, "
+        "OMF and RESQML files name it, GeoTIFF and GeoPackage the codes of EPSG",
     )
 
     def input_files(self) -> list[Path]:

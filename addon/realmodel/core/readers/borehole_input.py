@@ -13,7 +13,7 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from .hole_files import read_hole_files
 from .hole_values import read_logs
-from .object_input import hole_sheets, is_object_file, read_hole_objects
+from .object_input import hole_sheets, is_object_file
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, picks_of_tables
 from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
@@ -34,28 +34,14 @@ def read_picks(
     tables, or of the objects of an OMF or geoh5 file. units: what the names in them mean. plan_step: as of
     read_intervals. Raises InputRefused naming file and line, or object."""
     units = units or UnitNames()
-    if given.file is not None and is_object_file(Path(given.file)):
-        file = Path(given.file)
-        sheets, _ = hole_sheets(given, file, model_unit)
-        named: dict[str, Any] = {kind: file for kind in ("picks", "intervals") if kind in sheets}
-        given = replace(given, file=None, **named)
-    of_objects = [file for file in given.files if is_object_file(file)]
-    if not of_objects and given.layer is not None:
-        what = f"it is a table, so it has no object '{given.layer}'"
-        raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
-    if not of_objects:
-        tables = read_repaired(given, model_unit, step, units)
-        if tables.picks is None and tables.intervals is None and not given.logs:
-            advice = "give a table of them: picks = ... or intervals = ..."
-            what = "it has neither picks nor intervals of blocks"
-            raise InputRefused(what, file=given.files[-1], advice=advice)
-        logs = read_logs(tables, Holes(tables), model_unit)
-        picks = picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
-        picks.logs = IntervalValues.joined(logs) if logs else None
-        return picks
-    _refuse_tables(given, of_objects)
-    picks = read_hole_objects(given, model_unit, units, plan_step)
-    step(1.0)
+    tables = read_repaired(given, model_unit, step, units)
+    if tables.picks is None and tables.intervals is None and not given.logs:
+        advice = "give a table of them: picks = ... or intervals = ..."
+        what = "it has neither picks nor intervals of blocks"
+        raise InputRefused(what, file=given.files[-1], advice=advice)
+    logs = read_logs(tables, Holes(tables), model_unit)  # adds warnings
+    picks = picks_of_tables(tables, tables.scale(model_unit), units, plan_step)
+    picks.logs = IntervalValues.joined(logs) if logs else None
     return picks
 
 
@@ -72,13 +58,18 @@ def read_repaired(
 ) -> HoleTables:
     """The tables of some boreholes, repaired. units: what the names in them mean; None: themselves. Raises
     InputRefused naming file and line."""
-    if of_objects := [file for file in given.files if is_object_file(file)]:
+    of_objects = [file for file in given.files if is_object_file(file)]
+    if of_objects:
         _refuse_tables(given, of_objects)
-        sheets, warnings = hole_sheets(given, of_objects[0], model_unit)
+        sheets, lines, warnings = hole_sheets(given, model_unit)
         tables_of: dict[str, Any] = dict.fromkeys(MEANINGS) | dict.fromkeys(sheets, of_objects[0])
         given = replace(given, file=None, layer=None, units=None, columns={}, **tables_of)
         tables = read_hole_rows(given, model_unit, step, sheets=sheets)
+        tables.lines = lines
         tables.warnings += warnings
+    elif given.layer is not None:
+        what = f"it is a table, so it has no object '{given.layer}'"
+        raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     else:
         tables = read_hole_files(given, model_unit, step)
     repair(tables, units)

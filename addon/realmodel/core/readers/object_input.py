@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -27,12 +27,8 @@ from .objects.geo_object import (
     Values,
     object_units,
 )
-from .tables.boreholes import Pick, Picks
 from .tables.hole_tables import INTERVALS, PICKS, RawTable
-from .tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
-from .tables.observations import Observations, Origin
 from .tables.table_layout import names_shown, plain_name
-from .tables.unit_names import UnitNames
 
 _NAMES_LISTED = 60
 _PLURALS = {POINTS: "sets of points", LINES: "lines", SURFACE: "surfaces", HOLE: "boreholes"}
@@ -126,6 +122,12 @@ def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterat
 
 
 _KINDS = (HOLE, LINES, POINTS)
+_NAMES_OF_PICKS = (*PICKS["surface"], *INTERVALS["block"])
+_SHEETS = {
+    "collars": ("hole", "x", "y", "z"),
+    "intervals": ("hole", "from", "to", "block"),
+    "picks": ("hole", "x", "y", "z", "surface"),
+}
 
 
 def _read_holes(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[list[GeoObject], list[str]]:
@@ -140,156 +142,129 @@ def _read_holes(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[list
     return objects, warnings
 
 
-def read_hole_objects(given: Boreholes, model_unit: str, units: UnitNames, plan_step: float | None) -> Picks:
-    """What the boreholes of a file say, or the object `layer`, in the model's unit. units: what the names in
-    it mean. plan_step: as of read_intervals.
+def hole_sheets(
+    boreholes: Boreholes, model_unit: str
+) -> tuple[dict[str, RawTable], dict[str, tuple[np.ndarray, np.ndarray]], list[str]]:
+    """The boreholes of files of objects, or their object `layer`, as tables of collars, intervals and picks,
+    those that they have and that are asked for, in the model's unit; their lines, as of HoleTables; and
+    warnings, sentences.
 
-    Picks are points whose data name a surface, and tops of intervals that name one where the interval above
-    has another name. `hole` among the data names the hole, else the object's name does. Raises InputRefused
-    naming the file and the object.
+    Picks are points whose data name a surface; where only picks are asked for, the beginnings of intervals
+    that name one, too, where the interval above has another name. `hole` among the data names the hole, else
+    the object's name does. Raises InputRefused naming the file and the object.
     """
-    picks = Picks()
-    for file in dict.fromkeys(given.files):
-        objects, warnings = _read_holes(given, file, model_unit)
-        picks.warnings += warnings
-        if given.picks is not None and Path(given.picks) == file:
-            _add_picks(picks, objects, given, units)
-        if given.intervals is not None and Path(given.intervals) == file:
-            _add_intervals(picks, objects, given, (units, plan_step))
-    for _, places in picks.holes.values():
-        places.sort(key=lambda pick: -pick[1][2])
-    return picks
+    holes = _HoleRows(boreholes)
+    for file in dict.fromkeys(boreholes.files):
+        objects, warnings = _read_holes(boreholes, file, model_unit)
+        holes.warnings += warnings
+        asked = {kind for kind in ("picks", "intervals") if _is_asked(boreholes, kind, file)}
+        count = len(holes.picks), len(holes.intervals)
+        for obj in objects:
+            holes.add(obj, asked)
+        if not boreholes.file and count == (len(holes.picks), len(holes.intervals)):
+            raise _without_names(objects, boreholes, file, "block" if "intervals" in asked else "surface")
+    return holes.sheets(), holes.lines, holes.warnings
 
 
-def hole_sheets(boreholes: Boreholes, file: Path, model_unit: str) -> tuple[dict[str, RawTable], list[str]]:
-    """The boreholes of a file of objects, or its object `layer`, as tables of collars, intervals and picks,
-    those that it has, in the model's unit; and warnings, sentences. Raises as read_object."""
-    rows: dict[str, list[tuple[int, list[str]]]] = {"collars": [], "intervals": [], "picks": []}
-    objects, warnings = _read_holes(boreholes, file, model_unit)
-    for obj in objects:
-        collar = np.full(3, np.nan) if obj.collar is None else obj.collar
-        if np.isfinite(collar).all():
-            rows["collars"].append((0, [obj.name, *map(repr, collar.tolist())]))
+class _HoleRows:
+    """The rows of the tables of boreholes of objects, and the lines of the holes."""
+
+    def __init__(self, boreholes: Boreholes):
+        self._boreholes = boreholes
+        self._collars: dict[str, np.ndarray] = {}
+        self.intervals: list[list[str]] = []
+        self.picks: list[list[str]] = []
+        self.lines: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        self.warnings: list[str] = []
+
+    def add(self, obj: GeoObject, asked: set[str]) -> None:
+        """Adds what an object says of the kinds of tables that are asked for."""
+        if obj.collar is not None and np.isfinite(obj.collar).all():
+            self._collars[obj.name] = obj.collar
         for values in obj.values:
-            meaning, aliases = ("surface", (*PICKS["surface"], *INTERVALS["block"]))
-            if values.ends is not None:
-                meaning, aliases = ("block", INTERVALS["block"])
-            column = _column(values, boreholes.columns.get(meaning), aliases)
+            is_log = values.ends is not None and "intervals" in asked
+            meaning, aliases = ("block", INTERVALS["block"]) if is_log else ("surface", _NAMES_OF_PICKS)
+            column = _column(values, self._boreholes.columns.get(meaning), aliases)
             if column is None:
                 continue
-            names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
-            numbers = values.places
-            if values.ends is not None:
-                along = values.depths
-                numbers = _depths(values.places, values.ends, holes) if along is None else along
-            kind = "picks" if values.ends is None else "intervals"
-            rows[kind] += [
-                (0, [hole, *map(repr, row), name])
-                for hole, row, name in zip(holes, numbers.tolist(), names, strict=True)
-            ]
-    columns = {
-        "collars": ("hole", "x", "y", "z"),
-        "intervals": ("hole", "from", "to", "block"),
-        "picks": ("hole", "x", "y", "z", "surface"),
-    }
-    sheets = {kind: RawTable(columns[kind], table_rows) for kind, table_rows in rows.items() if table_rows}
-    return sheets, warnings
+            names, holes = _texts(values.columns[column]), _holes(obj, values, self._boreholes)
+            if is_log:
+                self._add_intervals(obj, values, names, holes)
+            elif "picks" in asked:
+                self._add_picks(values, names, holes)
+                if "intervals" not in asked:
+                    break
 
+    def _add_intervals(self, obj: GeoObject, values: Values, names: list[str], holes: list[str]) -> None:
+        begins, ends = values.places, values.ends
+        assert ends is not None
+        lacking = ~(np.isfinite(begins).all(axis=1) & np.isfinite(ends).all(axis=1))
+        if lacking.any():
+            what = f"an interval of hole '{holes[int(lacking.argmax())]}' has no place"
+            raise InputRefused(what, file=self._boreholes.files[-1], item=f"object '{obj.name}'")
+        depths = _depths(begins, ends, holes) if values.depths is None else values.depths
+        for hole in dict.fromkeys(holes):
+            rows = np.array(holes) == hole
+            line = depths[rows].ravel(), np.stack([begins[rows], ends[rows]], axis=1).reshape(-1, 3)
+            known = self.lines.get(hole, (np.empty(0), np.empty((0, 3))))
+            self.lines[hole] = tuple(np.concatenate(parts) for parts in zip(known, line, strict=True))
+        self.intervals += [
+            [hole, *map(repr, row), name]
+            for hole, row, name in zip(holes, depths.tolist(), names, strict=True)
+        ]
 
-def _add_picks(picks: Picks, objects: list[GeoObject], boreholes: Boreholes, units: UnitNames) -> None:
-    points: dict[str, list[Pick]] = {}
-    missing = 0
-    for obj in objects:
-        for code, hole, place in _picks_of(obj, boreholes):
-            surface = units.surface(code)
-            if units.says_nothing(code) or not surface:
+    def _add_picks(self, values: Values, names: list[str], holes: list[str]) -> None:
+        before = ("", "")
+        missing = 0
+        for name, hole, place in zip(names, holes, values.places, strict=True):
+            repeats = values.ends is not None and (name, hole) == before
+            before = (name, hole)
+            if repeats or not name:
                 continue
-            if not np.isfinite(place).all():
+            if np.isfinite(place).all():
+                self.picks.append([hole, *map(repr, place.tolist()), name])
+            else:
                 missing += 1
-                continue
-            points.setdefault(surface, []).append((Origin(hole), place))
-            picks.holes.setdefault(hole, (obj.collar, []))[1].append((surface, place))
-    picks.of_surfaces |= points
-    if not points:
-        raise InputRefused("there are no picks in it", file=boreholes.picks)
-    if missing:
-        picks.warnings.append(f"{boreholes.picks}: left out: {counted(missing, 'pick')} without a place")
+        if missing:
+            file = self._boreholes.files[-1]
+            self.warnings.append(f"{file}: left out: {counted(missing, 'pick')} without a place")
+
+    def sheets(self) -> dict[str, RawTable]:
+        """The tables. Where a collar is known, or depths are, all holes get one: the beginning of their line,
+        or their highest pick."""
+        collars = dict(self._collars)
+        if self.lines or collars:
+            collars |= {
+                hole: places[int(depths.argmin())]
+                for hole, (depths, places) in self.lines.items()
+                if hole not in collars
+            }
+            for hole, *place, _ in sorted(self.picks, key=lambda row: -float(row[3])):
+                collars.setdefault(hole, np.array(list(map(float, place))))
+        rows = {
+            "intervals": self.intervals,
+            "picks": self.picks,
+            "collars": [[hole, *map(repr, collar.tolist())] for hole, collar in collars.items()],
+        }
+        numbers = itertools.count(1)  # no two rows have one, as keys of a project name rows by them
+        return {
+            kind: RawTable(_SHEETS[kind], [(next(numbers), row) for row in of_kind], row_name="row")
+            for kind, of_kind in rows.items()
+            if of_kind
+        }
 
 
-def _picks_of(obj: GeoObject, boreholes: Boreholes) -> Iterator[tuple[str, str, np.ndarray]]:
-    """The name of the surface, the hole and the place (3,) of each pick of an object."""
-    aliases = (*PICKS["surface"], *INTERVALS["block"])
-    values, column = _table(obj, obj.values, boreholes, "surface", aliases)
-    names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
-    before = ("", "")
-    for name, hole, place in zip(names, holes, values.places, strict=True):
-        repeats = values.ends is not None and (name, hole) == before
-        before = (name, hole)
-        if not repeats:
-            yield name, hole, place
+def _is_asked(boreholes: Boreholes, kind: str, file: Path) -> bool:
+    said = boreholes.file or getattr(boreholes, kind)
+    return said is not None and Path(said) == file
 
 
-@dataclass
-class _Log:
-    """The intervals of a hole: where their ends are, by depth, and (from, to, block)."""
-
-    collar: np.ndarray | None
-    depths: list[float] = field(default_factory=list)
-    places: list[np.ndarray] = field(default_factory=list)
-    intervals: list[tuple[float, float, str]] = field(default_factory=list)
-
-    def place(self, depth: float) -> np.ndarray:
-        """(3,) the place of a depth, on straight lines between the known ones."""
-        depths, first = np.unique(self.depths, return_index=True)
-        places = np.array(self.places)[first]
-        return np.array([np.interp(depth, depths, column) for column in places.T])
-
-
-def _add_intervals(
-    picks: Picks,
-    objects: list[GeoObject],
-    boreholes: Boreholes,
-    meaning: tuple[UnitNames, float | None],
-) -> None:
-    units, plan_step = meaning
-    logs: dict[str, _Log] = {}
-    for obj in objects:
-        _read_log(logs, picks, obj, boreholes, units)
-    if not logs:
-        raise InputRefused("there are no intervals in it", file=boreholes.intervals)
-    if plan_step is None:
-        plan_step = plan_step_of(np.array([log.places[0][:2] for log in logs.values()]))
-    parts = []
-    for hole, log in logs.items():
-        parts.append(observed_intervals(hole, log.intervals, log.place, plan_step, picks.left_out))
-        picks.holes.setdefault(hole, (log.collar, []))[1].extend(tops_of(parts[-1]))
-    picks.observations.append(Observations.joined(parts))
-
-
-def _read_log(
-    logs: dict[str, _Log],
-    picks: Picks,
-    obj: GeoObject,
-    boreholes: Boreholes,
-    units: UnitNames,
-) -> None:
-    tables = [values for values in obj.values if values.ends is not None]
-    values, column = _table(obj, tables, boreholes, "block", INTERVALS["block"])
-    names, holes = _texts(values.columns[column]), _holes(obj, values, boreholes)
-    assert values.ends is not None
-    begins, ends = values.places, values.ends
-    depths = _depths(begins, ends, holes) if values.depths is None else values.depths
-    for code, hole, (low, high), begin, end in zip(names, holes, depths.tolist(), begins, ends, strict=True):
-        log = logs.setdefault(hole, _Log(obj.collar))
-        if not (np.isfinite(begin).all() and np.isfinite(end).all()):
-            what = f"an interval of hole '{hole}' has no place"
-            raise InputRefused(what, file=boreholes.intervals, item=f"object '{obj.name}'")
-        log.depths += [low, high]
-        log.places += [begin, end]
-        where = f"object '{obj.name}', hole '{hole}' at {low:.9g}, '{code}'"
-        if not units.says_nothing(code):
-            interval = known_interval((low, high, code), hole, where, units, picks.left_out)
-            log.intervals += [] if interval is None else [interval]
+def _without_names(objects: list[GeoObject], boreholes: Boreholes, file: Path, meaning: str) -> InputRefused:
+    names = [name for obj in objects for values in obj.values for name in values.columns]
+    what = f"it has no data '{boreholes.columns.get(meaning) or meaning}'"
+    advice = f"it has {names_shown(list(dict.fromkeys(names)))}: " if names else ""
+    advice += f'name it: columns = {{ {meaning} = "..." }}'
+    return InputRefused(what, file=file, item=f"object '{objects[0].name}'", advice=advice)
 
 
 def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarray:
@@ -302,22 +277,6 @@ def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarra
         depths.append((depth, depth + float(norm(end - begin))))
         last[hole] = depths[-1][1], end
     return np.array(depths).reshape(-1, 2)
-
-
-def _table(
-    obj: GeoObject, tables: list[Values], boreholes: Boreholes, meaning: str, aliases: Iterable[str]
-) -> tuple[Values, str]:
-    """The data of an object that name surfaces or blocks, and under which name."""
-    said = boreholes.columns.get(meaning)
-    for values in tables:
-        column = _column(values, said, aliases)
-        if column is not None:
-            return values, column
-    names = [name for values in tables for name in values.columns]
-    what = f"it has no data '{said or meaning}'"
-    advice = f"it has {names_shown(names)}: " if names else ""
-    advice += f'name it: columns = {{ {meaning} = "..." }}'
-    raise InputRefused(what, file=boreholes.files[-1], item=f"object '{obj.name}'", advice=advice)
 
 
 def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:

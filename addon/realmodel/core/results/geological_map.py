@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.algebra import dot, norm, twice_area
 from ..base.errors import BuildFailed, InputRefused
+from ..base.triangles import joined_edges
 from ..base.work import native_module
 from ..cells.joining import apart, near_positions
 from ..cells.model_data import ModelData
@@ -244,29 +245,8 @@ def fault_lines(model: ModelData, ground: Ground) -> list[tuple[str, np.ndarray]
     for fault in np.unique(surface[on_ground]):
         edges = of_faults[on_ground & (surface == fault)]
         ends = np.sort(vertex[np.column_stack([edges // size, edges % size])], axis=1)
-        for line in _joined(np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0)):
+        for line in joined_edges(np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0)):
             lines.append((model.surface_names[fault], plan[line]))
-    return lines
-
-
-def _joined(edges: np.ndarray) -> list[list[int]]:
-    """Edges (E, 2) between vertices joined to lines that end where not two meet; others are closed."""
-    around: dict[int, list[int]] = defaultdict(list)
-    for a, b in edges.tolist():
-        around[a].append(b)
-        around[b].append(a)
-    lines = []
-    for first in sorted(around, key=lambda vertex: (len(around[vertex]) == 2, vertex)):
-        while around[first]:
-            line = [first]
-            while around[line[-1]]:
-                at, after = line[-1], around[line[-1]][0]
-                around[at].remove(after)
-                around[after].remove(at)
-                line.append(after)
-                if len(around[after]) != 1:
-                    break
-            lines.append(line)
     return lines
 
 

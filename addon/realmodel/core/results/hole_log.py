@@ -9,12 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..drawing.charts import tick_texts, ticks
-from ..drawing.drawing import BLACK, GRAY, Color, Drawing, text_width
+from ..drawing.drawing import BLACK, GRAY, PAPER, Color, Drawing, text_width
 from ..readers.tables.interval_values import IntervalValues
 from .sections.hole_curves import limits_of, seen_values, shares_of
 
 _SIZE = 8.0
-_PAPER = (1.0, 1.0, 1.0, 0.9)
 _PAD, _GAP = 8.0, 6.0
 _COLUMN, _TRACK = 22.0, 48.0  # width of the intervals, and of a curve
 _HEAD = 3.4 * _SIZE  # room over the depths, for the names
@@ -70,7 +69,7 @@ def draw_hole_log(drawing: Drawing, log: HoleLog, box: tuple[float, float, float
     tracks = log.curves()
     inner = max(before + _COLUMN + beside + len(tracks) * (_TRACK + _GAP), text_width(log.name, _SIZE + 2))
     left = x - inner - 2 * _PAD
-    drawing.rectangle((left, foot, inner + 2 * _PAD, height), _PAPER, GRAY, 0.6)
+    drawing.rectangle((left, foot, inner + 2 * _PAD, height), PAPER, GRAY, 0.6)
     top, base = foot + height - _PAD - _HEAD, foot + _PAD
     scale = (top - base) / (high - low)
     drawing.text(left + _PAD, foot + height - _PAD - _SIZE, f"{log.name} ({log.unit})", _SIZE + 2)

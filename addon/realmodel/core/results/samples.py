@@ -325,8 +325,9 @@ def over_centers(
     twice = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     number = np.flatnonzero(twice)
     triangles, twice = triangles[number], twice[number]
-    low = np.ceil(triangles[:, :, :2].min(axis=1) - 0.5).astype(np.int64)
-    high = np.floor(triangles[:, :, :2].max(axis=1) - 0.5).astype(np.int64)
+    p, q, r = triangles[:, :, :2].transpose(1, 0, 2)  # NumPy takes several times as long for min(axis=1)
+    low = np.ceil(np.minimum(np.minimum(p, q), r) - 0.5).astype(np.int64)
+    high = np.floor(np.maximum(np.maximum(p, q), r) - 0.5).astype(np.int64)
     low, high = np.maximum(low, 0), np.minimum(high, [nx - 1, ny - 1])
     wide = np.maximum(high - low + 1, 0)
     pairs = wide.prod(axis=1)

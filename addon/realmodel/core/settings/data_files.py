@@ -358,9 +358,10 @@ class Boreholes:
     separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}
     (depths are in the unit of z); None: those of the model.
     Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
-    of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
-    tables. file: a file that holds all tables at once, as AGS, DIGGS, Petrel well tops and LAS, those given
-    beside it count in their place; or one of objects. tolerance: up to which gaps and overlaps of intervals
+    of its boreholes), and columns names its data `surface`, `block` and `hole`; `collars`, `survey`,
+    `separator`, `decimal`, `downward_dip` and `logs` are for tables. file: a file that holds all tables at
+    once, as AGS, DIGGS, Petrel well tops and LAS, those given beside it count in their place; or one of
+    objects. tolerance: up to which gaps and overlaps of intervals
     are closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
     tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
     are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
@@ -395,8 +396,8 @@ class Boreholes:
     @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
-        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "tolerance", "unrepaired")
-        return [key for key in (*keys, "left_out", "logs") if getattr(self, key)]
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip", "logs")
+        return [key for key in keys if getattr(self, key)]
 
     @property
     def log_files(self) -> list[Path]:

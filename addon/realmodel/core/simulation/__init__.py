@@ -6,22 +6,18 @@ share their faces, or `CleanedCells` without small details.
 """
 
 from .cleaned_cells import CleanedCells, cleaned_cells, cleaned_entry
-from .corner_point import CornerPointGrid, corner_point_entry, corner_point_grid
 from .simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh
 from .volume_mesh import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 
 __all__ = [
     "CORNERS",
     "CleanedCells",
-    "CornerPointGrid",
     "PlanMesh",
     "PolyhedralMesh",
     "SimulationMesh",
     "VolumeMesh",
     "cleaned_cells",
     "cleaned_entry",
-    "corner_point_entry",
-    "corner_point_grid",
     "mesh_entry",
     "simulation_mesh",
 ]

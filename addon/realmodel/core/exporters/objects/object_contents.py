@@ -21,8 +21,8 @@ from ..shapes.shape_parts import FaceTriangles, Part, distinct_names, model_part
 
 WALL, BASE, CUT = "wall", "base", "cut"
 _OF_NO_SURFACE = (CUT, BASE, WALL)  # face_surface -3, -2, -1
-_KINDS = ("Interfaces", "Faults", "Bodies")  # surface_kind
-_BODY = _KINDS.index("Bodies")
+_KINDS = _, FAULTS, BODIES = ("Interfaces", "Faults", "Bodies")  # surface_kind
+_BODY = _KINDS.index(BODIES)
 _OF_PROPERTY = ("name", "rock", "age", "structure", "density", "description")
 
 

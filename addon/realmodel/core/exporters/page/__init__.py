@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A model as one page of HTML, which opens in any browser without a network.
 
+Input: `ModelData`, the objects of a model. Output: the text of the page.
+
 three.js 0.111 draws it (MIT; license.txt); page.js is what the page does, page.css its looks. Each triangle
 is stored once, with the block on each of its sides. Coordinates count from a place near the middle of the
 model and have 32 bits, the arrays are compressed (deflate) and written as Base64.
@@ -90,7 +92,7 @@ def _blocks(model: ModelData, contents: Contents) -> list[dict[str, Any]]:
         blocks.append(
             {
                 "number": shell.number,
-                "name": shell.part.name,
+                "name": entry["name"],
                 "rock": entry["rock"],
                 "material": entry["property_name"],
                 "volume": entry["volume"],

@@ -30,15 +30,13 @@ const camera = new THREE.PerspectiveCamera(35, 1, 1, 10);
 const layers = {};  // name: group
 let renderer, controls, blocks = [], low, high, diagonal, positions, corners, sides, asked = false;
 
-function closedMaterial(side, operation) {
-  return new THREE.MeshBasicMaterial({
-    side, colorWrite: false, depthWrite: false, depthTest: false, clippingPlanes: [plane], stencilWrite: true,
-    stencilFunc: THREE.AlwaysStencilFunc, stencilFail: operation, stencilZFail: operation, stencilZPass: operation,
-  });
-}
+const parity = new THREE.MeshBasicMaterial({
+  side: THREE.DoubleSide, colorWrite: false, depthWrite: false, depthTest: false, clippingPlanes: [plane], stencilWrite: true,
+  stencilFunc: THREE.AlwaysStencilFunc, stencilFail: THREE.InvertStencilOp, stencilZFail: THREE.InvertStencilOp, stencilZPass: THREE.InvertStencilOp,
+});
 
-// A block: its triangles, its outside as it is seen, and its cap: where the plane is within the closed block, more
-// back than front faces lie behind it, which the stencil buffer counts.
+// A block: its triangles, its outside as it is seen, and its cap: where the plane is within the closed block, an odd
+// number of its faces lies behind it, which the stencil buffer tells.
 function makeBlock(record, at) {
   const position = new THREE.BufferAttribute(positions, 3);
   const geometry = new THREE.BufferGeometry(), closed = new THREE.BufferGeometry();
@@ -49,27 +47,27 @@ function makeBlock(record, at) {
   for (const corner of closed.index.array) {
     box.expandByPoint(new THREE.Vector3().fromArray(positions, 3 * corner));
   }
+  block.box = box;
   block.center = box.getCenter(new THREE.Vector3());
   const sphere = box.getBoundingSphere(new THREE.Sphere());
   closed.boundingSphere = geometry.boundingSphere = sphere;
   const color = new THREE.Color(record.color), id = new THREE.Color(at + 1);
-  block.shown = new THREE.MeshPhongMaterial({ color, flatShading: true, shininess: 0, side: THREE.DoubleSide, clippingPlanes: [plane] });
+  block.shown = new THREE.MeshPhongMaterial({ color, flatShading: true, shininess: 0, clippingPlanes: [plane] });
   block.mesh = new THREE.Mesh(geometry, block.shown);
   block.mesh.renderOrder = data.blocks.length + 1;
-  const back = new THREE.Mesh(closed, closedMaterial(THREE.BackSide, THREE.IncrementWrapStencilOp));
-  const front = new THREE.Mesh(closed, closedMaterial(THREE.FrontSide, THREE.DecrementWrapStencilOp));
-  block.counted = [back, front];
+  block.closed = new THREE.Mesh(closed, parity);
   const filled = tint => new THREE.MeshBasicMaterial({
     color: tint, side: THREE.DoubleSide, stencilWrite: true, stencilRef: 0, stencilFunc: THREE.NotEqualStencilFunc,
     stencilFail: THREE.ReplaceStencilOp, stencilZFail: THREE.ReplaceStencilOp, stencilZPass: THREE.ReplaceStencilOp,
   });
   block.filled = filled(color);
   block.cap = new THREE.Mesh(new THREE.PlaneBufferGeometry(1, 1), block.filled);
+  block.cap.frustumCulled = false;
   block.cap.onAfterRender = () => renderer.clearStencil();
-  back.renderOrder = front.renderOrder = at + 0.1;
+  block.closed.renderOrder = at + 0.1;
   block.cap.renderOrder = at + 0.2;
-  block.pickMaterials = [new THREE.MeshBasicMaterial({ color: id, side: THREE.DoubleSide, clippingPlanes: [plane] }), filled(id)];
-  block.group.add(block.mesh, back, front);
+  block.pickMaterials = [new THREE.MeshBasicMaterial({ color: id, clippingPlanes: [plane] }), filled(id)];
+  block.group.add(block.mesh, block.closed);
   model.add(block.group);
   caps.add(block.cap);
   return block;
@@ -124,18 +122,30 @@ function updateSection() {
   plane.normal.set(0, 0, 0);
   if (isCut) plane.normal.setComponent(axis, state.flip ? 1 : -1);
   plane.constant = isCut ? (state.flip ? -at : at) * scale : 1;
-  const size = 8 * diagonal * Math.max(1, state.vertical);
+  const scaling = new THREE.Vector3(1, 1, state.vertical);
   for (const block of blocks) {
-    const isShown = isCut && block.group.visible;
-    for (const mesh of block.counted) mesh.visible = isShown;
-    block.cap.visible = isShown;
-    block.cap.scale.set(size, size, 1);
-    block.cap.position.copy(plane.normal).multiplyScalar(-plane.constant);
-    if (isCut) block.cap.lookAt(block.cap.position.clone().add(plane.normal));
-    block.cap.updateMatrixWorld();
+    const box = block.box.clone().translate(block.group.position);
+    box.min.multiply(scaling);
+    box.max.multiply(scaling);
+    block.closed.visible = block.cap.visible = isCut && block.group.visible && plane.intersectsBox(box);
+    block.mesh.visible = !isCut || block.cap.visible || plane.distanceToPoint(box.min) >= 0;
+    if (block.cap.visible) coverBox(block.cap.geometry, box, axis, at * scale);
   }
   byId("at").disabled = !isCut;
   byId("at-text").textContent = isCut ? `${state.axis} = ${number(at + data.origin[axis])} ${data.units}` : "";
+}
+
+// Puts the rectangle into a box, where a coordinate has a value.
+function coverBox(rectangle, box, axis, value) {
+  const corners = rectangle.attributes.position;
+  for (let i = 0; i < 4; i++) {
+    const place = [0, 0, 0];
+    place[axis] = value;
+    place[(axis + 1) % 3] = (i & 1 ? box.max : box.min).getComponent((axis + 1) % 3);
+    place[(axis + 2) % 3] = (i & 2 ? box.max : box.min).getComponent((axis + 2) % 3);
+    corners.setXYZ(i, ...place);
+  }
+  corners.needsUpdate = true;
 }
 
 // What is cut off lies toward the camera.
@@ -233,7 +243,7 @@ function render() {
   asked = false;
   const distance = camera.position.distanceTo(controls.target);
   camera.near = distance / 100;
-  camera.far = distance + 12 * diagonal * Math.max(1, state.vertical);
+  camera.far = distance + 4 * diagonal * Math.max(1, state.vertical);
   camera.updateProjectionMatrix();
   const dark = getComputedStyle(document.documentElement).getPropertyValue("--back").trim();
   renderer.setClearColor(dark || "#f4f5f7");
@@ -338,6 +348,7 @@ function readHash() {
 }
 
 function keepHash() {
+  if (location.protocol === "about:") return;  // in a notebook
   try { history.replaceState(null, "", hash()); } catch (error) { location.hash = hash(); }
 }
 
@@ -509,6 +520,7 @@ async function begin() {
   await addHoles();
   await addPoints();
   if (layers.Boreholes) state.layers.add("Boreholes");
+  byId("link").hidden = location.protocol === "about:";
   listBlocks();
   byId("summary").textContent = `${data.blocks.length} blocks, ${data.volume_text} ${data.units}³`;
   const ends = AXES.map((axis, k) => `${axis} ${number(low.getComponent(k) + data.origin[k])} to ${number(high.getComponent(k) + data.origin[k])}`);

@@ -10,9 +10,10 @@ from typing import BinaryIO
 import numpy as np
 
 from ...base.algebra import begins_run
+from ...base.errors import number_list
 from ...base.text import Step
 from ...base.units import METERS, MODEL_UNIT
-from ...simulation import CornerPointGrid
+from ...results.corner_point import CornerPointGrid
 from ..encodings.text_rows import write_wrapped
 
 _A_LINE = 8
@@ -32,10 +33,12 @@ def write_grdecl(grid: CornerPointGrid, file: BinaryIO, step: Step, unit: str = 
         f"-- DIMENS {nx} {ny} {nz}; units {system}, lengths in {_FEET.get(unit, 'meters')}",
     ]
     rows = zip(grid.names, grid.volumes.tolist(), grid.exact_volumes.tolist(), strict=True)
-    for number, (name, volume, exact) in enumerate(rows):
-        lines.append(f"-- FIPNUM {number + 1} = {' '.join(name.split())}")
+    for number, (name, volume, exact) in enumerate(rows, 1):
+        lines.append(f"-- FIPNUM {number} = {' '.join(name.split())}")
         volumes = f"{volume * to_file**3:.6g}, in the model {exact * to_file**3:.6g}"
-        lines.append(f"--   volume {volumes}: {100 * float(grid.difference[number]):+.3g} %")
+        lines.append(f"--   volume {volumes}: {100 * float(grid.difference[number - 1]):+.3g} %")
+        layers = (np.flatnonzero(grid.fipnum[:, 0, 0] == number) + 1).tolist()
+        lines.append(f"--   layers {number_list(layers, len(layers))}")
     lines += [f"-- {warning.text}" for warning in grid.warnings if "volume" not in warning.kind]
     # identity: the coordinates are those of the map
     lines += [f"MAPUNITS\n  {word} /\nMAPAXES\n  0 1 0 0 1 0 /\nGRIDUNIT\n  {word} /"]

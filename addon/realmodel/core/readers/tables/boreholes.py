@@ -108,9 +108,7 @@ def _picks(rows: list[Row], holes: Holes, units: UnitNames, scale: np.ndarray) -
             depth = row.number("depth")
             place, depth = holes.place(row, depth, scale), depth * scale[2]
         else:
-            holes.refuse_deviated(row)
-            place = np.array([begin[0], begin[1], row.number(column)]) * scale
-            depth = begin[2] * scale[2] - place[2]  # NaN without the height of the collar
+            place, depth = holes.place_at(row, column, scale)
         if not row.is_used:
             off.setdefault(name, []).append(place)
             continue

@@ -45,7 +45,8 @@ class HoleTables:
     no such table. factors: to the units in which they are read, by kind of table and column, for those that
     say others. block_column: the one that was chosen among several, "" where there is no choice. system: the
     coordinate system that the file names, as of RawTable. problems: what was wrong with rows, as far as they
-    are repaired. warnings: sentences."""
+    are repaired. warnings: sentences. lines: of holes of objects, in the units of the tables: the places
+    (N, 3) of depths (N,); picks of objects are at their own places. None of tables."""
 
     boreholes: Boreholes
     collars: list[Row] | None = None
@@ -57,6 +58,7 @@ class HoleTables:
     system: str = ""
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    lines: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
 
     def scale(self, model_unit: str) -> np.ndarray:
         """(3,) the factors of x, y and of heights and depths to the model's unit."""

@@ -105,7 +105,7 @@ def _problem(
     hole = row.text("hole") if row.has("hole") else ""
     depth, code = float("nan") if where[0] is None else float(where[0]), where[1]
     at, named = "" if np.isnan(depth) else f" at {depth:.9g}", "" if code is None else f", '{code}'"
-    text = f"line {row.line}, hole '{hole}'{at}{named}: {what}"
+    text = f"{row.place}, hole '{hole}'{at}{named}: {what}"
     if kind == "overlap" and action == LEFT_OUT:
         text = f"hole '{hole}' {what}"
     return HoleProblem(kind, row.file, row.line, hole, depth, text, action, code)

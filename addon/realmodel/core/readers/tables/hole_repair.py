@@ -191,7 +191,7 @@ def _complete_collars(tables: HoleTables, problems: ProblemList) -> tuple[list[R
         if missing or not row.has("hole"):
             what = f"no {missing[0]}" if missing else "no name of a hole"
             if row.has("hole"):
-                lacking[row.text("hole")] = f"line {row.line} of {row.file} has {what}"
+                lacking[row.text("hole")] = f"{row.place} of {row.file} has {what}"
             said = problems.taken(row, *missing) if missing else ""
             problems.note("no_place", LEFT_OUT, row, said or f"it has {what}")
         else:
@@ -282,10 +282,10 @@ def _one_collar_each(tables: HoleTables, problems: ProblemList) -> list[Row]:
             if row is best:
                 continue
             if all(row.number(axis) == best.number(axis) for axis in "xyz"):
-                problems.note("double", REPAIRED, row, f"the collar of line {best.line} again")
+                problems.note("double", REPAIRED, row, f"the collar of {best.place} again")
                 best = _joined(best, row)
             else:
-                what = f"another collar than in line {best.line}, which is used"
+                what = f"another collar than in {best.place}, which is used"
                 problems.note("two_collars", LEFT_OUT, row, what)
         chosen.append(best)
     return chosen
@@ -353,7 +353,7 @@ def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList)
             row, value = row.with_values({"depth": -value}), -value
         key = (row.text("hole"), code, value, *(row.text(axis) for axis in "xyz" if row.has(axis)))
         if key in seen:
-            problems.note("double", REPAIRED, row, f"the pick of line {seen[key].line} again", value)
+            problems.note("double", REPAIRED, row, f"the pick of {seen[key].place} again", value)
             continue
         seen[key] = row
         end = ends.get(row.text("hole"), np.nan)

@@ -164,17 +164,21 @@ class Reading(Protocol):
     def units(self) -> str | Mapping | None: ...
 
 
+LINE = "line"
+
+
 @dataclass(frozen=True)
 class TableHeader:
     """names: of the columns as they are written, none without a header. line: its number, 1 without one.
     columns: the numbers of the columns from 0, by their meaning. units: of columns, as they are written, by
-    their meaning."""
+    their meaning. row_name: what a row is called before its number."""
 
     file: Path
     names: Sequence[str]
     line: int
     columns: dict[str, int]
     units: dict[str, str] = field(default_factory=dict)
+    row_name: str = LINE
 
 
 @dataclass(frozen=True)
@@ -182,7 +186,7 @@ class RawTable:
     """A table in a file that holds several: the names of its columns, the lines and entries of its rows, what
     units its columns have, as they are written, "" for none. choice: the column of blocks that was chosen
     among several, with a sentence about it. system: the coordinate system that the file names, by EPSG's code
-    where that is known, "" where it names none."""
+    where that is known, "" where it names none. row_name: what a row is called before its number."""
 
     names: Sequence[str]
     rows: Sequence[tuple[int, list[str]]]
@@ -190,6 +194,7 @@ class RawTable:
     units: Sequence[str] = ()
     choice: tuple[str, str] | None = None
     system: str = ""
+    row_name: str = LINE
 
 
 @dataclass(frozen=True)
@@ -207,7 +212,14 @@ class Row:
     def columns(self) -> dict[str, int]:
         return self.header.columns
 
+    @property
+    def place(self) -> str:
+        """Which row of its file it is, for messages."""
+        return f"{self.header.row_name} {self.line}"
+
     def refuse(self, what: str, advice: str | None = None) -> InputRefused:
+        if self.header.row_name != LINE:
+            return InputRefused(what, file=self.file, item=self.place, advice=advice)
         return InputRefused(what, file=self.file, line=self.line, advice=advice)
 
     def with_values(self, values: Mapping[str, float | str]) -> Row:
@@ -302,7 +314,7 @@ def sheet_rows(
     """The same of a table in a file that holds several."""
     columns = _columns(given, file, TableLayout(",", tuple(sheet.names), 0, 0, sheet.line), known)
     units = {meaning: sheet.units[at] for meaning, at in columns.items() if at < len(sheet.units)}
-    header = TableHeader(file, sheet.names, sheet.line, columns, units)
+    header = TableHeader(file, sheet.names, sheet.line, columns, units, sheet.row_name)
     _require(given, header, needed)
     return [Row(header, line, entries) for line, entries in sheet.rows]
 

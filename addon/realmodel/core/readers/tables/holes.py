@@ -71,6 +71,19 @@ class WellTrajectory:
         return length * (_sin_by(turned) * self._directions[n] + sideways)
 
 
+class KnownLine:
+    """A borehole whose ways (N, 3) from the collar are known by their depths (N,): straight between them."""
+
+    def __init__(self, depths: np.ndarray, ways: np.ndarray):
+        self._depths, first = np.unique(depths, return_index=True)
+        self._ways = ways[first] * (1.0, 1.0, -1.0)
+        self.is_vertical = not self._ways[:, :2].any()
+
+    def offset(self, depth: float) -> np.ndarray:
+        """(3,) as of a WellTrajectory."""
+        return np.array([np.interp(depth, self._depths, way) for way in self._ways.T])
+
+
 def _sin_by(x: float) -> float:
     """sin(x) / x."""
     return sin(x) / x if x else 1.0
@@ -162,7 +175,7 @@ class HoleDirections:
                 first = first or station
                 if (station.angle < 0) != (first.angle < 0):
                     raise station.row.refuse(
-                        f"dip is {station.angle:g}, and {first.angle:g} in line {first.row.line}",
+                        f"dip is {station.angle:g}, and {first.angle:g} in {first.row.place}",
                         'say which dips point down: downward_dip = "negative" or "positive"',
                     )
         return -1.0 if first is not None and first.angle < 0 else 1.0
@@ -183,7 +196,7 @@ class HoleDirections:
                 raise station.row.refuse(what, "check its angles")
             if bend > _SHARP:
                 self.warnings.append(
-                    f"{station.row.file}: line {station.row.line}: hole '{hole}' turns by {bend:.0f} "
+                    f"{station.row.file}: {station.row.place}: hole '{hole}' turns by {bend:.0f} "
                     f"degrees between depths {depths[-1]:g} and {station.depth:g}: check its angles"
                 )
             depths.append(station.depth)
@@ -222,8 +235,9 @@ class Holes:
         self.given = tables.boreholes
         self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
         self._without_survey: dict[str, None] = {}
-        self._paths: dict[str, WellTrajectory] = {}
+        self._paths: dict[str, WellTrajectory | KnownLine] = {}
         self._warnings: list[str] = []
+        self._is_of_objects = tables.lines is not None
         self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
         self._collars = None if tables.collars is None else self._read_collars(tables.collars)
         said = {row.text("hole") for row in (*(tables.picks or ()), *(tables.intervals or ()))}
@@ -235,6 +249,9 @@ class Holes:
             self._warnings += directions.warnings
             self._surveyed = set(surveyed)
             self._paths |= surveyed
+        for hole, (depths, places) in (tables.lines or {}).items():
+            if self._collars is not None and hole in self._collars:
+                self._paths[hole] = KnownLine(depths, places - self._collars[hole])
 
     def _read_collars(self, rows: list[Row]) -> dict[str, tuple[float, float, float]]:
         collars: dict[str, tuple[float, float, float]] = {}
@@ -288,8 +305,18 @@ class Holes:
             raise row.refuse(what, "give the depth along the hole (MD)")
         return path.offset(depth)
 
-    def refuse_deviated(self, row: Row) -> None:
-        """Refuses an elevation that does not determine the position in the hole."""
+    def place_at(self, row: Row, column: str, scale: np.ndarray) -> tuple[np.ndarray, float]:
+        """(3,) the place of a row whose column says its elevation, and its depth, NaN where the height of the
+        collar, or the way there, is not known. Refuses an elevation that does not determine the position in
+        the hole."""
+        begin = self.begin_of(row)
+        if self._is_of_objects:
+            return np.array([row.number(axis) for axis in "xyz"]) * scale, float("nan")
+        self._refuse_deviated(row)
+        place = np.array([begin[0], begin[1], row.number(column)]) * scale
+        return place, float(begin[2] * scale[2] - place[2])
+
+    def _refuse_deviated(self, row: Row) -> None:
         path = self._paths.get(row.text("hole"))
         if self._collars is not None and path is not None and not path.is_vertical:
             what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"

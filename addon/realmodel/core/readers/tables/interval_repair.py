@@ -186,7 +186,7 @@ def _without_doubles(intervals: list[_Interval], problems: ProblemList) -> list[
     for interval in intervals:
         entries = (interval.begin, interval.end, *interval.row.entries)
         if entries in first:
-            what = f"the interval of line {first[entries].row.line} again"
+            what = f"the interval of {first[entries].row.place} again"
             problems.note("double", REPAIRED, interval.row, what, interval.begin, interval.code)
         else:
             first[entries] = interval
@@ -225,7 +225,7 @@ def _close(known: list[_Interval], deepest: float, tolerance: float | None, prob
         middle = 0.5 * (upper.end + lower.begin)
         kind = "gap" if gap > 0 else "overlap"
         doubtful, beside = (upper, lower) if _digits(upper.end) > _digits(lower.begin) else (lower, upper)
-        what = f"{kind} of {abs(gap):.6g} beside line {beside.row.line}, closed at {middle:.9g}"
+        what = f"{kind} of {abs(gap):.6g} beside {beside.row.place}, closed at {middle:.9g}"
         problems.note(kind, REPAIRED, doubtful.row, what, middle, doubtful.code)
         upper.moved(upper.begin, middle)
         lower.moved(middle, lower.end)
@@ -248,7 +248,7 @@ def _apart(known: list[_Interval], near: float, problems: ProblemList) -> dict[i
                 names = " and ".join(f"'{name}'" for name in sorted((other.block, interval.block)))
                 later, first = sorted((interval, other), key=lambda i: -i.row.line)
                 what = f"from {low:.9g} to {high:.9g}: intervals of {names} overlap"
-                what += f", lines {first.row.line} and {later.row.line}"
+                what += f", {first.row.header.row_name}s {first.row.line} and {later.row.line}"
                 problems.note("overlap", LEFT_OUT, later.row, what, low, later.code)
                 claimed.append((low, high))
                 touched |= {id(other), id(interval)}

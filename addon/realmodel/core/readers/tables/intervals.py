@@ -69,21 +69,21 @@ def read_intervals(
         raise InputRefused("there are no intervals in it", file=holes.given.intervals)
     if plan_step is None:
         plan = np.array([hole.begin[:2] for hole in logs.values()]) * scale[:2]
-        plan_step = plan_step_of(plan)
+        plan_step = _plan_step_of(plan)
     parts, tops, ends = [], {}, {}
     for name, hole in logs.items():
 
         def place(depth: float, hole: _Hole = hole) -> np.ndarray:
             return holes.place(hole.row, depth, scale)
 
-        parts.append(observed_intervals(name, hole.intervals, place, plan_step, left_out, hole.switched_off))
-        tops[name] = hole.begin * scale, tops_of(parts[-1].some(parts[-1].in_use))
+        parts.append(_observed_intervals(name, hole.intervals, place, plan_step, left_out, hole.switched_off))
+        tops[name] = hole.begin * scale, _tops_of(parts[-1].some(parts[-1].in_use))
         if name in holes.ends:
             ends[name] = place(holes.ends[name])
     return Intervals(Observations.joined(parts), tops, left_out, ends)
 
 
-def plan_step_of(plan: np.ndarray) -> float:
+def _plan_step_of(plan: np.ndarray) -> float:
     """How far places along inclined intervals are apart in plan, for holes at (N, 2)."""
     return float(np.ptp(plan, axis=0).max()) / _STEPS
 
@@ -91,20 +91,11 @@ def plan_step_of(plan: np.ndarray) -> float:
 def _interval(
     row: Row, hole: str, code: str, units: UnitNames, left_out: list[LeftOut]
 ) -> tuple[float, float, str] | None:
-    """(from, to, block) of a row; None where it says nothing."""
+    """(from, to, block) of a row; None where it says nothing, or cannot be used."""
     if units.says_nothing(code) or not (row.has("from") and row.has("to")):
         return None
     begin, end = row.number("from"), row.number("to")
-    where = f"line {row.line}, hole '{hole}' at {begin:.9g}, '{code}'"
-    return known_interval((begin, end, code), hole, where, units, left_out)
-
-
-def known_interval(
-    given: tuple[float, float, str], hole: str, where: str, units: UnitNames, left_out: list[LeftOut]
-) -> tuple[float, float, str] | None:
-    """(from, to, block) of from, to and the name of a unit, which says something; None where it cannot be
-    used. where: the interval in messages."""
-    begin, end, code = given
+    where = f"{row.place}, hole '{hole}' at {begin:.9g}, '{code}'"
     if begin > end:
         text = f"{where}: from {begin:.9g} is below to {end:.9g}"
         left_out.append(LeftOut("from_to", text, code, hole, begin))
@@ -116,7 +107,7 @@ def known_interval(
     return (begin, end, block) if begin < end else None  # of no thickness: the unit is absent
 
 
-def observed_intervals(
+def _observed_intervals(
     name: str,
     intervals: Iterable[tuple[float, float, str]],
     place: Callable[[float], np.ndarray],
@@ -210,7 +201,7 @@ def _alike(depths: list[float]) -> dict[float, float]:
     return alike
 
 
-def tops_of(observations: Observations) -> list[tuple[str, np.ndarray]]:
+def _tops_of(observations: Observations) -> list[tuple[str, np.ndarray]]:
     """(surface, place) where the blocks of a hole begin."""
     blocks = observations.blocks
     first = [row for row in range(len(blocks)) if row == 0 or blocks[row] != blocks[row - 1]]

@@ -210,10 +210,10 @@ def _one_each(stations: list[Row], angle: str, sign: float, problems: ProblemLis
             if row is best:
                 continue
             if _bends(row, [best], towards) > 1e-6:
-                what = f"another direction than in line {best.line}, which is used"
+                what = f"another direction than in {best.place}, which is used"
                 problems.note("two_directions", LEFT_OUT, row, what, depth)
             else:
-                problems.note("double", REPAIRED, row, f"the station of line {best.line} again", depth)
+                problems.note("double", REPAIRED, row, f"the station of {best.place} again", depth)
     while len(single) > 1:
         ways = np.array([towards(row) for row in single])
         turns = np.flatnonzero(np.degrees(dogleg_angles(ways[:-1], ways[1:])) > _OPPOSITE)

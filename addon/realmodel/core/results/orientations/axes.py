@@ -21,11 +21,12 @@ class Axes3:
     axis: (3,) that of the fold, at right angles to the best-fit girdle. Both point down. shares: (3,) the
     normalized eigenvalues of the orientation tensor, the largest first. mean_error, axis_error: degrees, the
     wider half-angle of the elliptic 95 % cone of confidence for large samples (Fisher, Lewis and Embleton
-    1987, Statistical analysis of spherical data, section 6.3); None where the data do not decide.
+    1987, Statistical analysis of spherical data, section 6.3). Each is None where the data do not decide, as
+    on the fold axis of equal dips.
     """
 
-    mean: np.ndarray
-    axis: np.ndarray
+    mean: np.ndarray | None
+    axis: np.ndarray | None
     shares: np.ndarray
     mean_error: float | None
     axis_error: float | None
@@ -35,22 +36,27 @@ def principal(poles: np.ndarray) -> Axes3:
     """Of unit vectors (N, 3), N from 1."""
     spread, axes = principal_axes(np.concatenate([poles, -poles]))  # whose mean is 0
     shares = spread**2 / (spread**2).sum()
-    errors = [_half_angle(poles, axes, shares, which) for which in (0, 2)]
-    return Axes3(downward(axes[:1])[0], downward(axes[2:])[0], shares, *errors)
+    (mean, mean_error), (axis, axis_error) = (_with_error(poles, axes, shares, which) for which in (0, 2))
+    return Axes3(mean, axis, shares, mean_error, axis_error)
 
 
-def _half_angle(poles: np.ndarray, axes: np.ndarray, shares: np.ndarray, which: int) -> float | None:
-    """The half-angle in degrees of the cone around one of the axes: that axis changes with the tensor by
-    sums over the others, each divided by the difference of their eigenvalues."""
+def _with_error(
+    poles: np.ndarray, axes: np.ndarray, shares: np.ndarray, which: int
+) -> tuple[np.ndarray | None, float | None]:
+    """One of the axes by its end that points down, and the half-angle in degrees of the cone around it: it
+    changes with the tensor by sums over the others, each divided by the difference of their eigenvalues."""
     others = [k for k in range(3) if k != which]
     apart = shares[which] - shares[others]
-    if (np.abs(apart) < 1e-9).any() or len(poles) < 3:
-        return None
+    if (np.abs(apart) < 1e-9).any():
+        return None, None
+    down = downward(axes[which, None])[0]
+    if len(poles) < 3:
+        return down, None
     along = poles @ axes.T
     parts = along[:, others] * along[:, which, None] / apart
     spread = np.linalg.eigvalsh(parts.T @ parts / len(poles) ** 2)[-1]
     sine = float(np.sqrt(_WITHIN * max(spread, 0.0)))
-    return float(np.degrees(np.arcsin(sine))) if sine < 1 else None
+    return down, float(np.degrees(np.arcsin(sine))) if sine < 1 else None
 
 
 def downward(axes: np.ndarray) -> np.ndarray:

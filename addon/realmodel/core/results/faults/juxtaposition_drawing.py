@@ -8,8 +8,8 @@ import numpy as np
 from ...base.errors import UsageError
 from ...drawing.charts import Axes, legend, legend_size
 from ...drawing.drawing import GRAY, Color, Drawing, text_width
+from ..sections.section_drawing import MOST_EXAGGERATION, outlines, page_scale
 from .juxtaposition import FOOTWALL, HANGING_WALL, SIDES, JuxtapositionData
-from .section_drawing import MOST_EXAGGERATION, outlines, page_scale
 
 _SIZE = 8.0
 _LEFT, _BELOW, _GAP, _ABOVE = 62.0, 44.0, 16.0, 62.0
@@ -53,7 +53,7 @@ def draw_juxtaposition(fault: JuxtapositionData, exaggeration: float = 1.0) -> D
     )
     page = max(_LEFT + width + _GAP + key_width, *(_LEFT + text_width(text, _SIZE) for text in texts)) + 12
     base = _BELOW + _PROFILE + _BELOW
-    upper = max(height, key_height)
+    upper = max(height, key_height - base)  # the keys stand beside both diagrams
     drawing = Drawing(float(page), float(base + upper + _ABOVE))
     base += upper - height
     drawing.scale = float(scale)
@@ -110,20 +110,12 @@ def hatched(rings: list[np.ndarray], step: float, number: int = 0) -> list[np.nd
 
 
 def _draw_cutoffs(axes: Axes, fault: JuxtapositionData, colors: dict[str, Color]) -> None:
-    for line in fault.cutoffs:
-        points = axes.at(fault.unrolled(line.ends.reshape(-1, 3))).reshape(-1, 2, 2)
-        dash = None if line.side == SIDES[FOOTWALL] else _DASH
-        for part in _joined(points):
-            axes.drawing.line(part, colors[line.surface], 1.3, dash, layer=f"{line.side} {line.surface}")
-
-
-def _joined(segments: np.ndarray) -> list[np.ndarray]:
-    """Lines (N, 2) of segments (S, 2, 2), from left to right, that go on where the one before ends."""
-    segments = np.where((segments[:, 0, 0] > segments[:, 1, 0])[:, None, None], segments[:, ::-1], segments)
-    segments = segments[np.lexsort((segments[:, 1, 0], segments[:, 0, 0]))]
-    goes_on = np.isclose(segments[1:, 0], segments[:-1, 1], rtol=0.0, atol=1e-6).all(axis=1)
-    parts = np.split(segments, np.flatnonzero(~goes_on) + 1)
-    return [np.concatenate([part[:1, 0], part[:, 1]]) for part in parts]
+    for cutoff in fault.cutoffs:
+        dash = None if cutoff.side == SIDES[FOOTWALL] else _DASH
+        for line in cutoff.lines:
+            points = axes.at(fault.unrolled(line))
+            layer = f"{cutoff.side} {cutoff.surface}"
+            axes.drawing.line(points, colors[cutoff.surface], 1.3, dash, layer=layer)
 
 
 def _draw_ends(axes: Axes, fault: JuxtapositionData) -> None:

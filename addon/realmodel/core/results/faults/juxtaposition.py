@@ -8,17 +8,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.triangles import edge_numbers
+from ...base.triangles import edge_numbers, edges_numbered, joined_edges
 from ...base.work import Work, run
 from ...cells.model_data import ModelData
-from ...surfaces.rock_structure import FaultShape, fault_sides
+from ...surfaces.rock_structure import fault_sides
 from ..displacements import Displacement
-from .section_data import SectionData
+from ..sections.section_data import SectionData
 from .strike_line import StrikeLine
 
 FOOTWALL, HANGING_WALL = 0, 1  # columns of `blocks` and `cells`
 SIDES = ("footwall", "hanging wall")
 _BESIDE = 1e-4  # of the size of a face: how far from it a place is looked at
+_INWARD = 0.1  # of the way from an edge to the middle of its face
 
 
 PairAreas = dict[tuple[str | None, str | None], float]
@@ -26,12 +27,12 @@ PairAreas = dict[tuple[str | None, str | None], float]
 
 @dataclass(frozen=True, eq=False)
 class CutoffLine:
-    """Where a fault cuts off a surface on one side. side: "footwall" or "hanging wall". ends: (N, 2, 3)
-    float64 of its segments."""
+    """Where a fault cuts off a surface on one side. side: "footwall" or "hanging wall". lines: of (N, 3)
+    float64 places."""
 
     surface: str
     side: str
-    ends: np.ndarray
+    lines: list[np.ndarray]
 
 
 @dataclass(eq=False, repr=False)
@@ -85,26 +86,25 @@ def _areas_by_pair(names: list[str], blocks: np.ndarray, areas: np.ndarray) -> P
 
 def fault_areas(model: ModelData, number: int) -> PairAreas:
     """As JuxtapositionData.areas, of one of the model's faults by its number; none where it is not there."""
-    surface = int(np.flatnonzero(model.surface_kind == 1)[number])
-    shape = model.structures.fault_shapes()[number]
-    _, arrays = run(lambda work: fault_faces(work, model, surface, shape), threads=model.threads)
+    _, arrays = run(lambda work: fault_faces(work, model, number), threads=model.threads)
     vectors, _ = _vectors(arrays["vertices"][arrays["polygon_vertices"]], arrays["offsets"])
     blocks = np.append(model.cell_block, np.int32(-1))[arrays["cells"]]
     return _areas_by_pair(model.blocks.names, blocks, np.linalg.norm(vectors, axis=1))
 
 
-def fault_faces(work: Work, model: ModelData, surface: int, shape: FaultShape) -> tuple[np.ndarray, dict]:
-    """The numbers (K,) of the faces on a fault, and the arrays of the polygons of a SectionData: each with
-    the cell of the footwall first. surface: the fault's global index."""
-    faces = np.flatnonzero(model.face_surface == surface)
-    straight = np.zeros(len(faces), bool)
-    offsets, corners = model.face_corners(faces, straight)
+def fault_faces(work: Work, model: ModelData, number: int) -> tuple[np.ndarray, dict]:
+    """The numbers (K,) of the faces on one of the model's faults, and the arrays of the polygons of a
+    SectionData: each with the cell of the footwall first."""
+    faces = np.flatnonzero(model.face_surface == np.flatnonzero(model.surface_kind == 1)[number])
+    cells = model.face_cells[faces]
+    first, second = _cell_sides(model, cells, number).T
+    second_is_above = second > first
+    is_open = np.flatnonzero(first == second)
+    offsets, corners = model.face_corners(faces[is_open], np.zeros(len(is_open), bool))
     vectors, middles = _vectors(model.vertices[corners], offsets)
     size = np.sqrt(np.linalg.norm(vectors, axis=1))[:, None]
     beside = middles + _BESIDE * vectors / np.where(size > 0, size, 1.0)
-    cells = model.face_cells[faces]
-    votes = np.where(fault_sides(work, beside, shape) > 0, 1.0, -1.0) * size[:, 0] ** 2
-    second_is_above = _elected(votes, cells)
+    second_is_above[is_open] = fault_sides(work, beside, model.structures.fault_shapes()[number]) > 0
     offsets, corners = model.face_corners(faces, ~second_is_above)
     used, corners = np.unique(corners, return_inverse=True)
     return faces, {
@@ -115,15 +115,11 @@ def fault_faces(work: Work, model: ModelData, surface: int, shape: FaultShape) -
     }
 
 
-def _elected(votes: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """(K,) bool: the second cell of a face is above the fault. votes: (K,) of each face, by its area, above 0
-    for yes. All faces of a cell count, as places beside a sliver may lie anywhere."""
-    sums = np.zeros(int(cells.max(initial=-1)) + 2)  # the last: outside
-    np.add.at(sums, cells[:, 0], votes)
-    np.add.at(sums, cells[:, 1], -votes)
-    sums[-1] = 0.0
-    difference = sums[cells[:, 0]] - sums[cells[:, 1]]
-    return np.where(cells[:, 0] == cells[:, 1], votes, difference) > 0
+def _cell_sides(model: ModelData, cells: np.ndarray, number: int) -> np.ndarray:
+    """The sides of a fault on which cells are: -1 below, 1 above; 0 where there is no cell, or one that it
+    does not divide."""
+    assert model.compartment_sides is not None  # the model has faults
+    return np.append(model.compartment_sides[:, number][model.cell_compartment], 0)[cells]
 
 
 def _vectors(places: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -144,32 +140,31 @@ def dip_direction(arrays: dict) -> np.ndarray:
 
 
 def cutoff_lines(
-    model: ModelData, faces: np.ndarray, cells: np.ndarray, surfaces: list[int]
+    work: Work, model: ModelData, faces: np.ndarray, number: int, surfaces: list[int]
 ) -> list[CutoffLine]:
-    """The cutoff lines of surfaces, by their global indices, at the faces (K,) on a fault, whose cells (K, 2)
-    are those of footwall and hanging wall: the edges that a cell has in a face of both."""
-    count, lines = len(model.vertices), []
-    of_edges = _edges(model, faces)
+    """The cutoff lines of surfaces, by their global indices, at the faces (K,) on a fault: the edges that
+    these and the surface have, on the side of the surface's face."""
+    count, cutoffs = len(model.vertices), []
+    on_fault = edge_numbers(_edges(model, faces)[1], count)
+    shape = model.structures.fault_shapes()[number]
     for surface in surfaces:
         on_surface = np.flatnonzero(model.face_surface == surface)
         face, edges = _edges(model, on_surface)
         numbers = edge_numbers(edges, count)
-        keys = {
-            (cell, number)
-            for column in model.face_cells[on_surface].T
-            for cell, number in zip(column[face].tolist(), numbers.tolist(), strict=True)
-        }
-        row, edges = of_edges
-        numbers = edge_numbers(edges, count)
-        for side, name in enumerate(SIDES):
-            of_cells = cells[row, side].tolist()
-            is_cut = np.array([key in keys for key in zip(of_cells, numbers.tolist(), strict=True)], bool)
-            is_cut &= cells[row, side] >= 0
-            _, first = np.unique(numbers[is_cut], return_index=True)
-            if len(first):
-                ends = model.vertices[edges[is_cut][first]]
-                lines.append(CutoffLine(model.surface_names[surface], name, ends))
-    return lines
+        is_cut = np.isin(numbers, on_fault)
+        face, edges, numbers = on_surface[face[is_cut]], edges[is_cut], numbers[is_cut]
+        sides = _cell_sides(model, model.face_cells[face], number).sum(axis=1)
+        is_open = np.flatnonzero(sides == 0)
+        offsets, corners = model.face_corners(face[is_open], np.zeros(len(is_open), bool))
+        middles = model.vertices[edges[is_open]].mean(axis=1)
+        inward = _vectors(model.vertices[corners], offsets)[1] - middles
+        sides[is_open] = fault_sides(work, middles + _INWARD * inward, shape)
+        for name, is_here in zip(SIDES, (sides < 0, sides > 0), strict=True):
+            once = edges_numbered(np.unique(numbers[is_here]), count)
+            if len(once):
+                lines = [model.vertices[line] for line in joined_edges(once)]
+                cutoffs.append(CutoffLine(model.surface_names[surface], name, lines))
+    return cutoffs
 
 
 def _edges(model: ModelData, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

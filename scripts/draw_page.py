@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture of docs/guide/share.md: the page of a sample, cut, in Debian's chromium.
+
+PYTHONPATH=addon python scripts/draw_page.py [FOLDER]      (default: docs/images)
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from realmodel.core import build, load_project
+
+ROOT = Path(__file__).resolve().parents[1]
+SIZE = 1200, 760
+VIEW = "#s=y,0.55,1&t=light"
+FLAGS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
+
+
+def draw(folder: Path) -> None:
+    model = build(load_project(ROOT / "blend_samples" / "castle_hill" / "project.toml"))
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as made:
+        page = Path(made) / "castle_hill.html"
+        model.save(page)
+        subprocess.run(
+            [
+                *("chromium", *FLAGS, "--hide-scrollbars", f"--user-data-dir={made}/profile"),
+                *(f"--window-size={SIZE[0]},{SIZE[1]}", "--virtual-time-budget=20000"),
+                *(f"--screenshot={folder / 'page.png'}", f"{page.as_uri()}{VIEW}"),
+            ],
+            check=True,
+            stderr=subprocess.DEVNULL,
+        )
+
+
+if __name__ == "__main__":
+    draw(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "images")
