@@ -112,6 +112,7 @@ def test_heights_by_an_attribute(write, tmp_path):
         ("a.geojson", features(({}, point([1, 2, 3]))), {"layer": "a"}, "not a GeoPackage"),
         ("a.wkt", "POINT (1 2 3)", {"height": "z"}, "no attributes"),
         ("a.csv", "1,2,3\n", {"height": "z"}, "it is a table, so 'height' has no effect"),
+        ("a.csv", 'WKT,elev\n"POINT (1 2)",3\n', {}, "well-known text in a column; .*AS_XYZ"),
         ("a.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n", {"layer": "a"}, "a raster"),
     ],
 )

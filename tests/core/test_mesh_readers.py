@@ -325,3 +325,18 @@ def test_a_damaged_msh_of_leapfrog_is_refused(write, content, match):
 def test_damaged_meshes_are_refused_with_the_place(write, name, content, match):
     with pytest.raises(InputRefused, match=match):
         read_mesh(write(name, content))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n$ELM\n1\n1 2 1 1 3 1 2 3\n$ENDELM\n",
+            "MSH 1 is not read",
+        ),
+        ('(0 "GAMBIT to Fluent File")\n(2 3)\n(10 (0 1 4 1 3))\n', "no mesh of Gmsh or Leapfrog"),
+    ],
+)
+def test_other_meshes_that_end_in_msh_are_named(write, text, words):
+    with pytest.raises(InputRefused, match=f"{words}; save it as"):
+        read_mesh(write("a.msh", text))

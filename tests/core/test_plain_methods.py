@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from realmodel.core import InputRefused, cross_validate, interpolate
+from realmodel.core import InputRefused, Project, Rock, Surface, build, cross_validate, interpolate
 from scipy.interpolate import LinearNDInterpolator
 
 RNG = np.random.default_rng(17)
@@ -312,3 +312,22 @@ def test_a_kriged_thickness_goes_to_its_mean_where_another_surface_is_the_trend(
     known = above[:, 2] - interpolate(below, above[:, :2], method="plane").z
     assert known.min() - 1e-6 < by_trend.min() and by_trend.max() < known.max() + 1e-6
     assert np.ptp(by_trend) < np.ptp(alone)
+
+
+@pytest.mark.parametrize("method", ["grid", "natural_neighbour", "tin", "kriging", "idw"])
+def test_a_raster_with_a_gap_may_begin_in_the_north_or_the_south(method):
+    """The points of files in any order give the same model to the last bit."""
+    rows, columns = np.mgrid[:9, :12]
+    is_known = (abs(rows - 4) > 1) | (abs(columns - 5) > 2)
+    height = 300 + 10 * np.sin(columns / 3) + 5 * np.cos(rows / 2)
+    points = np.column_stack(
+        [4e5 + 10.0 * columns[is_known], 5.4e6 - 10.0 * rows[is_known], height[is_known]]
+    )
+    region = points[0, :2] + np.array([(3.0, -77.0), (97.0, -79.0), (103.0, -3.0), (5.0, -4.0)])
+    orders = [slice(None), slice(None, None, -1), np.random.default_rng(0).permutation(len(points))]
+    built = []
+    for order in orders:
+        surface = Surface("top", points=points[order].copy(), method=method)
+        rock = Rock("r", [surface], region=region, edge_length=12.0, base_elevation=200.0)
+        built.append(build(Project("p", [rock])).vertices.tobytes())
+    assert built[0] == built[1] == built[2]

@@ -11,7 +11,15 @@ import pytest
 from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from realmodel.core import InputRefused, OutputFailed, UsageError, build, load_project, propose_project
+from realmodel.core import (
+    InputRefused,
+    OutputFailed,
+    PointFile,
+    UsageError,
+    build,
+    load_project,
+    propose_project,
+)
 from realmodel.core.proposal.order import evidence_of, find_order
 from test_hole_files import ags4
 
@@ -316,6 +324,22 @@ def write_map(folder, features, ground=None):
 
 
 STRIPS = [("A", 0, 100, {}), ("B", 100, 200, {}), ("C", 200, 300, {})]
+
+
+@pytest.mark.parametrize("said", ["urn:ogc:def:crs:EPSG::27700", "EPSG:27700"])
+def test_the_system_of_a_map_is_the_projects(tmp_path, said):
+    given_map = write_map(tmp_path, STRIPS)
+    head = f'"crs": {{"properties": {{"name": "{said}"}}}}, "features"'
+    given_map["map"].write_text(given_map["map"].read_text().replace('"features"', head))
+    assert propose_project(**given_map).crs == "EPSG:27700"
+    assert propose_project(**given_map, crs="EPSG:2154").crs == "EPSG:2154"
+    for part in ("map", "ground"):
+        given_map[part] = (
+            {"file": given_map[part], "units": "ft"}
+            if part == "map"
+            else PointFile(given_map[part], units="ft")
+        )
+    assert propose_project(**given_map, units="ft").crs is None
 
 
 def test_a_unit_that_dips_beneath_another_is_older(tmp_path):

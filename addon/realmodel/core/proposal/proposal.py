@@ -164,7 +164,7 @@ def _system(data: _Data, units: str) -> tuple[str | None, str]:
     if isinstance(data.ground, PointFile) and (number := geotiff_system(data.ground.file)) is not None:
         said.setdefault(f"EPSG:{number}", Path(data.ground.file))
     if data.map is not None and (system := system_of_map(data.map.polygons)):
-        said.setdefault(projected_code(system) or system, data.map.file)
+        said.setdefault(projected_code(system) or system, Path(data.map.file))
     how = "name it by --crs EPSG:CODE, or the key 'crs'"
     if not said:
         return None, f"not known: no file names it; {how}"

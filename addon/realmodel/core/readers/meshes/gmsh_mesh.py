@@ -34,6 +34,11 @@ def read_msh(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     called as its file. Raises InputRefused naming the file."""
     file = Path(file)
     raw = read_bytes(file)
+    if b"$MeshFormat" not in raw:
+        what = (
+            "MSH 1 is not read" if raw.lstrip().startswith(b"$NOD") else "it is no mesh of Gmsh or Leapfrog"
+        )
+        raise InputRefused(what, file=file, advice="save it as MSH 4.1 or 2.2, STL, OBJ or PLY")
     sections = {name: _section(file, raw, name) for name in (b"MeshFormat", b"Nodes", b"Elements")}
     head = raw[slice(*sections[b"MeshFormat"])]
     words = head.split(None, 3)

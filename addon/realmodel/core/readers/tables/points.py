@@ -94,6 +94,8 @@ def _names_of(axis: str) -> tuple[str, ...]:
 
 
 AXES = {axis: _names_of(axis) for axis in _WORDS}
+# As GDAL writes a table of shapes.
+_WKT_FIRST = re.compile(rb'(?:\xef\xbb\xbf)?"?WKT"?\s*[,;\t\r\n]', re.IGNORECASE)
 # Taken where no column has one of those names, with a warning.
 _DEGREES = {
     "x": ("lon", "long", "longitude", "longitud", "länge", "lng"),
@@ -133,6 +135,9 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
 
     Raises InputRefused naming file and line.
     """
+    if given.columns is None and _WKT_FIRST.match(FileBytes(Path(given.file))[:100]):
+        advice = "export columns X, Y and Z (ogr2ogr -lco GEOMETRY=AS_XYZ), or a GeoPackage"
+        raise InputRefused("its places are well-known text in a column", file=Path(given.file), advice=advice)
     table = table_of(given, step=step)
     wanted = wanted_columns(table, given.columns)
     rows = _read_rows(table, given, wanted, step, gather)

@@ -407,9 +407,13 @@ def without_contradictions(
 def _one_height_each(surface: Surface, data: SurfaceData) -> tuple[SurfaceData, list[LeftOut]]:
     """The data without contacts that are more than a mis-tie off the first point at their place in plan, as
     those of two holes at one place may be; and these."""
+    if not len(data.contacts):
+        return data, []
     wrong = contradictions(data.points)
-    _, first, place = np.unique(data.points[:, :2] + 0.0, axis=0, return_index=True, return_inverse=True)
     wrong[: data.contacts_from] = False
+    if not wrong.any():
+        return data, []
+    _, first, place = np.unique(data.points[:, :2] + 0.0, axis=0, return_index=True, return_inverse=True)
     wrong[first] = False
     left_out = []
     for row in np.flatnonzero(wrong).tolist():
@@ -420,7 +424,7 @@ def _one_height_each(surface: Surface, data: SurfaceData) -> tuple[SurfaceData, 
         origin, at = data.source(row), tuple(data.points[row].tolist())
         text = f"{texts[0]}, which contradicts {texts[1]}"
         left_out.append(LeftOut("contradiction", text, "", origin.hole, origin.depth, at, tuple(texts[1:])))
-    return data.some(~wrong) if left_out else data, left_out
+    return data.some(~wrong), left_out
 
 
 def _listed(surface: Surface, data: SurfaceData, bounds: Bounds, wrong: np.ndarray, row: int) -> LeftOut:
