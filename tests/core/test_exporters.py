@@ -78,7 +78,10 @@ def test_a_model_without_cells_can_be_written(tmp_path):
     empty = build(Project("one", [Rock("rock", crossing_surfaces(count=1))]))
     assert (len(empty.cell_block), empty.volume) == (0, 0.0)
     for ending in ENDINGS:
-        empty.save(tmp_path / f"m{ending}")
+        if ending != ".grdecl":
+            empty.save(tmp_path / f"m{ending}")
+    with pytest.raises(UsageError, match="center"):
+        empty.save(tmp_path / "m.grdecl")
     with np.load(tmp_path / "m.npz", allow_pickle=False) as read:
         assert len(read["vertices"]) == len(read["block_names"]) == 0
     assert model_report(empty)["counts"]["cells"] == 0

@@ -205,9 +205,9 @@ class _HoleRows:
         depths = _depths(begins, ends, holes) if values.depths is None else values.depths
         for hole in dict.fromkeys(holes):
             rows = np.array(holes) == hole
-            line = depths[rows].ravel(), np.stack([begins[rows], ends[rows]], axis=1).reshape(-1, 3)
-            known = self.lines.get(hole, (np.empty(0), np.empty((0, 3))))
-            self.lines[hole] = tuple(np.concatenate(parts) for parts in zip(known, line, strict=True))
+            known, places = self.lines.get(hole, (np.empty(0), np.empty((0, 3))))
+            more = np.stack([begins[rows], ends[rows]], axis=1).reshape(-1, 3)
+            self.lines[hole] = np.append(known, depths[rows]), np.concatenate([places, more])
         self.intervals += [
             [hole, *map(repr, row), name]
             for hole, row, name in zip(holes, depths.tolist(), names, strict=True)
