@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import Fault, OutputFailed, Project, Rock, Surface, UsageError, build
+from realmodel.core import Fault, InputRefused, OutputFailed, Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters import MODEL
 from realmodel.core.exporters.model_arrays import model_arrays
 from realmodel.core.exporters.report import SCHEMA, model_report
@@ -80,7 +80,7 @@ def test_a_model_without_cells_can_be_written(tmp_path):
     for ending in ENDINGS:
         if ending != ".grdecl":
             empty.save(tmp_path / f"m{ending}")
-    with pytest.raises(UsageError, match="center"):
+    with pytest.raises(InputRefused, match="the model has no cells"):
         empty.save(tmp_path / "m.grdecl")
     with np.load(tmp_path / "m.npz", allow_pickle=False) as read:
         assert len(read["vertices"]) == len(read["block_names"]) == 0
