@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from ...core import InputRefused, RealModelError, Stereonet
+from ...core import InputRefused, RealModelError, Stereonet, UsageError
 from ...core.base.algebra import norm
 from ...core.results.orientations.axes import projected
 from ...core.results.orientations.stereonet import EQUAL_AREA, NETS, DipSet, dip_names, normals_of
@@ -54,6 +54,14 @@ def shown_dips(scene, of=""):
     return Stereonet(np.array([normal_of(scene, datum) for datum in dips]), "Picked dips")
 
 
+def beside_the_model(scene):
+    """The Stereonet that is shown beside the model; None where none is, or of a name without dips."""
+    view = scene.realmodel.view
+    with suppress(UsageError):
+        return shown_dips(scene, view.stereonet_of) if view.show_stereonet and are_there(scene) else None
+    return None
+
+
 def pick(scene, dips):
     """Has the stereonet of a scene show these dips alone (a list of Datum); of an empty list, all again."""
     scene.realmodel.view.picked_dips = json.dumps([datum.text() for datum in dips]) if dips else ""
@@ -93,9 +101,8 @@ def marked(scene):
 def datum_at(scene, place):
     """The Datum of the shown pole nearest to a place (2,) in the net, whose radius is 1; None where none is
     near."""
-    view = scene.realmodel.view
-    normals = shown_dips(scene, view.stereonet_of).normals
-    away = norm(projected(normals, view.net.lower() == EQUAL_AREA) - place)
+    normals = beside_the_model(scene).normals
+    away = norm(projected(normals, scene.realmodel.view.net.lower() == EQUAL_AREA) - place)
     if away.min() > _NEAR:
         return None
     pole, best = normals[away.argmin()], (np.inf, None)

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core import UsageError
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from ...core.results.hole_log import draw_hole_log
 from ...core.results.orientations.stereonet import draw_beside, small_net
@@ -98,18 +97,16 @@ def corner_of_net(width, margins):
 
 def _draw_net(scene, drawing, margins):
     """Draws the stereonet; returns its left border."""
-    view, corner = scene.realmodel.view, corner_of_net(drawing.width, margins)
-    try:
-        dips = shown_net.shown_dips(scene, view.stereonet_of)
-    except UsageError:  # none of what is asked for
+    dips, corner = shown_net.beside_the_model(scene), corner_of_net(drawing.width, margins)
+    if dips is None:  # there are none of the name
         return corner[0]
-    return draw_beside(drawing, dips, view.net.lower(), corner, shown_net.marked(scene))
+    return draw_beside(drawing, dips, scene.realmodel.view.net.lower(), corner, shown_net.marked(scene))
 
 
 def place_in_net(scene, width, margins, at):
     """(2,) where a place of a picture, so wide, is in the stereonet, whose radius is 1; all in points. None
     beside it, and where there is none."""
-    if not (scene.realmodel.view.show_stereonet and shown_net.are_there(scene)):
+    if shown_net.beside_the_model(scene) is None:
         return None
     middle, radius = small_net(corner_of_net(width, margins))
     place = (np.array(at) - middle) / radius
