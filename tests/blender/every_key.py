@@ -249,7 +249,7 @@ def write_files(folder: Path):
     (folder / "salt.off").write_text(f"OFF\n4 4 0\n{corners}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n")
     (folder / "library.toml").write_text(
         '[[property]]\nid = 4\nname = "Clay"\nrock = "clay"\nage = "Eocene"\nstructure = "bedded"\n'
-        'color = "#102030"\ndensity = 2123.4\ndescription = "grün"\n',
+        'color = "#102030"\ndensity = 2123.4\ndescription = "grün"\nporosity = 0.25\npermeability = 120.5\n',
         encoding="utf-8",
     )
     rows = [(i * 13 % 97, i * 29 % 79, 5 + i % 7) for i in range(40)]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, grid_surface
 from displaced_surfaces import Displacing, dome, leaning, mesh_of
-from realmodel.core import Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core import Library, Project, Property, Rock, Surface, UsageError, build, load_project
 from sample_models import three_layers
 from structure_cases import SQUARE
 
@@ -102,7 +102,7 @@ def read_grdecl(path):
     words = [line.partition("--")[0] for line in path.read_text().splitlines()]
     arrays = {}
     for record in " ".join(words).split("/"):
-        for name in ("SPECGRID", "COORD", "ZCORN", "ACTNUM", "FIPNUM"):
+        for name in ("SPECGRID", "COORD", "ZCORN", "ACTNUM", "FIPNUM", "PORO", "PERMX", "PERMY", "PERMZ"):
             keyword, _, rest = record.strip().partition(" ")
             if keyword == name:
                 pairs = [word.rpartition("*") for word in rest.split() if word != "F"]
@@ -372,6 +372,24 @@ TSTEP
  5*10 /
 END
 """
+
+
+def test_the_library_gives_porosity_and_permeability(tmp_path):
+    """Where it has them; blocks without one have 0, with a warning."""
+    surfaces = [flat("clay", 10), flat("sand", 30)]
+    surfaces[0].property, surfaces[1].property = 4, 7
+    entries = [Property(4, "Clay", porosity=0.05), Property(7, "Sand", porosity=0.25, permeability=120.5)]
+    model = build(Project("p", [Rock("r", base_elevation=0.0, surfaces=surfaces)], library=Library(entries)))
+    model.save(path := tmp_path / "m.grdecl", cell_size=25.0)
+    arrays = read_grdecl(path)
+    assert arrays["PORO"].tolist() == [0.25] * 16 + [0.05] * 16
+    for axis in "XYZ":
+        assert arrays[f"PERM{axis}"].tolist() == [120.5] * 16 + [0.0] * 16
+    grid = model.corner_point_grid(25.0)
+    assert [warning.kind for warning in grid.warnings] == ["corner_point_permeability"]
+    assert grid.warnings[0].text.endswith(": clay")
+    layered().save(path, cell_size=25.0)
+    assert "PORO" not in path.read_text()
 
 
 @pytest.mark.parametrize("connects", ["PINCH\n/\n", ""])

@@ -11,6 +11,7 @@ def test_every_key(write):
             "library.toml",
             '[[property]]\nid = 3\nname = "Grès vosgien"\nrock = "sandstone"\nage = "Olenekian"\n'
             'structure = "cross-bedded"\ncolor = "#B04030"\ndensity = 2.35\n'
+            "porosity = 0.2\npermeability = 35.5\n"
             'look = "sandstone"\nlook_scale = 2.5\nlook_seed = 4\nhardness = 0.7\n'
             'description = """two\nlines"""\n[[property]]\nid = 1\nname = "Granite"\n',
         )
@@ -18,6 +19,7 @@ def test_every_key(write):
     entry = library.get(3)
     assert (entry.name, entry.rock, entry.age) == ("Grès vosgien", "sandstone", "Olenekian")
     assert (entry.structure, entry.density, entry.description) == ("cross-bedded", 2.35, "two\nlines")
+    assert (entry.porosity, entry.permeability) == (0.2, 35.5)
     assert (entry.look, entry.look_scale, entry.look_seed, entry.hardness) == ("sandstone", 2.5, 4, 0.7)
     assert library.get(1).look is None
     assert entry.rgb == pytest.approx((0xB0 / 255, 0x40 / 255, 0x30 / 255))
@@ -54,6 +56,8 @@ def test_every_key(write):
         ('[[property]]\nid = 1\nname = "a"\nlook_scale = 0\n', 4, "above 0"),
         ('[[property]]\nid = 1\nname = "a"\nlook_seed = -1\n', 4, "from 0"),
         ('[[property]]\nid = 1\nname = "a"\nhardness = 1.5\n', 4, "at most 1"),
+        ('[[property]]\nid = 1\nname = "a"\nporosity = 25\n', 4, "at most 1"),
+        ('[[property]]\nid = 1\nname = "a"\npermeability = 0\n', 4, "above 0"),
         ('[[property]]\nid = 9999999999\nname = "a"\n', 2, "32-bit"),
     ],
 )

@@ -28,8 +28,12 @@ class REALMODEL_PT_library(FoldedPanel, bpy.types.Panel):
         if not len(group.library):
             return
         entry = group.library[min(group.active_property, len(group.library) - 1)]
-        for key in ("name", "id", "color", "rock", "age", "structure", "density", "description", "look"):
+        for key in ("name", "id", "color", "rock", "age", "structure", "density", "description"):
             layout.prop(entry, key)
+        line = layout.row(align=True)
+        line.prop(entry, "porosity")
+        line.prop(entry, "permeability")
+        layout.prop(entry, "look")
         if entry.look not in {library_rows.NO_LOOK, "FLAT"}:
             line = layout.row(align=True)
             line.prop(entry, "look_scale", text="Scale")

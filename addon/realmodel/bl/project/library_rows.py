@@ -82,8 +82,7 @@ def remove_made(scene, surface):
     if row is None or users > 1 or row.name != surface.name:
         return
     if (
-        row.density
-        or row.hardness
+        any((row.density, row.porosity, row.permeability, row.hardness))
         or row.look != NO_LOOK
         or any(row.get(key) for key, setting in PROPERTY.items() if setting.kind == "note")
     ):

@@ -162,8 +162,9 @@ def _copy(scene, obj, mesh, names):
         for key in ("rock", "age", "structure", "description"):
             if getattr(row, key):
                 copy[f"{model_tree.TAG}_property_{key}"] = getattr(row, key)
-        if settings.number(row, "density"):
-            copy[f"{model_tree.TAG}_property_density"] = settings.number(row, "density")
+        for key in ("density", "porosity", "permeability"):
+            if settings.number(row, key):
+                copy[f"{model_tree.TAG}_property_{key}"] = settings.number(row, key)
     return copy
 
 

@@ -49,8 +49,9 @@ class Property:
     """One entry of a library: a rock or another kind of material, by a unique `id` above 0 and a `name`.
 
     rock, age, structure, description: texts. color: "#rrggbb" (sRGB). density: in the user's units. For
-    pictures: `look` one of LOOK_NAMES, the size `look_scale` of its texture (1 suits the model) and its seed
-    `look_seed`; `hardness`, above 0 and at most 1, says how well the rock withstands weathering.
+    simulators: porosity, above 0 and at most 1; permeability, millidarcies. For pictures: `look` one of
+    LOOK_NAMES, the size `look_scale` of its texture (1 suits the model) and its seed `look_seed`; `hardness`,
+    above 0 and at most 1, says how well the rock withstands weathering.
     """
 
     id: int = declared(kind="integer", check=_checked_id, is_needed=True)
@@ -72,6 +73,25 @@ class Property:
         low=0.0,
         zero_is_none=True,
         check=without(lambda value: None if value > 0 else f"density must be above 0, not {value:g}"),
+    )
+    porosity: float | None = declared(
+        kind="finite",
+        label="Porosity",
+        tip="Share of pores in the rock, at most 1, for reservoir simulators; 0: unknown",
+        low=0.0,
+        high=1.0,
+        zero_is_none=True,
+        check=without(
+            lambda value: None if 0 < value <= 1 else f"porosity must be above 0 and at most 1, not {value:g}"
+        ),
+    )
+    permeability: float | None = declared(
+        kind="finite",
+        label="Permeability",
+        tip="Permeability in millidarcies, for reservoir simulators; 0: unknown",
+        low=0.0,
+        zero_is_none=True,
+        check=without(lambda value: None if value > 0 else f"permeability must be above 0, not {value:g}"),
     )
     description: str | None = declared(kind="note", label="Description", tip="Further notes")
     look: str | None = declared(kind="line", check=_checked_look)

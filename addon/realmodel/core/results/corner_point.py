@@ -40,8 +40,9 @@ class CornerPointGrid(ShortRepr):
     pillar x, y and depth of its top and of its bottom. zcorn: (2 nz, 2 ny, 2 nx) float64, the depth of each
     corner. actnum, fipnum: (nz, ny, nx) int32, 1 where a cell is active, and the number of its block plus 1,
     0 in a void; flattened, all are in the order of the file. names: of the blocks. volumes, exact_volumes:
-    (B,) float64, of the blocks in the grid and in the model, model units cubed. warnings: what the grid does
-    not show. Coordinates are those of the model.
+    (B,) float64, of the blocks in the grid and in the model, model units cubed. porosity, permeability: (B,)
+    float64, of the library, NaN where it has none. warnings: what the grid does not show. Coordinates are
+    those of the model.
     """
 
     shape: tuple[int, int, int]
@@ -54,6 +55,8 @@ class CornerPointGrid(ShortRepr):
     names: list[str]
     volumes: np.ndarray
     exact_volumes: np.ndarray
+    porosity: np.ndarray
+    permeability: np.ndarray
     warnings: list[BuildWarning] = field(default_factory=list)
 
     @property
@@ -467,6 +470,8 @@ def _assembled(
         names=[block.name for block in model.blocks],
         volumes=np.zeros(len(model.blocks)),
         exact_volumes=np.array([block.volume for block in model.blocks]),
+        porosity=_of_library(model, "porosity"),
+        permeability=_of_library(model, "permeability"),
     )
     thickness = grid.thickness
     is_active = (thickness > _NO_THICKNESS * np.ptp(model.vertices[:, 2])) & (fipnum > 0)
@@ -475,6 +480,13 @@ def _assembled(
     grid.volumes[:] = np.bincount(fipnum[is_active] - 1, volume, len(model.blocks))
     grid.warnings.extend(_warnings(grid, of_blocks))
     return grid
+
+
+def _of_library(model: ModelData, key: str) -> np.ndarray:
+    """(B,) float64: what the library says of each block, NaN where it says nothing."""
+    library = model.project.library
+    entries = [library.get(block.property) if library else None for block in model.blocks]
+    return np.array([getattr(entry, key, None) for entry in entries], np.float64)
 
 
 def _warnings(grid: CornerPointGrid, of_blocks: _Layers) -> list[BuildWarning]:
@@ -498,6 +510,12 @@ def _warnings(grid: CornerPointGrid, of_blocks: _Layers) -> list[BuildWarning]:
             "columns: "
         )
         warnings.append(BuildWarning(text + number_list(repeated), "corner_point_repeats"))
+    for key in ("porosity", "permeability"):
+        is_known = np.isfinite(getattr(grid, key))
+        without = [name for name, known in zip(grid.names, is_known, strict=True) if not known]
+        if without and is_known.any():
+            text = f"blocks without a {key} in the library have 0 in the corner-point grid: "
+            warnings.append(BuildWarning(text + number_list(without), f"corner_point_{key}"))
     if of_blocks.voids:
         text = (
             f"{of_blocks.voids} columns of the corner-point grid go through a void, which has no active cells"

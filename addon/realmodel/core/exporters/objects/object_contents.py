@@ -24,7 +24,7 @@ _OF_NO_SURFACE = (CUT, BASE, WALL)  # face_surface -3, -2, -1
 FAULTS, BODIES = "Faults", "Bodies"
 _KINDS = ("Interfaces", FAULTS, BODIES)  # surface_kind
 _BODY = _KINDS.index(BODIES)
-_OF_PROPERTY = ("name", "rock", "age", "structure", "density", "description")
+_OF_PROPERTY = ("name", "rock", "age", "structure", "density", "porosity", "permeability", "description")
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,8 +23,9 @@ _FEET = {"ft": "feet", "us-ft": "US survey feet"}
 
 def write_grdecl(grid: CornerPointGrid, file: BinaryIO, step: Step, unit: str = MODEL_UNIT) -> None:
     """Writes SPECGRID, COORD, ZCORN, ACTNUM, FIPNUM, and PINCH, by which what lies above and below a layer
-    that ends is connected. Coordinates are those of the map. unit: of the model; feet stay feet (FIELD),
-    others become meters (METRIC)."""
+    that ends is connected; PORO, PERMX, PERMY and PERMZ where the library has them, 0 where it has none of a
+    block. Coordinates are those of the map. unit: of the model; feet stay feet (FIELD), others become meters
+    (METRIC)."""
     word, system = ("FEET", "FIELD") if unit in _FEET else ("METRES", "METRIC")
     to_file = 1.0 if unit in _FEET else float(METERS[unit])
     nx, ny, nz = grid.shape
@@ -50,7 +51,12 @@ def write_grdecl(grid: CornerPointGrid, file: BinaryIO, step: Step, unit: str = 
     places = min(max(_DIGITS - math.ceil(math.log10(max(float(np.ptp(depths)), 1e-300))), 0), 300)
     file.write(b"/\nZCORN\n")
     write_wrapped(file, f" %.{places}f", depths, _A_LINE)
-    for keyword, values in (("ACTNUM", grid.actnum), ("FIPNUM", grid.fipnum)):
+    arrays = [("ACTNUM", grid.actnum), ("FIPNUM", grid.fipnum)]
+    known = [("PORO", grid.porosity), *((f"PERM{axis}", grid.permeability) for axis in "XYZ")]
+    for keyword, of_blocks in known:
+        if np.isfinite(of_blocks).any():
+            arrays.append((keyword, np.append(0.0, np.nan_to_num(of_blocks))[grid.fipnum]))
+    for keyword, values in arrays:
         step(0.9)
         file.write(f"/\n{keyword}\n".encode())
         _write_runs(file, values.ravel())
@@ -59,7 +65,7 @@ def write_grdecl(grid: CornerPointGrid, file: BinaryIO, step: Step, unit: str = 
 
 
 def _write_runs(file: BinaryIO, values: np.ndarray) -> None:
-    """Whole numbers, equal ones together as 3*7."""
+    """Numbers, equal ones together as 3*7."""
     begins = np.flatnonzero(begins_run(values))
     counts = np.diff(np.append(begins, len(values))).tolist()
     words = [f"{count}*{value}" for count, value in zip(counts, values[begins].tolist(), strict=True)]
