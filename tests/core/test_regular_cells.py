@@ -121,10 +121,11 @@ def test_geotiff_has_a_band_for_each_grid(model, tmp_path):
     with tifffile.TiffFile(tmp_path / "g.tif") as tiff:
         page = tiff.pages[0]
         bands = page.asarray()
-        assert bands.shape == (7, *grids.top.shape)
+        assert bands.shape == (9, *grids.top.shape)
         assert np.array_equal(bands[0], grids.top, equal_nan=True)
         assert np.array_equal(bands[2], grids.thickness[0])
         assert np.array_equal(bands[6], grids.true_thickness[1])
+        assert np.array_equal(bands[7:], [values for _, values in grids.deviation], equal_nan=True)
         assert page.tags[33550].value[:2] == (4.0, 4.0)
         assert page.tags[33922].value[3:5] == grids.north_west
         assert "top of Clay" in page.tags[42112].value
@@ -149,6 +150,8 @@ def test_ascii_grids_are_files_side_by_side(model, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         *(
             "g.asc",
+            "g_standard_deviation_of_ground.asc",
+            "g_standard_deviation_of_top_of_clay.asc",
             "g_thickness_of_Clay.asc",
             "g_thickness_of_Sand.asc",
             "g_top_of_Clay.asc",

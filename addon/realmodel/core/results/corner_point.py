@@ -292,7 +292,7 @@ class _Columns:
         same = _NO_THICKNESS * float(np.ptp(height))
         j, i = np.divmod(column, nx)
         centers = np.stack([i, j], axis=1) + 0.5
-        corners = contacts.at(triangle, centers)[:, None] + contacts.slope[triangle] @ _SIDES.T
+        corners = contacts.at(triangle, centers)[:, None] + dot(contacts.slope[triangle][:, None], _SIDES)
         pillar = np.full(corners.shape, -1)
         for corner, near in enumerate(corners.T):
             wanted = contacts.sheet[triangle] * pillars + (j + corner // 2) * (nx + 1) + i + corner % 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.algebra import dot
 from ...base.errors import UsageError
 from ...drawing.charts import Axes, legend, legend_size
 from ...drawing.drawing import GRAY, Color, Drawing, text_width
@@ -97,15 +98,16 @@ def hatched(rings: list[np.ndarray], step: float, number: int = 0) -> list[np.nd
     fall at an odd one."""
     turn = np.sqrt(0.5) * np.array([[1.0, 1.0], [-1.0, 1.0]])  # rows: along and across
     turn = turn * (1.0, -1.0) if number % 2 else turn
-    begin = np.concatenate(rings) @ turn.T
-    end = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings]) @ turn.T
+    begin = dot(np.concatenate(rings)[:, None], turn)
+    end = dot(np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])[:, None], turn)
     lines = []
     first, last = np.ceil(begin[:, 1].min() / step), np.floor(begin[:, 1].max() / step)
     for across in step * np.arange(first, last + 1):
         cut = (begin[:, 1] <= across) != (end[:, 1] <= across)
         share = (across - begin[cut, 1]) / (end[cut, 1] - begin[cut, 1])
         along = np.sort(begin[cut, 0] + share * (end[cut, 0] - begin[cut, 0]))
-        lines += [np.array([[a, across], [b, across]]) @ turn for a, b in along.reshape(-1, 2).tolist()]
+        ends = np.stack([along, np.full(len(along), across)], axis=1)
+        lines += list(dot(ends[:, None], turn.T).reshape(-1, 2, 2))
     return lines
 
 

@@ -57,7 +57,7 @@ class StrikeLine:
         best, nearest = np.zeros(len(plan)), np.full(len(plan), np.inf)
         for k, (point, way) in enumerate(zip(self.points[:-1], ways, strict=True)):
             moved = plan - point
-            onward, left = moved @ way, moved @ np.array([-way[1], way[0]])
+            onward, left = dot(moved, way), dot(moved, np.array([-way[1], way[0]]))
             first, last = begins[k] * left, lengths[k] + ends[k] * left
             share = (onward - first) / np.maximum(last - first, 1e-9 * lengths[k])
             low, high = (-np.inf if k == 0 else 0.0), (np.inf if k == len(ways) - 1 else 1.0)
@@ -83,7 +83,7 @@ def _away(line: np.ndarray, plan: np.ndarray) -> np.ndarray:
     """(N,) distances of places from a line."""
     best = np.full(len(plan), np.inf)
     for begin, step in zip(line[:-1], np.diff(line, axis=0), strict=True):
-        share = np.clip((plan - begin) @ step / (step @ step), 0.0, 1.0)
+        share = np.clip(dot(plan - begin, step) / dot(step, step), 0.0, 1.0)
         best = np.minimum(best, norm(plan - begin - share[:, None] * step))
     return best
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.algebra import dot, norm, principal_axes
+from ...base.algebra import dot, hypot, norm, principal_axes
 
 _WITHIN = -2.0 * float(np.log(0.05))  # of chi squared of two degrees of freedom: 95 %
 SIGMA = 3.0  # standard deviations by which a density differs from an even one where Kamb's circle is as wide
@@ -52,10 +52,11 @@ def _with_error(
     down = downward(axes[which, None])[0]
     if len(poles) < 3:
         return down, None
-    along = poles @ axes.T
+    along = dot(poles[:, None], axes)
     parts = along[:, others] * along[:, which, None] / apart
-    spread = np.linalg.eigvalsh(parts.T @ parts / len(poles) ** 2)[-1]
-    sine = float(np.sqrt(_WITHIN * max(spread, 0.0)))
+    (a, c), b = (parts**2).sum(axis=0).tolist(), float((parts[:, 0] * parts[:, 1]).sum())
+    spread = ((a + c) / 2 + float(hypot((a - c) / 2, b))) / len(poles) ** 2  # the largest eigenvalue
+    sine = float(np.sqrt(_WITHIN * spread))
     return down, float(np.degrees(np.arcsin(sine))) if sine < 1 else None
 
 
@@ -71,9 +72,9 @@ def density(poles: np.ndarray, places: np.ndarray) -> np.ndarray:
     count = len(poles)
     sharpness = 2.0 * (1.0 + count / SIGMA**2)
     deviation = np.sqrt(count * (sharpness / 2.0 - 1.0) / sharpness**2)
-    step = max(1, (1 << 22) // max(count, 1))
+    step = max(1, (1 << 20) // max(count, 1))
     sums = [
-        np.exp(sharpness * (np.abs(places[k : k + step] @ poles.T) - 1.0)).sum(axis=1)
+        np.exp(sharpness * (np.abs(dot(places[k : k + step, None], poles)) - 1.0)).sum(axis=1)
         for k in range(0, len(places), step)
     ]
     return (np.concatenate(sums) - 0.5) / deviation
