@@ -256,6 +256,7 @@ class States(PanelCase):
         activity = bpy.context.window_manager.realmodel
         ops.series_remove()
         self.field_data()
+        self.model.view.show_stereonet = True
         drawn |= self.draw().operators
         ops.datum_pick(location=(1, 2, 3))
         drawn |= self.draw().operators

@@ -341,7 +341,10 @@ class REALMODEL_OT_save_sheets(_DrawsSections, bpy.types.Operator):
     size: EnumProperty(
         name="Paper",
         description="Size of the sheets",
-        items=[(size, size.replace("-portrait", ", portrait"), "") for size in SHEET_SIZES],
+        items=[
+            (size, size.replace("-portrait", ", Portrait"), f"{width} mm wide, {height} mm high")
+            for size, (width, height) in SHEET_SIZES.items()
+        ],
         default=DEFAULT_SIZE,
     )
     scale: FloatProperty(

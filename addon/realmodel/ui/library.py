@@ -28,12 +28,10 @@ class REALMODEL_PT_library(FoldedPanel, bpy.types.Panel):
         if not len(group.library):
             return
         entry = group.library[min(group.active_property, len(group.library) - 1)]
-        for key in ("name", "id", "color", "rock", "age", "structure", "density", "description"):
+        for key in ("name", "id", "color", "rock", "age", "structure", "description"):
             layout.prop(entry, key)
-        line = layout.row(align=True)
-        line.prop(entry, "porosity")
-        line.prop(entry, "permeability")
-        layout.prop(entry, "look")
+        for key in ("density", "porosity", "permeability", "look"):
+            layout.prop(entry, key)
         if entry.look not in {library_rows.NO_LOOK, "FLAT"}:
             line = layout.row(align=True)
             line.prop(entry, "look_scale", text="Scale")

@@ -9,11 +9,20 @@ import numpy as np
 from ...core import InputRefused, RealModelError, Stereonet, UsageError
 from ...core.base.algebra import norm
 from ...core.results.orientations.axes import projected
-from ...core.results.orientations.stereonet import EQUAL_AREA, NETS, DipSet, dip_names, normals_of
+from ...core.results.orientations.stereonet import (
+    EQUAL_ANGLE,
+    EQUAL_AREA,
+    DipSet,
+    dip_names,
+    normals_of,
+)
 from ..project import surface_dips
 from . import data, edits
 
-NET_ITEMS = tuple((name.upper(), label.capitalize(), "") for name, label in NETS.items())
+NET_ITEMS = (
+    (EQUAL_AREA.upper(), "Equal Area (Schmidt)", "Areas keep their ratios, so densities can be compared"),
+    (EQUAL_ANGLE.upper(), "Equal Angle (Wulff)", "Circles stay circles, and angles between them are kept"),
+)
 _NEAR = 0.1  # of the radius of a net, between the mouse and a pole, at most
 
 

@@ -26,9 +26,10 @@ from .sections.section_drawing import (
     subtitle,
 )
 
-_PAPERS = {"A4": (297, 210), "A3": (420, 297), "A2": (594, 420), "A1": (841, 594), "A0": (1189, 841)}  # mm
+_PAPERS = {"A4": (297, 210), "A3": (420, 297), "A2": (594, 420), "A1": (841, 594), "A0": (1189, 841)}
 _UPRIGHT = "-portrait"
-SHEET_SIZES = (*_PAPERS, *(f"{paper}{_UPRIGHT}" for paper in _PAPERS))
+# (width, height) in millimeters
+SHEET_SIZES = _PAPERS | {f"{paper}{_UPRIGHT}": (short, long) for paper, (long, short) in _PAPERS.items()}
 DEFAULT_SIZE = "A3"
 _MM = 72 / 25.4  # points
 _MARGIN, _STRIP = 10 * _MM, 58 * _MM  # around the frame; the width of what stands beside maps and sections
@@ -149,8 +150,8 @@ def _line(section: SectionData) -> np.ndarray:
 
 def _paper(size: str) -> tuple[float, float]:
     """Width and height in points."""
-    long, short = (_MM * side for side in _PAPERS[size.removesuffix(_UPRIGHT)])
-    return (short, long) if size.endswith(_UPRIGHT) else (long, short)
+    width, height = SHEET_SIZES[size]
+    return _MM * width, _MM * height
 
 
 def _room(size: str) -> tuple[float, float]:
