@@ -10,6 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from draw_guide import shrink
 from realmodel.core import build, load_project
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -38,6 +39,7 @@ def draw(folder: Path) -> None:
             check=True,
             stderr=subprocess.DEVNULL,
         )
+    shrink(folder / "page.png", folder / "page.png")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ PYTHONPATH=addon python scripts/draw_sheet.py [FOLDER]      (default: docs/image
 import sys
 from pathlib import Path
 
+from draw_guide import shrink
 from realmodel.core import build, load_project
 from realmodel.core.drawing.png import rasterize, write_pixels
 from realmodel.core.results.sheets import draw_sheets
@@ -25,6 +26,7 @@ def draw(folder: Path) -> None:
     (sheet,) = draw_sheets(model, sections, "A4-portrait", exaggeration=3.0, hole_width=40.0)
     with (folder / "sheet.png").open("wb") as file:
         write_pixels(rasterize(sheet, DOTS_PER_INCH / 72), file, DOTS_PER_INCH)
+    shrink(folder / "sheet.png", folder / "sheet.png")
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from web_pages import web_pages
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon" / "realmodel"
 TOP = "realmodel"  # Blender 3.4 would spill a zip without one top folder over the add-ons
-LARGEST = 18e6  # bytes
+LARGEST = 19e6  # bytes
 INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this machine, not of the package
 # In the zip with wheels: the add-on finds its native module in the package that Blender installed from them.
 # As an add-on, not an extension, it has the name of that package itself.
