@@ -28,7 +28,7 @@ const plane = new THREE.Plane();
 const scene = new THREE.Scene(), model = new THREE.Group(), caps = new THREE.Group();
 const camera = new THREE.PerspectiveCamera(35, 1, 1, 10);
 const layers = {};  // name: group
-let renderer, controls, blocks = [], low, high, diagonal, positions, corners, sides, asked = false;
+let renderer, controls, blocks = [], low, high, diagonal, positions, corners, sides, trianglesOf, asked = false;
 
 const parity = new THREE.MeshBasicMaterial({
   side: THREE.DoubleSide, colorWrite: false, depthWrite: false, depthTest: false, clippingPlanes: [plane], stencilWrite: true,
@@ -41,13 +41,9 @@ function makeBlock(record, at) {
   const position = new THREE.BufferAttribute(positions, 3);
   const geometry = new THREE.BufferGeometry(), closed = new THREE.BufferGeometry();
   for (const mesh of [geometry, closed]) mesh.setAttribute("position", position);
-  const block = { record, triangles: trianglesOf(record.number), group: new THREE.Group() };
+  const block = { record, triangles: Uint32Array.from(trianglesOf.get(record.number)), group: new THREE.Group() };
   closed.setIndex(new THREE.BufferAttribute(indexOf(block, () => true), 1));
-  const box = new THREE.Box3();
-  for (const corner of closed.index.array) {
-    box.expandByPoint(new THREE.Vector3().fromArray(positions, 3 * corner));
-  }
-  block.box = box;
+  const box = block.box = boxOf(closed.index.array);
   block.center = box.getCenter(new THREE.Vector3());
   const sphere = box.getBoundingSphere(new THREE.Sphere());
   closed.boundingSphere = geometry.boundingSphere = sphere;
@@ -73,10 +69,24 @@ function makeBlock(record, at) {
   return block;
 }
 
-function trianglesOf(number) {
-  const numbers = [];
-  for (let t = 0; t < sides.length / 2; t++) if (sides[2 * t] === number || sides[2 * t + 1] === number) numbers.push(t);
-  return Uint32Array.from(numbers);
+// The box of corners, by their numbers.
+function boxOf(numbers) {
+  const box = new THREE.Box3(), [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const number of numbers) {
+    for (let k = 0; k < 3; k++) {
+      const value = positions[3 * number + k];
+      if (value < low[k]) low[k] = value;
+      if (value > high[k]) high[k] = value;
+    }
+  }
+  return box.set(new THREE.Vector3(...low), new THREE.Vector3(...high));
+}
+
+// The numbers of the triangles of each block.
+function listTriangles() {
+  const lists = new Map(data.blocks.map(record => [record.number, []]));
+  for (let side = 0; side < sides.length; side++) if (sides[side] !== NO_BLOCK) lists.get(sides[side]).push(side >> 1);
+  return lists;
 }
 
 // The corners of those triangles of a block whose other side passes a test, counter-clockwise seen from outside.
@@ -503,8 +513,8 @@ async function begin() {
   renderer.localClippingEnabled = true;
   renderer.autoClearStencil = true;
   [positions, corners, sides] = [await floats(data.positions), await integers(data.corners), await integers(data.sides)];
-  const box = new THREE.Box3();
-  for (let at = 0; at < positions.length; at += 3) box.expandByPoint(new THREE.Vector3().fromArray(positions, at));
+  trianglesOf = listTriangles();
+  const box = boxOf(corners);
   if (box.isEmpty()) throw new Error("The model has no blocks.");
   [low, high, diagonal] = [box.min, box.max, box.min.distanceTo(box.max)];
   camera.up.set(0, 0, 1);
