@@ -60,7 +60,7 @@ class REALMODEL_OT_save_juxtaposition(Exporting, bpy.types.Operator):
 
     def write(self, context, path):
         sides = self.model(context).juxtaposition(settings.active_structure(context.scene).name)
-        sections.colored(context.scene, sides).save(path, settings.plain(self.exaggeration))
+        sides.save(path, settings.plain(self.exaggeration))
 
 
 class REALMODEL_OT_view_juxtaposition(Reporting, bpy.types.Operator):

@@ -44,6 +44,16 @@ def _checked_look(key: str, look: Any) -> Any:
     return look
 
 
+def _above_zero(key: str) -> Any:
+    return without(lambda value: None if value > 0 else f"{key} must be above 0, not {value:g}")
+
+
+def _at_most_one(key: str) -> Any:
+    return without(
+        lambda value: None if 0 < value <= 1 else f"{key} must be above 0 and at most 1, not {value:g}"
+    )
+
+
 @dataclass(frozen=True)
 class Property:
     """One entry of a library: a rock or another kind of material, by a unique `id` above 0 and a `name`.
@@ -72,7 +82,7 @@ class Property:
         tip="Density in any unit, such as kg/m³; 0: unknown",
         low=0.0,
         zero_is_none=True,
-        check=without(lambda value: None if value > 0 else f"density must be above 0, not {value:g}"),
+        check=_above_zero("density"),
     )
     porosity: float | None = declared(
         kind="finite",
@@ -81,9 +91,7 @@ class Property:
         low=0.0,
         high=1.0,
         zero_is_none=True,
-        check=without(
-            lambda value: None if 0 < value <= 1 else f"porosity must be above 0 and at most 1, not {value:g}"
-        ),
+        check=_at_most_one("porosity"),
     )
     permeability: float | None = declared(
         kind="finite",
@@ -91,7 +99,7 @@ class Property:
         tip="Permeability in millidarcies, for reservoir simulators; 0: unknown",
         low=0.0,
         zero_is_none=True,
-        check=without(lambda value: None if value > 0 else f"permeability must be above 0, not {value:g}"),
+        check=_above_zero("permeability"),
     )
     description: str | None = declared(kind="note", label="Description", tip="Further notes")
     look: str | None = declared(kind="line", check=_checked_look)
@@ -124,9 +132,7 @@ class Property:
         low=0.0,
         high=1.0,
         zero_is_none=True,
-        check=without(
-            lambda value: None if 0 < value <= 1 else f"hardness must be above 0 and at most 1, not {value:g}"
-        ),
+        check=_at_most_one("hardness"),
     )
 
     @property
