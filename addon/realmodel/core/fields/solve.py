@@ -147,7 +147,7 @@ def solve_field(
     tolerance: float = 0.0,
     draw: FieldDraw | None = None,
 ) -> SolvedField:
-    """The smoothest field that honors the data (docs/reference/methods.md#fields), or with `draw` one that is
+    """The smoothest field that honors the data (docs/reference/methods.md#fields-of-series), or with `draw` one that is
     as rough as the data say.
 
     tolerance: the distance by which surfaces may miss contacts where there are too many for all of them to
