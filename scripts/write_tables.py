@@ -20,7 +20,7 @@ DOCUMENTS = [
         "reference/output_files.md",
         "reference/operators.md",
         "guide/sculpted_strata.md",
-        "guide/tour.md",
+        "reference/panel.md",
     )
 ]
 _OF_FILE_BROWSER = ("filepath", "filter_glob", "files", "directory", "format")
