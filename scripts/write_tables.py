@@ -19,7 +19,7 @@ DOCUMENTS = [
         "reference/project_file.md",
         "reference/output_files.md",
         "reference/operators.md",
-        "guide/sculpted_strata.md",
+        "guide/mesh_surfaces.md",
         "reference/panel.md",
     )
 ]
