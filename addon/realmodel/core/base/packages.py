@@ -153,7 +153,7 @@ SYSTEMS = {
         "Linux on x86-64",
         "linux-x64",
         r"cpython-3(\d+)-x86_64-linux-gnu\.so",
-        "it needs glibc 2.35, libstdc++ of GCC 11 and libgomp, or newer: install these",
+        "it needs glibc 2.34, libstdc++ of GCC 11 and libgomp, or newer: install these",
     ),
     "win-amd64": System(
         "Windows on x64",

@@ -147,8 +147,8 @@ def solve_field(
     tolerance: float = 0.0,
     draw: FieldDraw | None = None,
 ) -> SolvedField:
-    """The smoothest field that honors the data (docs/reference/methods.md#fields), or with `draw` one that is
-    as rough as the data say.
+    """The smoothest field that honors the data (docs/reference/methods.md#fields-of-series). With `draw`: a
+    random field with the roughness of the data.
 
     tolerance: the distance by which surfaces may miss contacts where there are too many for all of them to
     carry the field. Raises InputRefused for data

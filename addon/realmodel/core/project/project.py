@@ -251,9 +251,8 @@ class Rock(Entry):
         check=without(edge_length_fault),
         zero_is_none=True,
         needed="if a surface has `points`, unless `triangles` is given",
-        more="Where points lie much closer together than it is long, they become [nodes "
-        'themselves](methods.md#ties). `"auto"`: half the spacing of the points of the surfaces, '
-        "where they lie",
+        more="Points that lie much closer together become nodes of the mesh (see "
+        '[ties](methods.md#ties)). `"auto"`: half the local spacing of the points of the surfaces',
     )
     triangles: int | None = declared(
         kind="whole",
@@ -463,8 +462,8 @@ class Project(Compared):
         label="CRS",
         tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
         check=checked_crs,
-        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5, "
-        "OMF and RESQML files name it, GeoTIFF and GeoPackage the codes of EPSG",
+        more="A projected system, in the unit of the model. Coordinates are not converted. IFC, GeoJSON, "
+        "geoh5, OMF and RESQML files name it; GeoTIFF and GeoPackage files name EPSG codes only",
     )
 
     def input_files(self) -> list[Path]:
