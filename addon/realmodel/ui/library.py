@@ -15,7 +15,7 @@ class REALMODEL_PT_library(FoldedPanel, bpy.types.Panel):
         if not len(group.library):
             hint(
                 layout,
-                "The library has the properties of blocks: name, age, color. Add or import some.",
+                "The library says what blocks are made of: name, age, color. Add an entry or import one.",
             )
         row = layout.row()
         row.template_list("REALMODEL_UL_library", "", group, "library", group, "active_property", rows=4)
