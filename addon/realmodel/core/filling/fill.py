@@ -51,7 +51,7 @@ def closed_mesh(vertices: ArrayLike, triangles: ArrayLike, base: float | None = 
         raise InputRefused(
             f"it is open, for example near {place_text(place)}, and has not one height at each position",
             item=ITEM,
-            advice="close it, or take overhangs and vertical faces away",
+            advice="close it, or remove overhangs and vertical faces",
             place=place,
         )
     if turns[0] < 0:

@@ -136,8 +136,8 @@ def _on_the_ground_alone(
         return []
     names = number_list([f"'{name}'" for name in shown])
     return [
-        f"only outcrops or a map say where {names} {'is' if len(shown) == 1 else 'are'}, and nothing says "
-        "what is below the ground, so blocks may be no more than a skin: add dips, boreholes or points"
+        f"only outcrops or a map say where {names} {'is' if len(shown) == 1 else 'are'}, and no data "
+        "show what is below the ground, so blocks may be very thin: add dips, boreholes or points"
     ]
 
 

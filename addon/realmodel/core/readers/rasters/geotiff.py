@@ -118,7 +118,7 @@ def _check(file: Path, tiff: Any, page: Any, is_kept_in_memory: bool) -> None:
         return InputRefused(what, file=file, advice=advice)
 
     if page.samplesperpixel != 1:
-        advice = "save the band that holds the heights in a file of its own"
+        advice = "save the band with the elevations in a separate file"
         raise refuse(f"it has {page.samplesperpixel} numbers per pixel; heights have one", advice)
     if page.dtype is None or page.dtype.kind not in "iuf" or page.bitspersample != 8 * page.dtype.itemsize:
         raise refuse(f"pixels of {page.bitspersample} bits are not supported")

@@ -478,7 +478,7 @@ def _refuse_turning_back(before: np.ndarray, after: np.ndarray) -> None:
     turns_back = any(dot(a, b) < 0 for a, b in itertools.combinations(steps, 2))
     if turns_back or norm(gap) > max(norm(steps[0]), norm(steps[-1])):
         raise InputRefused(
-            f"the lines of its trace do not go on from one another at {place_text(before[-1, :2])}",
+            f"the lines of its trace are not connected at {place_text(before[-1, :2])}",
             advice="give the lines of one fault only: choose them with where = { ... }",
             place=tuple(before[-1, :2].tolist()),
         )

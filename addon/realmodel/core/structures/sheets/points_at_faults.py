@@ -237,8 +237,7 @@ def placed_warning(
     first = points[int(moved.any(axis=1).argmax())]
     text = (
         f"{count} of its {len(points)} points, one at {place_text(first)}, lie on or just beyond fault"
-        f"{'s' if len(of) > 1 else ''} {', '.join(of)}, and are taken for the side whose other points they "
-        "agree with"
+        f"{'s' if len(of) > 1 else ''} {', '.join(of)}, and are assigned to the side that they fit best"
     )
     return BuildWarning(text, "points", rock, surface)
 
