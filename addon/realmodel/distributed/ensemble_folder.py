@@ -43,7 +43,7 @@ def ensemble(
     `volumes.csv` and `ensemble.npz` (docs/reference/output_files.md).
 
     client: of distributed; None: a LocalCluster with a process for each processor. A run that was stopped
-    goes on where it was when it is started again with the same project, seed, correlation and places; the
+    continues where it was when it is started again with the same project, seed, correlation and places; the
     number of realizations may be larger. The result is the same for any number of workers. also(found,
     outputs) writes more files, which appear with the others.
 

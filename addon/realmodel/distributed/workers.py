@@ -188,7 +188,7 @@ def no_workers() -> contextlib.AbstractContextManager[Workers]:
 @contextlib.contextmanager
 def workers_of(client: Any, count: int | None = None) -> Iterator[Workers]:
     """The workers of a client, or None: so many processes of this machine (None: one for each processor),
-    which end with it. They start while the caller goes on.
+    which end with it. They start while the caller continues.
 
     They listen on free ports of this machine alone, so that several of them run beside each other."""
     starting: concurrent.futures.Future = concurrent.futures.Future()

@@ -28,9 +28,9 @@ class RealModelError(Exception):
 class InputRefused(RealModelError, ValueError):
     """The input is invalid.
 
-    what: what is wrong. file, line: the place (lines count from 1). item: the object, such as "rock 'base',
-    surface 'S1'". advice: what to do about it. triangles: numbers of the wrong triangles, from 0 in the order
-    of the input. place: (x, y, z) or (x, y) in model units.
+    what: what is wrong. file, line: the place (lines count from 1). item: the object, such as "rock
+    'base', surface 'S1'". advice: what to do about it. triangles: numbers of the wrong triangles, from 0 in
+    the order of the input. place: (x, y, z) or (x, y) in model units.
     """
 
     def __init__(

@@ -177,7 +177,7 @@ def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
     """The fields of the series of a rock mass. structures: the number of faults and bodies, each of which may
     part a field in two."""
     sizes = []
-    # as many as lines part a plane in; where there are more, each compartment has a field of its own
+    # as many as lines part a plane in; where there are more, each compartment has a separate field
     combinations = min(1 + structures * (structures + 1) // 2, MOST_TOGETHER) if structures else 0
     of_sides = combinations * (_BYTES_OF_SIDES + _BYTES_OF_FAULT * structures)
     for data, lattice in lattices(entry):

@@ -36,8 +36,8 @@ class SurfaceSet(ShortRepr):
     """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
     they are, unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and
     all numbers go through the rock masses in order, oldest first, then through the faults and the bodies.
-    `project` holds the arrays in the place of files. `surface_kind` is that of a Model. `warnings`: of what
-    was read and interpolated. `rock_inputs`, `structures`: what a build goes on with.
+    `project` holds the arrays instead of files. `surface_kind` is that of a Model. `warnings`: of what
+    was read and interpolated. `rock_inputs`, `structures`: what a build continues with.
     """
 
     project: Project

@@ -110,7 +110,7 @@ class Fault(Shaped):
     `dip_direction`: degrees clockwise from north (+y), or "N", "NE", ... for the side of the trace; not
     needed where it is vertical. Files may have both as attributes. `elevation` of the line: a number, or the
     name of the surface that it is on; None: z of the line (NaN: none), else it is on the youngest surface.
-    The fault goes on straight at both ends, through the rock; with `extend`, or where it dies out, only so
+    The fault continues straight at both ends, through the rock; with `extend`, or where it dies out, only so
     far.
 
     youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at

@@ -43,7 +43,7 @@ def save_folder(project: Project, proposal: Proposal, folder: str | Path) -> Pat
 
 
 def require_new(folder: Path) -> None:
-    """Raises OutputFailed where something stands in the place of a new folder."""
+    """Raises OutputFailed if the path of a new folder exists."""
     if folder.exists():
         raise OutputFailed(f"{folder}: it exists; choose a new folder")
 

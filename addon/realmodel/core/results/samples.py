@@ -233,7 +233,7 @@ class PlanGrids:
     NaN where there is none. thickness, upper: (B, ny, nx), of each block its thickness (all its parts over
     the
     place), 0 where it is not, and the height of its top, NaN where it is not. true_thickness: (B, ny, nx),
-    how far the top of each block is from its base, which goes on beyond its border with the slopes that it
+    how far the top of each block is from its base, which continues beyond its border with the slopes that it
     has there; 0 where the block is not. deviation: name and (ny, nx) of each surface whose heights have a
     known variance, their standard deviation, NaN where there is none.
     """

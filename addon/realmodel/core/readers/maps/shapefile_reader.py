@@ -38,7 +38,7 @@ def beside(file: Path) -> list[Path]:
 
 
 def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
-    """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
+    """The shapes of a shapefile. Its rings follow the even-odd rule, for any direction: many programs
     write outlines and holes in the wrong directions.
     Raises InputRefused, and BuildFailed without pyshp."""
     file, where = Path(layer.file), layer.where

@@ -95,7 +95,7 @@ def geotiff_system(file: str | Path) -> int | None:
             return None
     tifffile = vendored("tifffile", "tifffile", "reading GeoTIFF")
     with _no_logging(), tifffile.TiffFile(file) as tiff:
-        directory = tiff.pages[0].tags.get(_GEO_KEYS)  # its value is read when it is asked for
+        directory = tiff.pages[0].tags.get(_GEO_KEYS)  # its value is read when it is requested
         number = _geo_keys(() if directory is None else directory.value).get(_PROJECTED, _OF_USER)
     return None if number == _OF_USER else number
 

@@ -171,7 +171,7 @@ class InterpolatedSurface:
 
     def _constrained(self, family: Family, beside: Sequence[tuple] = ()) -> SurfaceData:
         """Its data with the dips and bounds in a family's compartments. beside: faults that die out there,
-        the side of each that is asked for, and its trace: what lies beside that on the other side does not
+        the side of each that is requested, and its trace: what lies beside that on the other side does not
         count."""
         dips = self.dips
         if dips is not None:
