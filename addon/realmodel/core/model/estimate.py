@@ -49,7 +49,7 @@ _SECONDS_PER_VALUE = 2e-9  # of a datum at a node
 
 @dataclass(frozen=True)
 class Estimate:
-    """What building a project will take.
+    """The memory and time that building a project will take.
 
     cell_kind, threads: as given. triangles: of all surfaces; of level sets of fields in order of magnitude.
     lattice_nodes: of the lattices of all fields. memory: an upper bound, in bytes, of the memory
@@ -67,7 +67,7 @@ class Estimate:
 
     @property
     def fits(self) -> bool:
-        """Whether building takes no more memory than there is."""
+        """Whether the build fits in memory."""
         return self.memory <= self.available
 
     def rows(self) -> list[tuple[str, str]]:

@@ -80,13 +80,13 @@ class Probabilities:
 
     def entropy(self) -> np.ndarray:
         """(N,) float64, bits: how uncertain the block at each place is; 0 where all realizations agree.
-        Outside of all blocks counts as one more (Shannon 1948; Wellmann and Regenauer-Lieb 2012)."""
+        The outside counts as one more block (Shannon 1948; Wellmann and Regenauer-Lieb 2012)."""
         every = np.column_stack([self.probability, self._outside])
         shares = np.where(every > 0, every, 1.0)
         return np.abs((shares * np.log2(shares)).sum(axis=1))
 
     def likeliest(self) -> np.ndarray:
-        """(N,) the number of the most probable block; -1 where there is rather none."""
+        """(N,) the number of the most probable block; -1 where the outside is most probable."""
         return np.column_stack([self._outside, self.probability]).argmax(axis=1) - 1
 
     def colors(self, block_colors: np.ndarray) -> np.ndarray:

@@ -49,7 +49,7 @@ DECIDED = ("unrepaired", "switched_off")  # kinds that are the user's word, and 
 class HoleProblem:
     """A fault of a row of a table of boreholes.
 
-    kind: what is wrong, as "gap", "overlap", "null", "double", "elevations", "no_collar". file, line: of the
+    kind: the fault, such as "gap", "overlap", "null", "double", "elevations", "no_collar". file, line: of the
     row; line 0 where the format has none. hole: its name. depth: along it, as the table has it, NaN where
     there is none. text: what is wrong, and what was done. action: "used" as it is, "repaired", or "left out".
     code: the unit or surface of an interval or a pick, None of other rows.
