@@ -566,11 +566,11 @@ def test_a_project_file(written, tmp_path):
         ("trace = [[0, 0], [1, 0], [0.5, 0]]\ndip = 90", "its surface crosses itself"),
         (
             "trace = [[[0, 0], [1, 0]], [[0, 0.2], [1, 0.2]]]\ndip = 90",
-            "the lines of its trace do not go on from one another",
+            "the lines of its trace are not connected",
         ),
         (
             "trace = [[[0, 0], [1, 0]], [[9, 0], [10, 0]]]\ndip = 90",
-            "the lines of its trace do not go on from one another",
+            "the lines of its trace are not connected",
         ),
         (
             "trace = [[0, 0, 0], [0.1, 0, -0.1]]\ndip = 45\ndip_direction = 90",

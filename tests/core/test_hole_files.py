@@ -164,7 +164,7 @@ def test_places_in_degrees_are_refused(write):
 
 
 def test_a_file_that_holds_no_boreholes(write):
-    with pytest.raises(InputRefused, match="it does not hold all tables of boreholes"):
+    with pytest.raises(InputRefused, match="it does not contain all tables of boreholes"):
         read_boreholes(write("a.csv", "hole,from,to,block\nA,0,1,x\n"))
 
 

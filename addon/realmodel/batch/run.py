@@ -416,7 +416,7 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 
 @contextlib.contextmanager
 def _named(path, target: Path):
-    """Names the user's path in errors of writing, in the place of the temporary one."""
+    """Names the user's path in errors of writing, instead of the temporary one."""
     try:
         yield
     except OutputFailed as error:

@@ -159,7 +159,7 @@ def _axes(
     page: tuple[float, float],
     words: bool,
 ) -> Axes:
-    """Axes on a page of their own, with lines of text above if requested."""
+    """Axes on a separate page, with lines of text above if requested."""
     above = LINE * _SIZE * len(lines) if words else 0.0
     drawing = Drawing(page[0], page[1] + above)
     height = page[1] - _BELOW - _SIZE

@@ -63,7 +63,7 @@ def keyword_only(function: Callable[P, R]) -> Callable[P, R]:
     def call(*args: Any, **kwargs: Any) -> Any:
         old = dict(zip(by_name, args[count:], strict=False))
         if count < len(args) <= count + len(by_name) and not old.keys() & kwargs.keys():
-            text = f"{function.__name__}: give {', '.join(old)} by name; the next release asks for that"
+            text = f"{function.__name__}: pass {', '.join(old)} by name; the next release requires it"
             warnings.warn(text, DeprecationWarning, stacklevel=2)
             args, kwargs = args[:count], old | kwargs
         return function(*args, **kwargs)

@@ -203,7 +203,7 @@ class ModelData:
         """
         number = number_of(block, self.blocks.names, "block")
         if isinstance(block, str) and not self.blocks[number].cells:
-            raise UsageError(f"block '{block}' is absent: nothing of it is left in the model")
+            raise UsageError(f"block '{block}' is absent: the model contains none of it")
         return self.complex.block_boundary(number)
 
     def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

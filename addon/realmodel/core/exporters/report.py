@@ -87,7 +87,7 @@ def model_report(
 
     validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
     found; mesh: a SimulationMesh of it; cells: its CleanedCells; grid: its CornerPointGrid; without them the
-    report says nothing of that.
+    report has none.
     """
     model.require_project("the report")
     validation = validation or validate(model, PLACES_OF_REPORT, threads=model.threads)

@@ -203,7 +203,7 @@ def _refusal(error: NativeError, data: LevelSetData) -> InputRefused:
     """The native error with the names of surfaces and data."""
     if error.kind == "no_direction":
         return InputRefused(
-            "nothing says in which direction the rock gets younger",
+            "the direction to younger rock is not known",
             advice="give dips, or contacts of a second surface",
         )
     if error.kind == "no_contacts":

@@ -169,12 +169,12 @@ class Strata:
     def _check_lean(self) -> None:
         """What is vertical in the space in which folds stand upright would lean with them."""
         if self.pegs:
-            raise UsageError("pegs must be 0 where axial_dip is below 90: they would lean as the folds do")
+            raise UsageError("pegs must be 0 if axial_dip is below 90: they would be inclined like the folds")
         off = (self.fault_strike - self.fold_axis) % 180.0 - 90.0
         if self.faults and abs(off) > _RIGHT_ANGLE:
             raise UsageError(
                 f"fault_strike must be at right angles to fold_axis where axial_dip is below 90, such as "
-                f"{(self.fold_axis + 90.0) % 180.0:g}: other faults would lean as the folds do"
+                f"{(self.fold_axis + 90.0) % 180.0:g}: other faults would be inclined like the folds"
             )
 
 

@@ -174,7 +174,7 @@ def contradiction_warnings(bounds: Bounds, left_out: np.ndarray) -> list[str]:
     place = place_text(bounds.places[first].tolist())
     return [
         f"{len(left_out)} of {len(bounds)} bounds contradict a point or others at the same position and are "
-        f"left out: one says that the surface lies at or {side} {place}"
+        f"left out: one requires that the surface lies at or {side} {place}"
     ]
 
 

@@ -91,7 +91,7 @@ class SheetModel:
 
 @dataclass(frozen=True)
 class JointData:
-    """Data of all sheets around their offsets, those of the sheet that is asked for first."""
+    """Data of all sheets around their offsets, those of the sheet that is requested first."""
 
     points: np.ndarray
     sheets: np.ndarray

@@ -90,7 +90,7 @@ class CrossValidation(ShortRepr):
 
     @property
     def within_two_deviations(self) -> float | None:
-        """The share of errors below twice their deviation: about 0.95 where variances are honest."""
+        """The share of errors below twice their deviation: about 0.95 where variances are realistic."""
         if self.standardized is None:
             return None
         finite = np.isfinite(self.standardized)

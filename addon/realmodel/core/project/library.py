@@ -143,7 +143,7 @@ class Property:
 
 @dataclass
 class Library:
-    """The `properties`, each with an id of its own. `path` is the file that they were read from, if any."""
+    """The `properties`, each with a unique id. `path` is the file that they were read from, if any."""
 
     properties: list[Property] = field(default_factory=list)
     path: Path | None = None

@@ -58,8 +58,8 @@ class LeftOutHole:
 
 @dataclass(frozen=True)
 class HoleValidation:
-    """What models say of each hole without knowing it. holes: as the rock masses have them. groups: in how
-    many groups they were left out."""
+    """Cross-validation by holes: how well models without each hole predict it. holes: as the rock masses have
+    them. groups: the number of groups in which they were left out."""
 
     holes: list[LeftOutHole] = field(default_factory=list)
     groups: int = 0

@@ -256,7 +256,7 @@ def _wrong_arrays(model: ModelData) -> list[str]:
     triangles = model.surface_triangles
     limit = np.repeat(counts, np.diff(model.surface_triangle_offsets))
     if len(limit) != len(triangles) or (triangles < 0).any() or (triangles >= limit[:, None]).any():
-        wrong.append("surface_triangles name vertices that are not there")
+        wrong.append("surface_triangles name vertices that do not exist")
     return wrong
 
 

@@ -136,7 +136,7 @@ def _short_codes(intervals: Iterable[Row]) -> tuple[set[str], list[str]]:
         else:
             how = f"lost core in {counted(len(within), 'hole')}"
             advice = "if it is a unit, give it a surface with a block of this name"
-        warnings.append(f"'{code}' is taken for {how}; {advice}")
+        warnings.append(f"'{code}' is treated as {how}; {advice}")
     return units, warnings
 
 

@@ -179,7 +179,7 @@ _NOT_READ = (
     (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
     (rb"%PDF-", "a PDF", "save its table as CSV"),
     (rb"\x1f\x8b", "compressed by gzip", "unpack it"),
-    (rb"version https://git-lfs", "a pointer of Git LFS in the place of the file", "fetch it: git lfs pull"),
+    (rb"version https://git-lfs", "a Git LFS pointer instead of the file", "fetch it: git lfs pull"),
     (rb"(?i)\s*<(?:!doctype )?html", "a page of the web", "download the file itself"),
 )
 

@@ -47,7 +47,7 @@ def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
         return
     if is_in_degrees(shapes.system or system_of_map(layer)):
         raise InputRefused(
-            "its coordinates are degrees of longitude and latitude, as it says itself",
+            "its coordinates are degrees of longitude and latitude, as the file states",
             file=Path(layer.file),
             advice="project it (to UTM, say) in a GIS; if they are lengths, take its coordinate system out",
         )

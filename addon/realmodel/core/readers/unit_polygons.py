@@ -54,7 +54,7 @@ def read_unit_polygons(
     lines = [line[:, :2] for _, line in shapes.lines]
     if lines:
         text = (
-            f"{given.file}: {counted(len(lines), 'line')} beside its polygons: taken for faults, along which"
+            f"{given.file}: {counted(len(lines), 'line')} beside its polygons: treated as faults, along which"
         )
         warnings.append(f"{text} no contact is seen; if they are something else, leave them out by 'where'")
     return unit_polygons, lines, warnings

@@ -21,7 +21,8 @@ class Displacement:
     measured across the fault: in the vertical plane through the place and the direction in which the fault
     dips there. length: (N,) of the part of the cutoff line that each place is the middle of. deviation: the
     standard deviation of the throw that contacts on both sides show together, None where each side was made
-    by itself. is_found: no where the throw is smaller than that, and the surface goes on across the fault."""
+    by itself. is_found: no where the throw is smaller than that, and the surface continues across the
+    fault."""
 
     fault: str
     rock: str

@@ -30,7 +30,7 @@ from .rock_input import RockInput
 
 @dataclass(frozen=True)
 class ReadSurface:
-    """surface: with arrays in the place of files. data: what it says itself, and picks do. shape: the
+    """surface: with arrays instead of files. data: what it says itself, and picks do. shape: the
     triangulation of a ready mesh, else None. faces: (T,) the face of its file that each triangle belongs to,
     None where these are equal. warnings: sentences."""
 

@@ -114,9 +114,7 @@ def read_catalog(folder: Path) -> Catalog:
     """Raises InputRefused where the folder holds no whole model in tiles."""
     file = folder / CATALOG
     if not file.is_file():
-        raise InputRefused(
-            f"no {CATALOG}: it holds no model in tiles, or one that is not finished", file=folder
-        )
+        raise InputRefused(f"no {CATALOG}: it contains no model in tiles, or an unfinished one", file=folder)
     content = TomlDocument(file).content
     try:
         if content["format"] != _FORMAT:

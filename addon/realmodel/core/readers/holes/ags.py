@@ -101,7 +101,7 @@ def _groups(file: Path) -> dict[str, _Group]:
             group = groups.setdefault(first.lstrip("*?").strip().upper(), _Group(line))
         elif first == "GROUP":
             group = groups.setdefault(entries[1].strip().upper() if len(entries) > 1 else "", _Group(line))
-        elif first.startswith("*"):  # the heading of AGS 3 may go on in further lines
+        elif first.startswith("*"):  # the heading of AGS 3 may continue in further lines
             group.names += [entry.lstrip("*?").strip().upper() for entry in entries if entry]
         elif first == "HEADING":
             group.names = [entry.strip().upper() for entry in entries[1:]]
@@ -125,7 +125,7 @@ def _entries(file: Path) -> Iterator[tuple[int, list[str]]]:
 
 
 def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:
-    """Texts of AGS 3 that go on in a further line are added to those of the row before."""
+    """Texts of AGS 3 that continue in a further line are added to those of the row before."""
     if not group.rows:
         raise InputRefused("<CONT> continues no row", file=file, line=line)
     before = group.rows[-1][1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shapes of files of outlines, lines and points, whatever their format."""
+"""The shapes of files of outlines, lines and points, in any format."""
 
 from __future__ import annotations
 

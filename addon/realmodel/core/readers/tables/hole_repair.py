@@ -81,10 +81,10 @@ def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]
         for row in getattr(tables, kind) or ():
             name = row.file.name, row.line
             if name in unrepaired:
-                problems.note("unrepaired", USED, row, "used as it is written, as 'unrepaired' says")
+                problems.note("unrepaired", USED, row, "used unchanged, because of 'unrepaired'")
                 taken.setdefault(kind, []).append(row)
             elif name in left_out:
-                problems.note("switched_off", LEFT_OUT, row, "not used, as 'left_out' says")
+                problems.note("switched_off", LEFT_OUT, row, "not used, because of 'left_out'")
             else:
                 others.append(row)
                 continue

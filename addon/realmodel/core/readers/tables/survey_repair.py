@@ -221,7 +221,7 @@ def _one_each(stations: list[Row], angle: str, sign: float, problems: ProblemLis
             break
         n = int(turns[0]) + 1
         if n == 1 and len(single) > 2 and _bends(single[1], single[2:3], towards) < _SHARP:
-            n = 0  # the others go on
+            n = 0  # the others continue
         depth = single[n].number("depth")
         problems.note("station", LEFT_OUT, single[n], "the hole would turn back here", depth)
         del single[n]

@@ -193,7 +193,7 @@ def draw_beside(
     place: tuple[float, float],
     marked: np.ndarray | None = None,
 ) -> float:
-    """Draws a small stereonet on a paper of its own, whose lower right corner is at a place, with its numbers
+    """Draws a small stereonet on a separate paper, whose lower right corner is at a place, with its numbers
     below; returns the left border of the paper. marked: (3,) a pole that is drawn large."""
     (x, y), radius = small_net(place)
     lines = [dips.name, *dips.lines()]

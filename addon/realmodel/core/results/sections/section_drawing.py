@@ -435,7 +435,7 @@ def _draw_ends(
     letters: tuple[str, str],
 ) -> None:
     """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
-    coordinates are on one line; else they are on lines of their own, with their letters."""
+    coordinates are on one line; else they are on their own lines, with their letters."""
     x, y, width, height = axes.box
     if isinstance(section, FenceData):
         for at in section.bends[1:-1][_turns(section.polyline) > _BEND]:

@@ -52,7 +52,7 @@ class _Part:
 def conformable_run(rock: Rock, data: Sequence[SurfaceData], number: int) -> list[int]:
     """The surfaces that are interpolated with a variogram in the run of consecutive ones that their rules
     call conformable, oldest first, with one of them; none where it has no other, or is in a series. What
-    protects itself, and what cuts older rock, has a shape of its own."""
+    protects itself, and what cuts older rock, has its own shape."""
     surfaces = rock.surfaces
 
     def is_kriged(other: int) -> bool:

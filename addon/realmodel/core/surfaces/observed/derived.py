@@ -341,7 +341,7 @@ def _tightest(
 
 
 def with_contacts(rock: Rock, data: Sequence[SurfaceData], derived: Derived) -> list[SurfaceData]:
-    """The data of the surfaces of a rock mass with these contacts in the place of those that they had from
+    """The data of the surfaces of a rock mass with these contacts instead of those that they had from
     observations, and with the bounds and those by contacts of older surfaces. A surface that has no point, no
     contact, and needs some, goes through places on its bounds."""
     all_data = []
