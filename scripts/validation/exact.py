@@ -42,10 +42,11 @@ def exact() -> dict:
 
 
 def _stacks() -> dict:
-    """Random stacks of triangulated surfaces: the volume of each block beside that of tests/core/stacks/rational.py.
-    median: of the largest deviations of stacks, in shares of the largest block; beyond: blocks that are off by
-    more than the rounding of coordinates explains; wrong: that are there though their exact volume is 0, or the
-    other way round; joined: stacks whose borders were made one, which are not compared."""
+    """Random stacks of triangulated surfaces: the volume of each block beside that of
+    tests/core/stacks/rational.py. median: of the largest deviations of stacks, in shares of the largest
+    block; beyond: blocks that are off by more than the rounding of coordinates explains; wrong: that are
+    there though their exact volume is 0, or the other way round; joined: stacks whose borders were made one,
+    which are not compared."""
     worst, blocks, wrong, beyond, joined, refused, made = [], 0, 0, 0, 0, 0, 0
     for family in sorted(FAMILIES):
         for seed in range(STACKS):
@@ -76,7 +77,6 @@ def _stacks() -> dict:
         "wrong": int(wrong),
         "beyond": int(beyond),
         "median": float(np.median(worst)),
-        "largest": max(worst),
         "joined": joined,
         "refused": refused,
     }
@@ -95,13 +95,15 @@ def _manifold(a, b) -> dict:
 
 
 def _volume(mesh) -> Fraction:
+    if not len(mesh[1]):
+        return Fraction(0)
     parts, unit = solids.exact_volumes(*mesh)
     return parts.sum() * unit
 
 
 def _booleans() -> dict:
-    """Pairs of scanned solids in random positions. gap: by how much union and intersection together differ from
-    both solids, in exact rationals, of the larger solid; beside: the largest difference of a volume from
+    """Pairs of scanned solids in random positions. gap: by how much union and intersection together differ
+    from both solids, in exact rationals, of the larger solid; beside: the largest difference of a volume from
     Manifold's; open: edges that are not used as often in one direction as in the other."""
     tools = {"RealModel": _ours, "Manifold": _manifold}
     rows = {name: {"gap": 0.0, "open": 0, "seconds": 0.0} for name in tools}
@@ -120,11 +122,16 @@ def _booleans() -> dict:
                 meshes = tool(a, b)
                 rows[name]["seconds"] += time.process_time() - began
                 v = {operation: _volume(mesh) for operation, mesh in meshes.items()}
-                gaps = v["union"] + v["intersection"] - sum(both), v["difference"] + v["intersection"] - both[0]
+                gaps = (
+                    v["union"] + v["intersection"] - sum(both),
+                    v["difference"] + v["intersection"] - both[0],
+                )
                 rows[name]["gap"] = max(rows[name]["gap"], *(float(abs(gap) / size) for gap in gaps))
                 rows[name]["open"] += sum(solids.open_edges(mesh[1]) for mesh in meshes.values())
                 volumes[name] = v
-            off = (abs(volumes["RealModel"][each] - volumes["Manifold"][each]) for each in volumes["Manifold"])
+            off = (
+                abs(volumes["RealModel"][each] - volumes["Manifold"][each]) for each in volumes["Manifold"]
+            )
             beside = max(beside, float(max(off) / size))
             pairs += 1
     for row in rows.values():
@@ -148,7 +155,10 @@ def _cuts() -> list:
                 "layers": spec["surfaces"],
                 "triangles": 2 * spec["quads"] ** 2 * spec["surfaces"],
                 "beside": abs(ours["volume"] - theirs["volume"]) / abs(theirs["volume"]),
-                "seconds": {"RealModel": round(ours["processor"], 2), "Manifold": round(theirs["processor"], 2)},
+                "seconds": {
+                    "RealModel": round(ours["processor"], 2),
+                    "Manifold": round(theirs["processor"], 2),
+                },
             }
         )
     return rows

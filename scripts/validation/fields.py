@@ -169,7 +169,9 @@ def folds() -> dict:
 def _moureze(seed: int):
     """Some contacts and dips of Moureze, and places beside its other dips with the side that each is on."""
     random = np.random.default_rng([9, seed])
-    contacts, rows = (np.loadtxt(FOLDS / "moureze" / f, delimiter=",", skiprows=1) for f in ("s0.csv", "dips.csv"))
+    contacts, rows = (
+        np.loadtxt(FOLDS / "moureze" / f, delimiter=",", skiprows=1) for f in ("s0.csv", "dips.csv")
+    )
     low = np.minimum(contacts.min(axis=0), rows[:, :3].min(axis=0)) - 20
     high = np.maximum(contacts.max(axis=0), rows[:, :3].max(axis=0)) + 20
     dip, azimuth = np.radians(rows[:, 3:5]).T

@@ -91,8 +91,8 @@ def methods() -> dict:
 
 
 def wells() -> dict:
-    """The share of the length of the holes of the Western Canadian basin in the right block, each predicted by
-    the others, and the errors of the heights of contacts."""
+    """The share of the length of the holes of the Western Canadian basin in the right block, each predicted
+    by the others, and the errors of the heights of contacts."""
     model = build(load_project(WELLS))
     began = time.process_time()
     found = model.cross_validate_holes(folds=GROUPS)
@@ -127,8 +127,8 @@ def _row(share: float, errors: np.ndarray, seconds: float) -> dict:
 
 
 class _Log:
-    """The intervals of vertical holes: names (H,) and plan (H, 2) of holes; of each interval its hole, top and
-    foot, and block number."""
+    """The intervals of vertical holes: names (H,) and plan (H, 2) of holes; of each interval its hole, top
+    and foot, and block number."""
 
     def __init__(self, rock):
         observed = rock.observed
@@ -136,9 +136,7 @@ class _Log:
         number = {name: k for k, name in enumerate(self.names)}
         owner = np.array([number[name] for name in observed.holes.tolist()])
         self.plan = np.array([observed.places[owner == k][0, :2] for k in range(len(self.names))])
-        ends = np.flatnonzero(
-            (observed.intervals[1:] == observed.intervals[:-1]) & (owner[1:] == owner[:-1])
-        )
+        ends = np.flatnonzero((observed.intervals[1:] == observed.intervals[:-1]) & (owner[1:] == owner[:-1]))
         self.hole = owner[ends]
         self.top, self.foot = observed.places[ends, 2], observed.places[ends + 1, 2]
         self.block = BlockNumbers(rock).of(observed.blocks)[ends]
@@ -162,9 +160,7 @@ def _rbf(log, contacts, rock, out) -> tuple[float, np.ndarray]:
     for number in np.flatnonzero(~out):
         for contact in contacts[log.names[number]]:
             known[contact.surface].append(contact.place)
-    heights = [
-        rbf_heights(np.array(known[surface.name] or surface.points)) for surface in rock.surfaces
-    ]
+    heights = [rbf_heights(np.array(known[surface.name] or surface.points)) for surface in rock.surfaces]
     layers = [
         Layer(surface.name, surface.rule, height)
         for surface, height in zip(rock.surfaces, heights, strict=True)

@@ -34,7 +34,11 @@ KINDS = {
     "rough": "rough beds, few data",
     "folded": "folds, upright to recumbent",
 }
-NODDY = {"n_upright": "upright folds", "n_unconformity": "folds below an unconformity", "n_fault": "folds with a fault"}
+NODDY = {
+    "n_upright": "upright folds",
+    "n_unconformity": "folds below an unconformity",
+    "n_fault": "folds with a fault",
+}
 _TABLE = re.compile(r"(<!-- validation: ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _VALUE = re.compile(r"(<!-- value ([^>]+?) -->)[^\n]*?(<!-- end -->)")
 
@@ -150,7 +154,9 @@ def _wells(data: dict) -> str:
         row = part["programs"][name]
         errors = [f"{row[key]:.0f} m" if row[key] is not None else "" for key in ("median", "rms")]
         rows.append([name, _percent(row["share"]), *errors])
-    return _table(["program", "length in the right block", "median error of a contact", "root mean square"], rows)
+    return _table(
+        ["program", "length in the right block", "median error of a contact", "root mean square"], rows
+    )
 
 
 def _claudius(data: dict) -> str:
@@ -294,9 +300,14 @@ def values(data: dict) -> dict[str, str]:
         numbers[f"methods {name}"] = _percent(statistics.mean(_made(shares)))
     numbers["exact stacks"] = f"{parts['exact']['stacks']['stacks']:,}"
     numbers["exact joined"] = str(parts["exact"]["stacks"]["joined"])
-    numbers["calibration volumes"] = _percent(statistics.mean(r["most"] for r in parts["calibration"]["volumes"]), 0)
+    numbers["calibration volumes"] = _percent(
+        statistics.mean(r["most"] for r in parts["calibration"]["volumes"]), 0
+    )
     shares = [row["most"] for row in parts["calibration"]["surfaces"]]
-    numbers["calibration least"], numbers["calibration most"] = _percent(min(shares), 0), _percent(max(shares), 0)
+    numbers["calibration least"], numbers["calibration most"] = (
+        _percent(min(shares), 0),
+        _percent(max(shares), 0),
+    )
     numbers["calibration truths"] = str(parts["calibration"]["truths"])
     numbers["minutes"] = f"{sum(part['minutes'] for part in parts.values()):.0f}"
     return numbers
@@ -305,9 +316,11 @@ def values(data: dict) -> dict[str, str]:
 _LEFT, _RIGHT, _WIDTH, _LANE = 220, 24, 720, 9
 
 
-def _dots(rows: list, axis: tuple[float, float], ticks: Sequence[float], label: str, scale=None, mark=None) -> str:
-    """A figure: rows of (words, {series: value, or (least, middle, most)}); scale: text of a tick; mark: a value
-    with a dashed line."""
+def _dots(
+    rows: list, axis: tuple[float, float], ticks: Sequence[float], label: str, scale=None, mark=None
+) -> str:
+    """A figure. rows: (words, {series: value, or (least, middle, most)}); scale: text of a tick; mark: a
+    value with a dashed line."""
     series = [name for name in COLORS if any(name in row for _, row in rows)]
     heights = [max(26, _LANE * len(row) + 12) for _, row in rows]
     top = 44
@@ -362,14 +375,22 @@ def figures(data: dict) -> dict[str, str]:
         (words, {name: _spread(parts[kind]["programs"][name]["shares"]) for name in _programs(parts[kind])})
         for kind, words in KINDS.items()
     ]
-    drawn["histories.svg"] = _dots(rows, (40, 100), range(40, 101, 10), f"{whole}: mean, worst and best history")
+    drawn["histories.svg"] = _dots(
+        rows, (40, 100), range(40, 101, 10), f"{whole}: mean, worst and best history"
+    )
     rows = []
     for number, fold in enumerate(parts["folds"]["folds"]):
-        shares = {name: parts["folds"]["programs"][name]["shares"][number] for name in COLORS if name in parts["folds"]["programs"]}
+        shares = {
+            name: parts["folds"]["programs"][name]["shares"][number]
+            for name in COLORS
+            if name in parts["folds"]["programs"]
+        }
         rows.append((NODDY[fold], {name: 100 * share for name, share in shares.items() if share is not None}))
     drawn["folds.svg"] = _dots(rows, (50, 100), range(50, 101, 10), whole)
     part = parts["moureze"]
-    rows = [("surface of Moureze", {name: _spread(part["programs"][name]["shares"]) for name in _programs(part)})]
+    rows = [
+        ("surface of Moureze", {name: _spread(part["programs"][name]["shares"]) for name in _programs(part)})
+    ]
     drawn["moureze.svg"] = _dots(
         rows, (30, 100), range(30, 101, 10), "% of places on the right side: mean, worst and best draw"
     )
@@ -377,7 +398,9 @@ def figures(data: dict) -> dict[str, str]:
         (name, {"SciPy RBF" if name == "SciPy RBF" else "RealModel": _spread(shares)})
         for name, shares in parts["methods"]["methods"].items()
     ]
-    drawn["methods.svg"] = _dots(rows, (20, 100), range(20, 101, 10), f"{whole}: mean, worst and best history")
+    drawn["methods.svg"] = _dots(
+        rows, (20, 100), range(20, 101, 10), f"{whole}: mean, worst and best history"
+    )
     part = parts["wells"]
     rows = [("wells left out", {name: 100 * part["programs"][name]["share"] for name in _programs(part)})]
     drawn["wells.svg"] = _dots(rows, (50, 100), range(50, 101, 10), "% of the length in the right block")
@@ -385,7 +408,11 @@ def figures(data: dict) -> dict[str, str]:
     rows = [
         (
             f"horizon {horizon}",
-            {name: part["programs"][name]["distances"][k][1] for name in _programs(part) if part["programs"][name]["distances"]},
+            {
+                name: part["programs"][name]["distances"][k][1]
+                for name in _programs(part)
+                if part["programs"][name]["distances"]
+            },
         )
         for k, horizon in enumerate("DCBA")
     ]
@@ -395,12 +422,17 @@ def figures(data: dict) -> dict[str, str]:
     )
     drawn["exact.svg"] = _exact_figure(parts["exact"])
     rows = [
-        (f"{row['work'].removesuffix(', m')}", {"RealModel": _log(_off(row))}) for row in parts["solvers"]["rows"]
+        (f"{row['work'].removesuffix(', m')}", {"RealModel": _log(_off(row))})
+        for row in parts["solvers"]["rows"]
     ]
     names = [f"{row['solver']}, {row['elements']}" for row in parts["solvers"]["rows"]]
     rows = [(name, row) for name, (_, row) in zip(names, rows, strict=True)]
     drawn["solvers.svg"] = _dots(
-        rows, (-16, 0), range(-16, 1, 2), "difference from the truth, as a share of it", lambda power: f"1e{power}"
+        rows,
+        (-16, 0),
+        range(-16, 1, 2),
+        "difference from the truth, as a share of it",
+        lambda power: f"1e{power}",
     )
     part = parts["calibration"]
     rows = [(row["surface"], {"RealModel": 100 * row["most"]}) for row in part["surfaces"]]

@@ -85,8 +85,8 @@ def gempy(beds: Beds) -> Solved:
 
 
 def gempy_model(groups: Sequence[tuple[str, Beds]], faults: Sequence[str] = ()):
-    """GemPy's model of groups, the youngest first, each eroding what is older. faults: groups that are faults.
-    A group without dips gets one from its points, by GemPy's own function."""
+    """GemPy's model of groups, the youngest first, each eroding what is older. faults: groups that are
+    faults. A group without dips gets one from its points, by GemPy's own function."""
     import gempy
 
     data = gempy.data
@@ -106,9 +106,7 @@ def gempy_model(groups: Sequence[tuple[str, Beds]], faults: Sequence[str] = ()):
                     name=unit,
                     color=next(colors),
                     surface_points=data.SurfacePointsTable.from_arrays(*points.T, names=[unit] * len(points)),
-                    orientations=data.OrientationsTable.from_arrays(
-                        *at.T, *normals.T, names=[unit] * len(at)
-                    )
+                    orientations=data.OrientationsTable.from_arrays(*at.T, *normals.T, names=[unit] * len(at))
                     if len(at)
                     else data.OrientationsTable.initialize_empty(),
                 )
@@ -175,9 +173,7 @@ def loop_model(beds: Beds):
     dips[["nx", "ny", "nz"]] = beds.data.normals
     model = GeologicalModel(beds.low, beds.high)
     model.data = pandas.concat([contacts, dips], ignore_index=True).assign(feature_name="beds")
-    model.create_and_add_foliation(
-        "beds", interpolatortype="FDI", nelements=ELEMENTS, buffer=0.3, damp=True
-    )
+    model.create_and_add_foliation("beds", interpolatortype="FDI", nelements=ELEMENTS, buffer=0.3, damp=True)
     return model
 
 

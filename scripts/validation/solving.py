@@ -49,7 +49,9 @@ def _settlement():
     expected = test_solvers.settlement(layers)
     for elements in ("prisms", "tetrahedra"):
         with tempfile.TemporaryDirectory() as folder:
-            mesh = test_solvers.column(layers).simulation_mesh(1.0, 0.1, layer_thickness=1.0, elements=elements)
+            mesh = test_solvers.column(layers).simulation_mesh(
+                1.0, 0.1, layer_thickness=1.0, elements=elements
+            )
             save_mesh(mesh, Path(folder) / "mesh.inp")
             materials = {name: layer[1:] for name, layer in layers.items()}
             moved = solvers.run_calculix(Path(folder), "mesh.inp", materials, test_solvers.GRAVITY)
