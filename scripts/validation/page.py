@@ -14,7 +14,7 @@ import statistics
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from svg_drawing import BLUE, GREY, INK, PALE, RED, Drawing
+from svg_drawing import BLUE, GRAY, INK, PALE, RED, Drawing
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "docs" / "validation.json"
@@ -26,8 +26,8 @@ COLORS = {
     "LoopStructural": "#d08a2e",
     "SciPy RBF": "#5f8f3f",
     "Manifold": RED,
-    "planes": GREY,
-    "nearest hole": GREY,
+    "planes": GRAY,
+    "nearest hole": GRAY,
 }
 KINDS = {
     "near_flat": "near-flat beds with errors",
