@@ -61,6 +61,18 @@ def test_the_table_of_haut_barr_is_what_the_demo_prints():
     assert [line[4:].rstrip() for line in shown.splitlines()] == printed
 
 
+OUTSIDE = re.compile(r"\[([^\]]+)\]\((https?://[^)]*)\)([^\n]{0,60}(?:\n[^\n]{0,60})?)")
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_outside_links_have_a_title_and_a_version(document):
+    for title, address, after in OUTSIDE.findall(document.read_text(encoding="utf-8")):
+        assert "://" not in title, address
+        assert re.search(r"\d", title + after), (
+            f"{document.name}: [{title}]({address}) has no version or year"
+        )
+
+
 def test_there_are_examples():
     assert len(EXAMPLES) >= 3
 
