@@ -68,9 +68,7 @@ OUTSIDE = re.compile(r"\[([^\]]+)\]\((https?://[^)]*)\)([^\n]{0,60}(?:\n[^\n]{0,
 def test_outside_links_have_a_title_and_a_version(document):
     for title, address, after in OUTSIDE.findall(document.read_text(encoding="utf-8")):
         assert "://" not in title, address
-        assert re.search(r"\d", title + after), (
-            f"{document.name}: [{title}]({address}) has no version or year"
-        )
+        assert re.search(r"\d", title + after), f"{document.name}: {address} has no version or year"
 
 
 def test_there_are_examples():
