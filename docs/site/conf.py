@@ -20,6 +20,7 @@ include_patterns = [
     "CONTRIBUTING.md",
     "docs/*.md",
     "docs/dev/*.md",
+    "docs/examples/*.md",
     "docs/guide/*.md",
     "docs/notebooks/*.ipynb",
     "docs/reference/*.md",
