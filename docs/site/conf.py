@@ -22,6 +22,7 @@ include_patterns = [
     "docs/dev/*.md",
     "docs/guide/*.md",
     "docs/notebooks/*.ipynb",
+    "docs/real_case/*.md",
     "docs/reference/*.md",
     "blend_samples/**README.md",
     "native/src/exact/README.md",
