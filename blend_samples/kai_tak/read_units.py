@@ -39,7 +39,7 @@ def unit_of(description: str) -> str:
 
 
 def with_granite(log: list[list]) -> list[list]:
-    """The log of a hole, rows of (hole, from, to, unit), with rock as granite or as corestones in saprolite."""
+    """The log of a hole, rows of (hole, from, to, unit): its rock is granite, or corestones in saprolite."""
     end = len(log)
     while end and log[end - 1][3] == "rock":
         end -= 1

@@ -24,6 +24,7 @@ include_patterns = [
     "docs/guide/*.md",
     "docs/real_case/*.md",
     "docs/notebooks/*.ipynb",
+    "docs/real_case/*.md",
     "docs/reference/*.md",
     "blend_samples/**README.md",
     "native/src/exact/README.md",
