@@ -79,7 +79,7 @@ def _build(shared: Shared, task: tuple[Name, int | None]) -> None:
 
 
 def _farther(store: Store, names: list[Name]) -> dict[Name, str]:
-    """The tiles that have to see more around them, with what is wrong as they are."""
+    """The tiles that need larger windows, with the reason."""
     asked = {
         name: f"cells of tile {name[0]}, {name[1]} extend too far beyond it; use larger tiles"
         for name in names

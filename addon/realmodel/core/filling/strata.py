@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What says how beds lie in a solid."""
+"""The settings of beds in a solid."""
 
 from __future__ import annotations
 

@@ -108,10 +108,9 @@ def places_along(given: Observations, ends: np.ndarray) -> np.ndarray:
 def _samples(
     observed: Observations, used: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Places at which observations are looked at (N, 3), of which observation each is (N,), the first and the
+    """Places at which observations are tested (N, 3), of which observation each is (N,), the first and the
     last row of each observation (O, 2), and (N,) bool whether a place may be seen on the ground, as it is in
-    no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its
-    rows."""
+    no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its rows."""
     follows = in_one_interval(observed, used)
     ends = np.flatnonzero(follows)
     along = places_along(observed, ends)
@@ -133,8 +132,8 @@ def _samples(
 class ObservedBlock:
     """One block of a rock mass. observations: of it, places and intervals, as far as they are used and lie
     over the region. outside: how many more lie beside it. share: of the observations that lie in the block,
-    from 0 to 1; of an interval the part that does. A place of no hole up to a tenth of an edge length
-    above the youngest surface is looked at on that. None where there are none."""
+    from 0 to 1; of an interval the part that does. A place without a hole, up to a tenth of an edge length
+    above the youngest surface, is tested on that surface. None where there are none."""
 
     rock: str
     block: str

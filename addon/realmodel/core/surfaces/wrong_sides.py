@@ -56,7 +56,7 @@ class PlacesOnSheet:
 
 def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list[BuildWarning]:
     """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
-    where heights of all older ones are known. Each older surface is asked once for the points of all.
+    where heights of all older ones are known. Each older surface is evaluated once for the points of all.
 
     A surface that does not cut ends on the top that is there, and any surface on one that protects itself; a
     minimum thickness keeps it above the one before it. What an older surface's points do above a younger

@@ -217,7 +217,7 @@ def end_of(collar: Row) -> float:
 
 
 def is_inclined(row: Row) -> bool:
-    """Whether a row says, by an angle of whatever convention, that the hole is not vertical."""
+    """Whether an angle of a row, in any convention, shows that the hole is not vertical."""
     for name in ("dip", "inclination"):
         if row.has(name):
             entry = row.text(name).replace(",", ".")
@@ -306,9 +306,8 @@ class Holes:
         return path.offset(depth)
 
     def place_at(self, row: Row, column: str, scale: np.ndarray) -> tuple[np.ndarray, float]:
-        """(3,) the place of a row whose column says its elevation, and its depth, NaN where the height of the
-        collar, or the way there, is not known. Refuses an elevation that does not determine the position in
-        the hole."""
+        """(3,) the place of a row with an elevation, and its depth, NaN where the height of the collar, or
+        the way there, is not known. Refuses an elevation that does not determine the position in the hole."""
         begin = self.begin_of(row)
         if self._is_of_objects:
             return np.array([row.number(axis) for axis in "xyz"]) * scale, float("nan")
