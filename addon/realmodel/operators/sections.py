@@ -73,7 +73,7 @@ def _draw_plane(operator, context):
         point, normal = cuts.plane_in_model(scene)
         column = layout.column(align=True)
         column.label(text="Section plane at")
-        for name, value in zip(("East (x)", "North (y)", "Height (z)"), point, strict=True):
+        for name, value in zip(("East (x)", "North (y)", "Elevation (z)"), point, strict=True):
             column.label(text=f"{name}  {value:.3f}")
         column.label(text="Normal  {:.3f}  {:.3f}  {:.3f}".format(*normal.round(3) + 0.0))
 

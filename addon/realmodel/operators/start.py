@@ -334,10 +334,10 @@ def _help_menu(self, _context):
 def _manual_map():
     """Links for F1 and "Online Manual" over a button of the tab."""
     page = guide()
-    folder = "" if page is None else page.resolve().parent.as_uri() + "/"
-    tour = "tour.html" if folder and page.suffix == ".html" else "tour.md"
+    folder = "" if page is None else page.resolve().parents[1].as_uri() + "/reference/"
+    panel = f"panel{page.suffix}" if folder else ""
     patterns = ("bpy.ops.realmodel.*", "bpy.types.realmodel*")
-    return folder, tuple((pattern, tour) for pattern in patterns) if folder else ()
+    return folder, tuple((pattern, panel) for pattern in patterns) if folder else ()
 
 
 def register():

@@ -414,8 +414,11 @@ def _warn(proposal: Proposal, data: _Data) -> None:
             f"'{conflict.lower}', against the order of all holes; it is not used"
         )
     for lens in proposal.lenses:
+        hole, part = lens.parts[0]
+        one = f"hole '{hole}', depth {part.depth:.9g} to {part.end:.9g} (or a code is wrong there)"
         found.append(
-            f"'{lens.unit}' is a lens in '{lens.host}' in {counted(len(lens.parts), 'hole')}: the body "
+            f"'{lens.unit}' is a lens in '{lens.host}' in "
+            f"{one if len(lens.parts) == 1 else counted(len(lens.parts), 'hole')}: the body "
             f"'{lens.name}'; where it ends between holes is a guess"
         )
     for repeat in proposal.repeats:
