@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The block at a point of a model, from the sheets of its rock masses alone, without building.
 
-For the validation of a model: it shares with the builder only on which side of a fault or body a point lies. A
+For the validation of a model: it shares with the builder only the sides of points at faults and bodies. A
 rock mass without faults is one compartment.
 """
 
