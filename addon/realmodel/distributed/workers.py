@@ -209,7 +209,7 @@ def workers_of(client: Any, count: int | None = None) -> Iterator[Workers]:
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=_ANY_PORT,
-                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask mends
+                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask repairs
                 )
             ends.enter_context(cluster)
             client = distributed.Client(cluster)

@@ -189,7 +189,7 @@ def active_bounds(work: Work, points: np.ndarray, bounds: Consistent, give: Meth
     """
     count = len(bounds.positions)
     active, drops, value = np.zeros(count, bool), np.zeros(count, np.int64), np.zeros(count)
-    near = ~active  # that what changed last may concern; the others are looked at when these hold
+    near = ~active  # that what changed last may concern; the others are examined when these hold
     while True:
         work.check()
         data = np.vstack([points, np.column_stack([bounds.positions[active], value[active]])])

@@ -17,7 +17,7 @@ from ..surfaces.observed.derived import BlockNumbers
 from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm, closed_forms
 
-PLACES = 16  # at which an interval is looked at
+PLACES = 16  # at which an interval is examined
 _OFF_GROUND = 0.1  # of an edge length
 NEAR = 1e-9  # of the range of heights: a place so near to a block lies in it, a bound so near is kept
 
@@ -86,7 +86,7 @@ def _most(owner: np.ndarray, blocks: np.ndarray, otherwise: np.ndarray) -> np.nd
 
 
 def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray) -> np.ndarray:
-    """(N,) heights at which places (N, 3) are looked at: those a little above the youngest surface on it, as
+    """(N,) heights at which places (N, 3) are examined: those a little above the youngest surface on it, as
     the ground between the nodes of the planar mesh is not just where it was seen."""
     if entry.region is None:
         return places[:, 2]

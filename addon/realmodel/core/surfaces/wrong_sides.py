@@ -234,7 +234,7 @@ def points_above_younger(entry: RockInput, numbers: Collection[int]) -> list[Bui
     holes: dict[int, list[str]] = {}
     for older, younger in combinations(checked, 2):
         if RULES[surfaces[older].rule].protects or not RULES[surfaces[younger].rule].cuts:
-            continue  # the points of the younger one are looked at instead: wrong_sides
+            continue  # the points of the younger one are examined instead: wrong_sides
         if younger == older + 1 and surfaces[younger].minimum_thickness is not None:
             continue  # found where this is imposed
         older_rows, younger_rows, names = _in_one_hole(data[older], data[younger])

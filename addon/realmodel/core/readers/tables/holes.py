@@ -37,7 +37,7 @@ class WellTrajectory:
 
     def __init__(self, depths: Sequence[float], directions: Sequence[Direction]):
         """depths (N,), N > 0: along the hole from its collar, each greater than the one before it.
-        directions (N, 3): of length 1, no two neighbours opposite to each other."""
+        directions (N, 3): of length 1, no two neighbors opposite to each other."""
         self._depths = np.array(depths, float)
         self._directions = np.array(directions, float).reshape(-1, 3)
         begin, end = self._directions[:-1], self._directions[1:]
@@ -64,7 +64,7 @@ class WellTrajectory:
         return self._starts[n] + self._along(n, depth - self._depths[n])
 
     def _along(self, n: int, length: float) -> np.ndarray:
-        """The way of this length from station n towards the next one."""
+        """The way of this length from station n toward the next one."""
         turned = self._doglegs[n] * length / (self._depths[n + 1] - self._depths[n])
         # (1 - cos t) / t = t / 2 (sin(t / 2) / (t / 2))^2
         sideways = turned / 2 * _sin_by(turned / 2) ** 2 * self._across[n]

@@ -14,7 +14,7 @@ from .points import AXES, KNOWN, TextTable, head_rows, open_table, wanted_column
 from .table_layout import Expected, is_any_number, plain_name
 
 _ROWS = 3
-_PIECES, _PIECE = 64, 1 << 16  # of a long table these are looked at, in equal distances
+_PIECES, _PIECE = 64, 1 << 16  # of a long table these are examined, in equal distances
 _LEAST, _MOST = 2, 50  # values of a column that names surfaces
 _NAMING = frozenset(
     ("horizon", "formation", "surface", "unit", "marker", "layer", "top", "strat", "stratum", "lithology")

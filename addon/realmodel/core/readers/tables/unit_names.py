@@ -10,7 +10,7 @@ from functools import cached_property
 
 from .hole_tables import NO_VALUE, normalized_name
 
-# What stands for core that is not there, or that nobody looked at.
+# What stands for core that is not there, or that nobody examined.
 _SHORT = frozenset(("lc", "nr", "nl"))  # which may be the code of a unit as well: LC is London Clay
 _NO_CORE = _SHORT | frozenset(
     normalized_name(name)
