@@ -118,7 +118,9 @@ def cross_validation_lines(result: CrossValidation, unit: str = "") -> list[str]
         f"mean error {result.mean_error:.3g}{end}, correlation {result.correlation:.4f}",
     ]
     if result.within_two_deviations is not None:
-        lines.append(f"{100 * result.within_two_deviations:.1f} % within two standard deviations, the rest in red")
+        lines.append(
+            f"{100 * result.within_two_deviations:.1f} % within two standard deviations, the rest in red"
+        )
     return lines
 
 

@@ -41,8 +41,8 @@ _LOST = 4  # workers at the same task, before Dask gives it up (distributed.sche
 
 
 def connected(address: str) -> Any:
-    """The client of a running scheduler, for a program that says in one line that it went away: from now on
-    Dask logs nothing in this process. Raises UsageError."""
+    """The client of a running scheduler, for a program with a one-line message if the connection is lost:
+    from now on Dask logs nothing in this process. Raises UsageError."""
     distributed = _distributed()
     for name in _LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -209,7 +209,7 @@ def workers_of(client: Any, count: int | None = None) -> Iterator[Workers]:
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=_ANY_PORT,
-                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask mends
+                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask repairs
                 )
             ends.enter_context(cluster)
             client = distributed.Client(cluster)

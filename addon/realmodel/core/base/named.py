@@ -17,7 +17,7 @@ R = TypeVar("R")
 
 
 def number_of(key: int | str, names: Sequence[str], noun: str) -> int:
-    """The number, from 0, of the entry that `key`, a name or a number, says. noun: what the entries are.
+    """The number, from 0, of the entry with `key`, its name or number. noun: what the entries are.
 
     Raises UsageError for an unknown one, and for a name of several.
     """

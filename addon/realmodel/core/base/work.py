@@ -74,7 +74,7 @@ class Work:
     @contextmanager
     def phase(self, start: float, end: float, text: str, has_steps: bool = False) -> Iterator[None]:
         """A phase of work: the progress goes from `start` to `end`, both between 0 and 1. has_steps: its
-        native call says itself what it is doing."""
+        native call reports its own text."""
         self.check()
         with self._lock:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
@@ -323,7 +323,7 @@ def run(
     Cancelled where cancel() returned True before the work was done, UsageError where tqdm is missing.
 
     Within a job, and without these two, the task is done at once as a part of that job, with its threads
-    unless `threads` says how many.
+    unless `threads` is given.
     """
     if progress is True:
         with progress_bar() as bar:

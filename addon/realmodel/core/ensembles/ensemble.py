@@ -98,7 +98,8 @@ class Ensemble:
 
     @classmethod
     def of(cls, realizer: Realizer, sums: Sums, places: np.ndarray) -> Ensemble:
-        """The ensemble of the sums over its realizations. places: (P, 3), where probabilities are asked."""
+        """The ensemble of the sums over its realizations. places: (P, 3), where probabilities are
+        computed."""
         count = len(sums.volumes)
         means: list[np.ndarray | None] = []
         deviations: list[np.ndarray | None] = []
@@ -250,7 +251,7 @@ def realized(
 
 
 def places_of(model: Model, places: Places | None) -> np.ndarray:
-    """(N, 3) float64: those that are given, or that a function of the model says."""
+    """(N, 3) float64: the given ones, or the result of a function of the model."""
     points = places(model) if callable(places) else places
     return np.zeros((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
 

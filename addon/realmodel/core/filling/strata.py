@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What says how beds lie in a solid."""
+"""The settings of beds in a solid."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Strata:
     beds: how many. thickness: of a bed on average, at right angles to the bedding before it is folded; 0: so
     thick that they fill the solid. Otherwise they lie in its middle, and the lowest and the highest bed take
     the rest. variation: how much beds differ, from 0, not at all, to 1.
-    dip: up to 85, towards the azimuth dip_direction. fold_amplitude: at right angles to the bedding, of folds
+    dip: up to 85, toward the azimuth dip_direction. fold_amplitude: at right angles to the bedding, of folds
     with this fold_wavelength and the azimuth fold_axis; one of both 0: none. axial_dip: of the axial planes
     of folds, from 90, upright, to 10, recumbent. They dip to the left of the azimuth fold_axis, so folds lean
     to its right, and their limbs are overturned where the folds are steep enough.

@@ -167,7 +167,7 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 
 @dataclass(frozen=True)
 class KrigingStructure:
-    """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
+    """The variogram of kriging, its number of neighbors, how dips count, and warnings. sheets: of surfaces
     that are kriged together. plane: around which heights are kriged; None: around their mean. missing: why no
     variance follows from the variogram, or None."""
 
@@ -302,7 +302,7 @@ def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndar
 
 
 def _from_neighbours(task: Task, kriging: KrigingStructure, axis: np.ndarray) -> np.ndarray:
-    """(N,) how far nodes, or points left out, lie along an axis from where their neighbours put them: so much
+    """(N,) how far nodes, or points left out, lie along an axis from where their neighbors put them: so much
     of an error of the slope is theirs."""
     steps = RegionalPlane(axis, np.zeros((2, 2)), task.points[0, :2])
     data = np.column_stack([task.points[:, :2], steps.at(task.points[:, :2])])

@@ -24,8 +24,8 @@ _STRAIGHT = 1e-9  # the sine of turns of the border that are none
 
 
 class Base:
-    """A surface above or below which thicknesses are measured; beyond its border it continues with the slopes
-    that it has there, as far as `reach`, the greatest thickness, asks."""
+    """A surface above or below which thicknesses are measured; beyond its border it continues with its slopes
+    there, as far as `reach`, the greatest thickness."""
 
     def __init__(self, work: Work, sheet: Sheet, reach: float):
         self.work = work
@@ -51,8 +51,8 @@ class Base:
 
 
 def lifted(task: Task, below: np.ndarray, thickness: np.ndarray | float) -> np.ndarray:
-    """(N,) heights at the nodes so far from the surface `to` of a task, whose heights there are `below`: as
-    the task says, upward or perpendicular to it."""
+    """(N,) heights at the nodes so far from the surface `to` of a task, whose heights there are `below`:
+    upward or perpendicular to it, by the task."""
     sheet = _base_sheet(task)
     if sheet is None:
         return below + thickness

@@ -376,8 +376,8 @@ def fence_through_holes(
     """Vertical sections through boreholes of the project, in the order of their names.
 
     holes: names. extend: how far the line continues at both ends, model units; None: a twentieth of its
-    length. Raises InputRefused for a hole that is not there, or where all are at one place, UsageError,
-    BuildFailed, Cancelled.
+    length. Raises InputRefused for an unknown hole, or if all are at one place, UsageError, BuildFailed,
+    Cancelled.
     """
     line = line_through(hole_places(model.project), holes, extend)
     return fence(model, line, threads=threads, progress=progress, cancel=cancel)

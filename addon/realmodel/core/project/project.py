@@ -373,7 +373,7 @@ class Rock(Entry):
     @property
     def youngest_in_rock(self) -> int:
         """The number of its youngest surface below the terrain, up to which faults displace it, and after
-        which bodies came, where they do not say so."""
+        which bodies came by default."""
         last = len(self.surfaces) - 1
         return last - 1 if last > 0 and self.terrain_number == last else last
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The proof of a model: the tests of docs/dev/geometry.md, as a report for its reviewer."""
+"""The validation of a model: the tests of docs/dev/geometry.md, with a report."""
 
 from __future__ import annotations
 

@@ -56,9 +56,9 @@ class Log:
 
 @dataclass
 class HoleLogs:
-    """logs: by name of the hole. boreholes: what they were read from, with the choices that were made. picks:
-    of each surface that picks name (N, 3). system: the coordinate system, as of HoleTables. is_in_its_unit:
-    whether their places are in the unit of the file. warnings: sentences.
+    """logs: by name of the hole. boreholes: their source, with the choices made. picks: of each surface that
+    picks name (N, 3). system: the coordinate system, as of HoleTables. is_in_its_unit: whether their places
+    are in the unit of the file. warnings: sentences.
     """
 
     logs: list[Log]

@@ -231,7 +231,7 @@ def _rules(data: _Data, out: Sorted, order: UnitOrder) -> list[RuleChoice]:
 
 
 class _Maker:
-    """Makes the project of a proposal, and says why in it."""
+    """Makes the project of a proposal, with the reasons."""
 
     def __init__(self, data: _Data, out: Sorted, proposal: Proposal, units: str):
         self._data, self._out, self._proposal, self._units = data, out, proposal, units

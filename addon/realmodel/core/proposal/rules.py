@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which surfaces cut older rock, and which end against it, by what each says of holes that are left out.
+"""Which surfaces cut older rock, and which end against it, by the prediction of left-out holes.
 
 Where a unit is absent between two others its rock was eroded, or it was never deposited there. The rules
 decide which surface then passes through the contact (docs/reference/project_file.md), so surfaces that are

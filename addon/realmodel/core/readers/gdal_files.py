@@ -65,8 +65,8 @@ def begins_as_gdal_shapes(head: bytes, _size: int = 0) -> bool:
 def read_gdal_raster(
     file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
-    """The only band of a raster, at the centers of its pixels, scaled as the file says. nodata: further
-    numbers that mean no height. Raises InputRefused, and UsageError where rasterio is missing."""
+    """The only band of a raster, at the centers of its pixels, scaled by the factors of the file. nodata:
+    further numbers that mean no height. Raises InputRefused, and UsageError where rasterio is missing."""
     file = Path(file)
     rasterio = extra("rasterio", f"{file}: reading a raster of this format", "gdal")
     try:

@@ -79,7 +79,7 @@ def _curves(file: Path) -> RawTable:
 
 
 def _rows_of_holes(tables: HoleTables) -> dict[str, Row]:
-    """A row of each hole, which says where it begins: of collars or, without them, of picks or intervals."""
+    """A row of each hole, with its start: of collars or, without them, of picks or intervals."""
     rows = tables.collars
     if rows is None:
         rows = [*(tables.picks or ()), *(tables.intervals or ())]
@@ -96,7 +96,7 @@ def _hole(file: Path, sheet: RawTable, holes: Mapping[str, Row]) -> str | None:
 
 
 def _named(file: Path, hole: str) -> Row:
-    """A row that says of which hole it is."""
+    """A row with the name of the hole."""
     return Row(TableHeader(file, ("hole", "from"), 1, {"hole": 0, "from": 1}), 1, [hole, ""])
 
 

@@ -178,7 +178,7 @@ class _HoleRows:
         self.warnings: list[str] = []
 
     def add(self, obj: GeoObject, asked: set[str]) -> None:
-        """Adds what an object says of the kinds of tables that are requested."""
+        """Adds the data of an object for the requested kinds of tables."""
         if obj.collar is not None and np.isfinite(obj.collar).all():
             self._collars[obj.name] = obj.collar
         for values in obj.values:
@@ -280,7 +280,7 @@ def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarra
 
 
 def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
-    """The name of a column: the one that the user says, or the first that is called as usual."""
+    """The name of a column: the user's, or the first with a usual name."""
     if said is not None:
         return next((name for name in values.columns if name.lower() == str(said).strip().lower()), None)
     plain = {plain_name(name): name for name in reversed(values.columns)}

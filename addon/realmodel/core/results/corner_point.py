@@ -483,7 +483,7 @@ def _assembled(
 
 
 def _of_library(model: ModelData, key: str) -> np.ndarray:
-    """(B,) float64: what the library says of each block, NaN where it says nothing."""
+    """(B,) float64: the library's value of each block, NaN for none."""
     library = model.project.library
     entries = [library.get(block.property) if library else None for block in model.blocks]
     return np.array([getattr(entry, key, None) for entry in entries], np.float64)

@@ -112,9 +112,9 @@ class PlannedHoleData:
     """What a planned hole meets.
 
     axis: where it goes. intervals, contacts: along it, from the collar. block_names, properties: (B,) of the
-    model's blocks. depths (N,), probability (N, B) float64: of each block at depths along the hole, as an
-    ensemble says; None without one. unit: of lengths. remarks: sentences that say why contacts with a surface
-    have no standard deviation.
+    model's blocks. depths (N,), probability (N, B) float64: of each block at depths along the hole, from an
+    ensemble; None without one. unit: of lengths. remarks: sentences that say why contacts with a surface have
+    no standard deviation.
     """
 
     axis: HoleAxis

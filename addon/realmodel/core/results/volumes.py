@@ -229,8 +229,8 @@ def volume_deviations(model: ModelData) -> np.ndarray:
 
 
 def without_deviation(model: ModelData) -> np.ndarray:
-    """(B,) bool: the blocks that a surface bounds whose data show no variogram, so that nothing says how much
-    their volumes vary."""
+    """(B,) bool: the blocks that a surface bounds whose data show no variogram, so that the variation of
+    their volumes is not known."""
     missing = missing_deviations(model)
     lacking = [number for number, name in enumerate(model.surface_names) if name in missing]
     sides = model.face_blocks[np.isin(model.face_surface, lacking)]

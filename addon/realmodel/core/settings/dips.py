@@ -92,7 +92,7 @@ class SpaceDips:
     def from_angles(
         cls, positions: ArrayLike, dip: ArrayLike, dip_direction: ArrayLike, overturned: ArrayLike = False
     ) -> SpaceDips:
-        """Dips as they are measured. positions: (D, 3), model units. dip: (D,) degrees below the horizontal,
+        """Dips from measured angles. positions: (D, 3), model units. dip: (D,) degrees below the horizontal,
         beyond 90 overturned. dip_direction: (D,) degrees clockwise from north (+y). overturned: (D,) bool.
         One number counts for all."""
         places = np.asarray(positions, np.float64)
@@ -169,7 +169,7 @@ class Dips:
     def from_angles(
         cls, positions: ArrayLike, dip: ArrayLike, dip_direction: ArrayLike, **columns: Any
     ) -> Dips:
-        """Dips as they are measured. positions: (D, 2) x, y or (D, 3) x, y, z, model units. dip: (D,) degrees
+        """Dips from measured angles. positions: (D, 2) x, y or (D, 3) x, y, z, model units. dip: (D,) degrees
         below the horizontal, less than 90. dip_direction: (D,) degrees clockwise from north (+y). One number
         counts for all. columns: surfaces, blocks or used. Raises InputRefused where one is vertical.
 

@@ -23,7 +23,7 @@ from ..settings.rules import RULES, Rule
 from .rock_input import RockInput
 from .wrong_sides import heights_at
 
-_MOST = 20_000  # points or nodes at most at which other surfaces are looked at
+_MOST = 20_000  # points or nodes at most at which other surfaces are examined
 _NOTABLE = 0.25  # of the distance to the neighbors: an outlier below it is not reported
 _BEYOND_NORMAL = 1.5  # times the largest of so many normally distributed residuals, and more, is an outlier
 _DEVIATIONS = 3.0  # of the error of the heights of points, which predict a residual

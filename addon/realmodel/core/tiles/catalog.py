@@ -43,7 +43,7 @@ class TileEntry:
 
 @dataclass(frozen=True)
 class Catalog:
-    """What tiles.toml says. project: without shapes. digest: of the input. patches: quadrilaterals of
+    """The content of tiles.toml. project: without shapes. digest: of the input. patches: quadrilaterals of
     blocks on the borders between tiles, or with faults or bodies the faces between cells of two tiles, which
     were compared double for double; unequal: those that one side alone has."""
 

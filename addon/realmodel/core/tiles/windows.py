@@ -210,7 +210,7 @@ class Windows:
         of_plan: dict[_Plan, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         if not self.structures.is_divided:
             box, none = self._grid.box(*tile), np.zeros(0, np.int8)
-            # as no vertex is on a line: what meets the neighbors alone need not be looked at then
+            # as no vertex is on a line: what meets the neighbors alone need not be examined then
             inner = (*np.nextafter(box[:2], np.inf).tolist(), *np.nextafter(box[2:], -np.inf).tolist())
             inputs = [self._rock(rock, inner, [], none, of_plan) for rock in range(len(self.inputs))]
             return Window(box, inputs, self.structures, None, np.empty(0, np.int32), np.zeros(1, np.int32))

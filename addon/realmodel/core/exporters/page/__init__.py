@@ -84,7 +84,7 @@ def page_of(model: ModelData, step: Callable[[float], None] = lambda _share: Non
 
 
 def _blocks(model: ModelData, contents: Contents) -> list[dict[str, Any]]:
-    """What the page says of each existing block, as the report has it."""
+    """The entry of each existing block in the page, as in the report."""
     total, colors = model.volume, rgb_bytes(model.block_colors).tolist()
     blocks = []
     for shell in contents.blocks:

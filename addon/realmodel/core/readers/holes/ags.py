@@ -83,7 +83,7 @@ def _system(groups: dict[str, _Group]) -> str:
 
 
 def _values(groups: dict[str, _Group], name: str, column: str) -> set[str]:
-    """What a column of a group says, where it says something."""
+    """The entries of a column of a group that are not empty."""
     group = groups.get(name)
     if group is None or column not in group.names:
         return set()

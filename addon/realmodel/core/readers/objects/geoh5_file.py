@@ -90,7 +90,7 @@ def _hole(obj: Any, wanted: ObjectName) -> GeoObject:
 
 
 def _along(obj: Any, vertices: np.ndarray) -> Values:
-    """The intervals between vertices, with the depths that a drillhole says."""
+    """The intervals between vertices, with the depths of a drillhole."""
     begins, ends = (vertices[np.array(obj.cells)[:, end]] for end in (0, 1))
     columns = _columns(obj, "CELL")
     depth_columns = [columns.pop(name) for name in ("FROM", "TO") if name in columns]

@@ -54,8 +54,8 @@ def read_geotiff(
     file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """The first image of a GeoTIFF with one number a pixel: whole or floating-point, in strips or tiles,
-    uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centers of pixels, or where the file
-    says so at their corners. nodata: further numbers that mean no height.
+    uncompressed or by LZW, DEFLATE or PackBits. Elevations are at the centers of pixels, or at their corners
+    if the file states so. nodata: further numbers that mean no height.
 
     Raises InputRefused naming the file, BuildFailed where tifffile is not there.
     """

@@ -51,7 +51,7 @@ class HoleProblem:
 
     kind: the fault, such as "gap", "overlap", "null", "double", "elevations", "no_collar". file, line: of the
     row; line 0 where the format has none. hole: its name. depth: along it, as the table has it, NaN where
-    there is none. text: what is wrong, and what was done. action: "used" as it is, "repaired", or "left out".
+    there is none. text: the fault and its treatment. action: "used" as it is, "repaired", or "left out".
     code: the unit or surface of an interval or a pick, None of other rows.
     """
 

@@ -273,7 +273,7 @@ def _require_xyz_first(table: TextTable) -> None:
 
 
 def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str) -> tuple[str, ...]:
-    """Sentences about columns that were guessed, or whose names say something else than they are read as."""
+    """Sentences about columns that were guessed, or that are read differently from their names."""
     names, called = table.layout.names or (), _named(table)
     doubts = []
     row = next(iter(head_rows(table, 9)), [])

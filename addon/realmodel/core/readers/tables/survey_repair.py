@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what is wrong with the stations of surveys, mends it or leaves it out, and lists it."""
+"""Finds faults in the stations of surveys, repairs them or leaves them out, and lists them."""
 
 from __future__ import annotations
 

@@ -381,7 +381,7 @@ def page_scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
 
 
 def scale_text(ratio: float) -> str:
-    """A scale as it is written."""
+    """The text of a scale."""
     return f"1 : {ratio:,.0f}" if ratio >= 10 else f"1 : {ratio:g}"
 
 

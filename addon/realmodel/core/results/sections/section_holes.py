@@ -173,8 +173,8 @@ def line_through(
     places: Mapping[str, np.ndarray], holes: Sequence[str], extend: float | None = None
 ) -> np.ndarray:
     """(N, 2) float64: a line in plan through holes, in their order, that continues by `extend` at both ends;
-    None: by a twentieth of its length. places: where the holes are. Raises InputRefused for a hole that is
-    not there, or holes at fewer than two places, UsageError."""
+    None: by a twentieth of its length. places: where the holes are. Raises InputRefused for an unknown hole,
+    or holes at fewer than two places, UsageError."""
     if extend is not None and not (np.isfinite(extend) and extend >= 0):
         raise UsageError(f"extend must be 0 or more, not {extend!r}")
     if unknown := [name for name in holes if name not in places]:

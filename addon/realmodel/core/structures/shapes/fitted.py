@@ -297,7 +297,7 @@ _MOST_LINES = 1000
 
 def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     """The fault with its trace as one line (N, 3), z NaN where it has none, and with the dip of the file's
-    attributes where it has none of its own; and warnings. Raises InputRefused."""
+    attributes if it has none; and warnings. Raises InputRefused."""
     text_or_file = fault.trace_file or (fault.trace if isinstance(fault.trace, str) else None)
     fault_lines = (
         FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
@@ -336,7 +336,7 @@ def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, lis
 
     tops: of each rock mass that it displaces, the RockInput, and the number of the surface that the line is
     on where it has no elevation, or None. A number as direction is that of the dip, and all rulings are
-    parallel to it; a point of the compass says the side to which the plane through both ends dips. Raises
+    parallel to it; a point of the compass is the side to which the plane through both ends dips. Raises
     InputRefused.
     """
     plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace_line()[:, 2])

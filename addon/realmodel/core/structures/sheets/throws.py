@@ -255,8 +255,8 @@ class Shift:
 
 
 class Throws:
-    """The throws of a rock mass's faults, measured between the sheets that are there, and those that are told
-    to it. few: the surfaces of those that are there which few points show."""
+    """The throws of a rock mass's faults, measured between existing sheets, and given ones. few: the surfaces
+    of those that are there which few points show."""
 
     def __init__(self, work: Work, structure: RockStructure, few: list[int]):
         self.work = work
