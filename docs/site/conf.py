@@ -30,5 +30,6 @@ include_patterns = [
     "native/src/exact/README.md",
 ]
 nb_execution_mode = "off"  # the tests run them, and their results are in them
+myst_enable_extensions = ["html_image"]  # pictures with a width
 myst_heading_anchors = 4  # as code hosts make them
 myst_fence_as_directive = ["mermaid"]
