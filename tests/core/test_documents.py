@@ -85,7 +85,10 @@ def anchors(document):
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_links_lead_somewhere(document):
-    for path, anchor in LINK.findall(document.read_text(encoding="utf-8")):
+    text = document.read_text(encoding="utf-8")
+    for picture in re.findall(r'<img src="([^"]*)"', text):
+        assert (document.parent / picture).exists(), f"{document.name} shows {picture}"
+    for path, anchor in LINK.findall(text):
         if "://" in path:
             continue
         target = document.parent / path if path else document
