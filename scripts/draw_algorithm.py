@@ -11,7 +11,7 @@ import math
 import textwrap
 from pathlib import Path
 
-from svg_drawing import BLUE, CREAM, GREY, INK, PALE, RED, SAND, STONE, Drawing
+from svg_drawing import BLUE, CREAM, GRAY, INK, PALE, RED, SAND, STONE, Drawing
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "images"
 PANEL, GAP, CAPTION = 330, 18, 236  # width of a panel, between two, and where its caption begins
@@ -20,7 +20,7 @@ PANEL, GAP, CAPTION = 330, 18, 236  # width of a panel, between two, and where i
 def picture(panels):
     """A picture of several panels, each (title, draw, caption)."""
     captions = [textwrap.wrap(caption, 50) for _, _, caption in panels]
-    height = CAPTION + 46 + 16 * max(len(lines) for lines in captions)
+    height = CAPTION + 56 + 16 * max(len(lines) for lines in captions)
     whole = Drawing(len(panels) * (PANEL + GAP) + GAP, height, "draw_algorithm.py")
     for number, (title, draw, _) in enumerate(panels):
         left = GAP + number * (PANEL + GAP)
@@ -68,7 +68,7 @@ def draw_border(d):
             if outline != OUTLINES[0]:
                 d.rect(x - 9, y - 6, 18, 12, SAND, SAND)  # no lines behind the letters
             d.text(x, y + 4, "+1", 11, bold=True, fill=RED, anchor="middle")
-    d.text(4, 14, "inner edges: +1 - 1 = 0", 11.5, fill=GREY)
+    d.text(4, 14, "inner edges: 1 - 1 = 0", 11.5, fill=GRAY)
 
 
 def draw_winding(d):
@@ -129,8 +129,8 @@ def draw_record_lows(d):
             quad = [envelopes[k][i], envelopes[k][i + 1], under[i + 1], under[i]]
             if max(quad[3][1] - quad[0][1], quad[2][1] - quad[1][1]) > 0.01:
                 d.polygon(quad, FILLS[k], "white", 1)
-        d.path(list(zip(AT, heights, strict=True)), GREY, 1, "4 3")
-        d.text(AT[-1] + 4, heights[-1] + 4, name, 10.5, fill=GREY)
+        d.path(list(zip(AT, heights, strict=True)), GRAY, 1, "4 3")
+        d.text(AT[-1] + 4, heights[-1] + 4, name, 10.5, fill=GRAY)
     for envelope in envelopes:
         d.path(envelope, INK, 1.6)
     d.text(16, 54, "block 3", 11)
@@ -147,14 +147,14 @@ def draw_groups(d):
     d.polygon([(6, 10), (94, 4), (98, 82), (10, 90)], SAND, INK, 1.8)
     d.path([(6, 50), (50, 46), (98, 60)], "white", 1.4)
     d.path([(50, 46), (60, 6.5)], "white", 1.4)
-    d.text(52, 108, "the surface runs on", 11, anchor="middle")
+    d.text(52, 108, "S is continuous", 11, anchor="middle")
     d.text(52, 122, "one cell", 11, bold=True, anchor="middle")
 
     d.polygon([(116, 10), (160, 7), (160, 86), (120, 90)], SAND)
     d.polygon([(160, 7), (204, 4), (208, 82), (160, 86)], CREAM)
     d.polygon([(116, 10), (204, 4), (208, 82), (120, 90)], "none", INK, 1.8)
     d.path([(160, 7), (160, 86)], BLUE, 2.6)
-    d.text(162, 108, "it has a step", 11, anchor="middle")
+    d.text(162, 108, "S has a step", 11, anchor="middle")
     d.text(162, 122, "two cells", 11, bold=True, anchor="middle")
 
     # a ring around what stays, which touches itself where the hole reaches the border
@@ -163,9 +163,9 @@ def draw_groups(d):
     outlined(d, [(262, 6), (296, 4), (298, 84), (280, 56)], STONE)
     d.polygon([(226, 8), (296, 4), (298, 84), (228, 88)], "none", INK, 1.8)
     d.dot((262, 6), RED, 4.5)
-    d.text(262, 40, "E", 10, anchor="middle", fill=GREY)
-    d.text(262, 52, "stays", 9, anchor="middle", fill=GREY)
-    d.text(262, 108, "it touches itself", 11, anchor="middle")
+    d.text(262, 40, "E", 10, anchor="middle", fill=GRAY)
+    d.text(262, 52, "stays", 9, anchor="middle", fill=GRAY)
+    d.text(262, 108, "cell touches itself", 11, anchor="middle")
     d.text(262, 122, "each alone", 11, bold=True, anchor="middle")
 
     # a cell of two pieces in section
@@ -232,7 +232,7 @@ def draw_around(d):
     for angle in ends:
         d.path([center, on_circle(angle)], INK, 2)
     d.dot(center, RED, 5)
-    d.text(92, 190, "around a vertical, at one height", 10.5, anchor="middle")
+    d.text(92, 190, "around a vertical edge, in plan", 10.5, anchor="middle")
 
     x = 250
     d.polygon([(190, 40), (x, 30), (x, 160), (190, 168)], SAND, INK, 1.2)
@@ -241,7 +241,7 @@ def draw_around(d):
         d.dot((x, y), RED, 4)
     d.text(257, 99, "another", 10)
     d.text(257, 111, "height", 10)
-    d.text(244, 190, "and along its vertical", 10.5, anchor="middle")
+    d.text(244, 190, "along the edge", 10.5, anchor="middle")
 
 
 # --- blocks without columns (300 x 190)
@@ -255,10 +255,10 @@ def draw_bounds(d):
         (x0, y0), (x1, y1) = points[i], points[i + 1]
         return x0, min(y0, y1), x1 - x0, abs(y1 - y0)
 
-    colors = {0: BLUE, 1: BLUE, 2: BLUE, 3: RED, 4: RED, 5: GREY}
+    colors = {0: BLUE, 1: BLUE, 2: BLUE, 3: RED, 4: RED, 5: GRAY}
     for i, color in colors.items():
         x, y, width, height = span(LOWER, i)
-        fill = {BLUE: "#dbe7ef", RED: "#f3d9d6", GREY: PALE}[color]
+        fill = {BLUE: "#dbe7ef", RED: "#f3d9d6", GRAY: PALE}[color]
         d.rect(x + 1, y - 2, width - 2, round(height + 4, 1), fill, color, "3 2", 0)
     d.path(ENVELOPE, INK, 2)
     for point in ENVELOPE:
@@ -272,7 +272,7 @@ def draw_bounds(d):
     d.text(2, 144, "decided: below, stays whole", 11, fill=BLUE)
     d.text(150, 160, "unclear: overlaid exactly", 11, fill=RED)
     d.path([(200, 148), (200, 100)], RED, 1, end="red")
-    d.text(300, 54, "decided: removed", 11, fill=GREY, anchor="end")
+    d.text(300, 54, "decided: removed", 11, fill=GRAY, anchor="end")
 
 
 def draw_nodes(d):
@@ -338,56 +338,54 @@ PICTURES = {
         (
             "The border of a surface",
             draw_border,
-            "Every triangle passes its edges once. Where two pass one edge in opposite directions the sum "
-            "is 0; what is left is the border (red), with its net count. Inner vertices are not asked "
-            "for.",
+            "Each triangle counts +1 or -1 at its edges, by the direction. Where two triangles share an "
+            "edge, the sum is 0. The other edges are the border (red), with their counts. Inner vertices "
+            "are not used.",
         ),
         (
-            "What is covered, by the border alone",
+            "Coverage follows from the border",
             draw_winding,
-            "The border and the frame, triangulated. At the frame nothing is covered; across a border "
-            "edge the count changes by its net count, across others not at all. 0 becomes void, anything "
-            "but 0 and 1 is refused.",
+            "The border and the frame are triangulated. Nothing is covered at the frame. Across a border "
+            "edge the number changes by the count of the edge. 0 is void. A number other than 0 and 1 is "
+            "refused.",
         ),
     ),
     "algorithm_overlay": (
         (
-            "Record lows, from the youngest down",
+            "Envelopes, youngest first",
             draw_record_lows,
-            "Surfaces dashed. What survives of a surface lies below all younger ones: the envelope "
-            "(solid) is handed down and replaced where the next surface is lower. Blocks between two "
-            "envelopes are finished at once.",
+            "The surfaces are dashed. The remainder of a surface lies below all younger ones. The envelope "
+            "(solid) is lowered where the next surface is lower. Each block lies between two envelopes.",
         ),
         (
             "Which pieces are one cell",
             draw_groups,
-            "The pieces of S under one facet of E, seen from above, and one cell in section. Joined where "
-            "the cell is thick and S runs on; where a joined cell would touch itself every piece stays "
-            "alone.",
+            "The pieces of S under one facet of E: three in plan, one in section. They form one cell where "
+            "the cell is thick and S is continuous. Where a joined cell would touch itself, each piece "
+            "stays alone.",
         ),
     ),
     "algorithm_walls": (
         (
-            "Two columns along one supporting line",
+            "Two columns along one line",
             draw_columns,
-            "The line unrolled: face edges on its left (black) and right (blue). Between two levels one "
-            "cell lies left and one right; where they differ stands a wall. Where levels cross (red) the "
-            "line gets an arrangement vertex.",
+            "The line is unrolled, with face edges on its left (black) and right (blue). Between two "
+            "levels, one cell lies on each side. If the cells differ, a wall separates them. Where levels "
+            "cross (red), the line gets a vertex.",
         ),
         (
             "Why vertical edges close",
             draw_around,
-            "Each sector belongs to one cell, or to none; a cell's first wall arrives where its last one "
-            "leaves. All walls take every height on the vertical (red), so that they share the same "
-            "pieces of it.",
+            "Each sector belongs to one cell or to none. The first wall of a cell ends where its last wall "
+            "begins. All walls use all vertices of the vertical edge (red), so they share its pieces.",
         ),
     ),
     "algorithm_blocks": (
         (
             "Bounds decide most triangles",
             draw_bounds,
-            "In section. A triangle of S wholly below what lies over it becomes a facet as it is, one "
-            "wholly above is gone. Only what may meet is looked at exactly.",
+            "In section. A triangle of S that lies below everything younger becomes a facet as it is. A "
+            "triangle above is removed. Only triangles that may meet are intersected exactly.",
         ),
         (
             "One block, named from both sides",
@@ -398,8 +396,8 @@ PICTURES = {
         (
             "What gets new vertices",
             draw_touched,
-            "In plan. Divided triangles (dark) and their neighbors (light) go through conforming, and "
-            "all in the tiles of a border (grey). White ones are taken as they are.",
+            "In plan. Divided triangles (dark), their neighbors (light), and all triangles in the tiles of "
+            "a border (gray) get new vertices. White triangles are unchanged.",
         ),
     ),
 }

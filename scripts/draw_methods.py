@@ -10,6 +10,7 @@ as matplotlib draws them, so the pictures of maps are looked at, not compared.
 
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from realmodel import _native  # noqa: F401  (before matplotlib, which may take the room of its libraries)
@@ -18,12 +19,24 @@ from realmodel.core.drawing import save_drawing
 
 from matplotlib.figure import Figure  # isort: skip
 from matplotlib.tri import Triangulation  # isort: skip
-from PIL import Image  # isort: skip
 
 _OUTLINE = [[0, 0], [1000, 0], [1000, 700], [0, 700]]
-_LIMITS = (60.0, 145.0)
-_COLORS = 96  # of a picture's palette
-_MANY = 300  # points, beyond which their dots become smaller
+
+
+class Bands(NamedTuple):
+    """The colors of a map, one between two levels, and the label of their bar."""
+
+    label: str
+    levels: np.ndarray
+    colors: str
+    extend: str = "both"
+
+
+_ELEVATIONS = Bands("elevation (m)", np.arange(60.0, 146.0, 5.0), "viridis")
+_FOLLOWED = Bands("surface followed (m)", np.arange(30.0, 116.0, 5.0), "viridis")
+_ERRORS = Bands("error (m)", np.arange(-20.0, 20.5, 2.5), "RdBu_r")
+_DEVIATIONS = Bands("standard deviation (m)", np.arange(0.0, 21.0, 1.0), "cividis", "max")
+_DISTANCES = Bands("size of the error (m)", np.arange(0.0, 21.0, 1.0), "cividis", "max")
 
 
 def horizon(x, y):
@@ -56,112 +69,78 @@ def neighbour(vertices):
 
 
 def save(figure, path):
-    """Writes a small PNG: a palette of few colors."""
-    figure.savefig(path, dpi=160)
-    with Image.open(path) as picture:
-        few = picture.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
-    few.save(path, optimize=True)
+    """Writes a PNG of few plain colors, which needs no palette to be small."""
+    figure.savefig(path, dpi=130, pil_kwargs={"optimize": True})
 
 
 def draw(folder):
     folder.mkdir(parents=True, exist_ok=True)
-    given = points()
+    known = points()
     vertices, triangles = mesh_region(_OUTLINE, edge_length=14)
     x, y = (a.ravel() for a in np.meshgrid(np.arange(0.0, 1001, 100), np.arange(0.0, 701, 100)))
     raster = np.column_stack([x, y, horizon(x, y)])
-    wells = given[[3, 22, 41, 52]]
+    wells = known[[3, 22, 41, 52]]
     below = neighbour(vertices)
+    true = horizon(*vertices.T)
+    mesh = Triangulation(*vertices.T, triangles)
     methods = {
-        "kriging": (given, {}),
-        "universal_kriging": (given, {}),
-        "idw": (given, {}),
-        "spline": (given, {}),
-        "dsi": (given, {"triangles": triangles}),
-        "tin": (given, {}),
-        "natural_neighbour": (given, {}),
+        "kriging": (known, {}),
+        "universal_kriging": (known, {}),
+        "idw": (known, {}),
+        "spline": (known, {"neighbours": 0}),
+        "dsi": (known, {"triangles": triangles}),
+        "tin": (known, {}),
+        "natural_neighbour": (known, {}),
         "grid": (raster, {}),
-        "plane": (given, {}),
-        "constant": (wells, {}),
+        "plane": (known, {}),
         "parallel": (wells, {"to": below, "triangles": triangles}),
-        "auto": (given, {}),
+        "auto": (known, {}),
     }
-    for method, (known, options) in methods.items():
-        result = interpolate(known, vertices, method, **options)
-        figure = Figure(figsize=(7.6, 2.6), layout="constrained")
-        axes, beside = figure.subplots(1, 2, sharey=True)
-        shape = np.column_stack([vertices, result.z])
-        height_map(shape, triangles, known, axes, limits=_LIMITS)
-        axes.set_title(method if method != "auto" else f"auto: {result.method}", fontsize="medium")
-        height_map(np.column_stack([vertices, horizon(*vertices.T)]), triangles, None, beside, limits=_LIMITS)
-        beside.set_title("the true surface", fontsize="medium")
-        save(figure, folder / f"method_{method}.png")
+    draw_maps([(mesh, true, known, _ELEVATIONS)], folder / "method_true.png")
+    for method, (data, options) in methods.items():
+        result = interpolate(data, vertices, method, **options)
+        first = (mesh, below, None, _FOLLOWED) if method == "parallel" else None
+        maps = [(mesh, result.z, data, _ELEVATIONS), (mesh, result.z - true, data, _ERRORS)]
+        draw_maps([first, *maps] if first else maps, folder / f"method_{method}.png")
         if method == "kriging":
-            figure = Figure(figsize=(4.4, 2.9), layout="constrained")
-            axes = figure.subplots()
-            variance_map(shape, triangles, result.variance, known, axes)
-            axes.set_title("kriging: standard deviation", fontsize="medium")
-            save(figure, folder / "method_kriging_deviation.png")
+            deviation = np.sqrt(np.maximum(result.variance, 0.0))
+            maps = [(mesh, deviation, data, _DEVIATIONS), (mesh, abs(result.z - true), data, _DISTANCES)]
+            draw_maps(maps, folder / "method_kriging_deviation.png")
             save_drawing(plots.variogram(result.variogram, "m"), folder / "method_variogram.svg")
-    draw_extrapolation(given[-14:], vertices, triangles, folder)
+    draw_extrapolation(known[-14:], folder)
     draw_true_thickness(folder)
-    save_drawing(plots.cross_validation(cross_validate(given), "m"), folder / "method_cross_validation.svg")
-    save_drawing(
-        plots.mesh_quality(plots.smallest_angles(vertices, triangles)), folder / "method_mesh_quality.svg"
-    )
+    save_drawing(plots.cross_validation(cross_validate(known), "m"), folder / "method_cross_validation.svg")
 
 
-def height_map(vertices, triangles, points, axes, limits=None):
-    """Heights of a triangulated surface (vertices (V, 3), triangles (T, 3)) as colors in plan with contour
-    lines, and the points (P, 2 or 3) that it was made from. limits: (lowest, highest) of the colors."""
-    vertices = np.asarray(vertices, np.float64)
-    _map(vertices[:, :2], triangles, vertices[:, 2], points, axes, limits, "height", "viridis")
+def draw_maps(maps, path, titles=()):
+    """Maps beside each other, each (mesh, values of its nodes, points or None, bands of color), and a color
+    bar for each kind of values."""
+    figure = Figure(figsize=(0.8 + 3.6 * len(maps), 2.6), layout="constrained")
+    all_axes = figure.subplots(1, len(maps), sharey=True, squeeze=False)[0]
+    for n, (axes, (mesh, values, data, bands)) in enumerate(zip(all_axes, maps, strict=True)):
+        drawn = axes.tricontourf(mesh, values, bands.levels, cmap=bands.colors, extend=bands.extend)
+        axes.tricontour(mesh, values, bands.levels[1:-1], colors="black", linewidths=0.3, alpha=0.5)
+        if data is not None:
+            axes.scatter(*data.T[:2], 6, c="black", edgecolors="white", linewidths=0.3)
+        axes.set(aspect="equal", xlabel="x (m)", xlim=(0, 1000), ylim=(0, 700))
+        if n + 1 == len(maps) or maps[n + 1][3] is not bands:
+            figure.colorbar(drawn, ax=axes, label=bands.label, ticks=bands.levels[::4], shrink=0.95)
+    for axes, title in zip(all_axes, titles, strict=False):
+        axes.set_title(title, fontsize="medium")
+    all_axes[0].set_ylabel("y (m)")
+    save(figure, path)
 
 
-def variance_map(vertices, triangles, variance, points, axes, limits=None):
-    """The standard deviation of the heights of a surface, the root of variances (V,), as colors in plan, and
-    the points."""
-    deviation = np.sqrt(np.maximum(np.asarray(variance, np.float64), 0.0))
-    plan = np.asarray(vertices, np.float64)[:, :2]
-    _map(plan, triangles, deviation, points, axes, limits, "standard deviation", "cividis")
-
-
-def _share_of_many(points: int) -> float:
-    """1, or less where there are many points, but never so little that dots vanish."""
-    return min(1.0, max(_MANY / max(points, 1), 0.03))
-
-
-def _map(plan, triangles, values, points, axes, limits, label, colors):
-    # matplotlib's own arithmetic has single precision in places: coordinates from the middle
-    middle = np.round(plan.mean(axis=0), -2) if np.abs(plan).max() > 1e5 else np.zeros(2)
-    x, y = (plan - middle).T
-    known = np.isfinite(values)
-    shown = np.asarray(triangles)[known[np.asarray(triangles)].all(axis=1)]
-    low, high = limits or (values[known].min(), values[known].max())
-    mesh = Triangulation(x, y, shown)
-    filled = np.where(known, values, low)
-    drawn = axes.tripcolor(mesh, filled, cmap=colors, vmin=low, vmax=high, shading="gouraud", rasterized=True)
-    if len(shown) and high > low:
-        levels = np.linspace(low, high, 12)[1:-1]
-        axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.4, alpha=0.6)
-    if points is not None:
-        px, py = (np.asarray(points, np.float64)[:, :2] - middle).T
-        axes.scatter(px, py, 6 * _share_of_many(len(px)), c="black", linewidths=0.0)
-    axes.set_aspect("equal")
-    if middle.any():
-        axes.set(xlabel=f"x - {middle[0]:.0f}", ylabel=f"y - {middle[1]:.0f}")
-    axes.figure.colorbar(drawn, ax=axes, label=label, shrink=0.85)
-
-
-def draw_extrapolation(wells, vertices, triangles, folder):
+def draw_extrapolation(wells, folder):
     """Beside each other, what nodes outside the hull of a few wells get."""
-    figure = Figure(figsize=(8.8, 2.4), layout="constrained")
-    for choice, axes in zip(("method", "nearest", "none"), figure.subplots(1, 3, sharey=True), strict=True):
-        z = interpolate(wells, vertices, "universal_kriging", extrapolate=choice).z
-        kept = triangles[np.isfinite(z)[triangles].all(axis=1)]
-        shape = np.column_stack([vertices, np.nan_to_num(z, nan=_LIMITS[0])])
-        height_map(shape, kept, wells, axes, limits=_LIMITS)
-        axes.set_title(f'extrapolate = "{choice}"', fontsize="medium")
-    save(figure, folder / "method_extrapolate.png")
+    maps, choices = [], ("method", "nearest", "none")
+    plan, triangles = mesh_region(_OUTLINE, edge_length=5)  # so small that the edge of the hull has no steps
+    for choice in choices:
+        z = interpolate(wells, plan, "universal_kriging", extrapolate=choice).z
+        inside = Triangulation(*plan.T, triangles[np.isfinite(z)[triangles].all(axis=1)])
+        maps.append((inside, np.nan_to_num(z, nan=_ELEVATIONS.levels[0]), wells, _ELEVATIONS))
+    titles = [f'extrapolate = "{choice}"' for choice in choices]
+    draw_maps(maps, folder / "method_extrapolate.png", titles)
 
 
 def draw_true_thickness(folder):
@@ -178,7 +157,7 @@ def draw_true_thickness(folder):
         axes.fill_between(line[:, 0], bottom, top, color="#d8a657", linewidth=0.0)
         for heights in (bottom, top):
             axes.plot(line[:, 0], heights, color="black", linewidth=1.0)
-        axes.set_aspect("equal")
+        axes.set(aspect="equal", xlabel="x (m)", ylabel="" if true else "elevation (m)")
         axes.set_title("true_thickness = true" if true else "vertical thickness", fontsize="medium")
     save(figure, folder / "method_true_thickness.png")
 

@@ -4,7 +4,7 @@ bytes on every run."""
 
 from xml.sax.saxutils import escape
 
-INK, GREY, PALE = "#2b2b2b", "#8a8a8a", "#f1efec"
+INK, GRAY, PALE = "#2b2b2b", "#8a8a8a", "#f1efec"
 RED, BLUE = "#c0342b", "#1f5f8b"
 SAND, STONE, CREAM = "#d9957c", "#b9b2b4", "#f0dfba"
 

@@ -19,8 +19,8 @@ DOCUMENTS = [
         "reference/project_file.md",
         "reference/output_files.md",
         "reference/operators.md",
-        "guide/sculpted_strata.md",
-        "guide/tour.md",
+        "guide/mesh_surfaces.md",
+        "reference/panel.md",
     )
 ]
 _OF_FILE_BROWSER = ("filepath", "filter_glob", "files", "directory", "format")

@@ -29,7 +29,7 @@ class RealModelPlannedHole(bpy.types.PropertyGroup):
     collar = ArraysProperty()  # model coordinates in full
     east: _collar_field("East (x)", 0)
     north: _collar_field("North (y)", 1)
-    height: _collar_field("Height (z)", 2)
+    height: _collar_field("Elevation (z)", 2)
     azimuth: FloatProperty(
         name="Azimuth",
         description="Degrees clockwise from north",

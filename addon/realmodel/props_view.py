@@ -133,7 +133,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     plane_x: _plane_field("East (x)", 0)
     plane_y: _plane_field("North (y)", 1)
-    plane_z: _plane_field("Height (z)", 2)
+    plane_z: _plane_field("Elevation (z)", 2)
     section_holes: StringProperty(
         name="Holes",
         description="Names of the boreholes that a section goes through, in order, with commas between them",

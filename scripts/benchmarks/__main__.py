@@ -138,11 +138,11 @@ def _say(line: str) -> None:
 
 _HEADINGS = (
     "work",
-    "beside",
+    "compared with",
     "ours, s",
     "theirs, s",
     "ours / theirs",
-    "asked",
+    "required",
     "goal",
     "our memory, MB",
     "their memory, MB",

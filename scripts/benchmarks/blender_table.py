@@ -15,7 +15,7 @@ UPLOADS = (
     "Blender",
     "polygons",
     "ours, s",
-    "asked, s",
+    "required, s",
     "foreach_set, s",
     "ours / foreach_set",
     "from_pydata, s",

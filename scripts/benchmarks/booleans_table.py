@@ -10,12 +10,12 @@ from .process import Skipped, alone
 
 BOOLEANS = (
     "work",
-    "beside",
+    "compared with",
     "ours, s",
     "theirs, s",
     "ours / theirs",
     "of processors",
-    "asked",
+    "required",
     "our triangles",
     "theirs",
     "our memory, MB",

@@ -15,8 +15,8 @@ FRAMES = (
     "frames/s",
     "time / plain meshes",
     "per polygon",
-    "time / what it shows as plain meshes",
-    "to switch to it, s",
+    "time / same content as plain meshes",
+    "time to switch, s",
     "",
 )
 _SCRIPT = ROOT / "scripts" / "benchmarks" / "blender_display.py"

@@ -20,7 +20,7 @@ FILES = (
     "to the disk, s",
     "the same bytes, s",
     "times",
-    "asked",
+    "required",
     "",
 )
 LOADED = (

@@ -11,7 +11,16 @@ from collections.abc import Callable
 from .heights import METHODS, SETS, TIMED
 from .process import Skipped, alone
 
-SPEED = ("points", "ours", "beside", "ours, nodes/s", "theirs, nodes/s", "ours / theirs", "asked", "")
+SPEED = (
+    "points",
+    "ours",
+    "compared with",
+    "ours, nodes/s",
+    "theirs, nodes/s",
+    "ours / theirs",
+    "required",
+    "",
+)
 ACCURACY = (
     "method",
     *(f"RMSE {name}" for name in SETS),

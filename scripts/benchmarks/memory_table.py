@@ -10,16 +10,24 @@ from collections.abc import Callable
 from .blender_table import blenders
 from .process import ROOT, Skipped, run_apart
 
-LIVE = ("Blender", "live builds", "after the first, MB", "after the last, MB", "grown, MB", "asked, MB", "")
+LIVE = (
+    "Blender",
+    "live builds",
+    "after the first, MB",
+    "after the last, MB",
+    "grown, MB",
+    "required, MB",
+    "",
+)
 POINTS = (
     "Blender",
     "points",
     "file, MB",
     ".blend, MB",
-    "asked, MB",
+    "required, MB",
     "undo step, s",
     "undo, s",
-    "asked, s",
+    "required, s",
     "memory of five steps, MB",
     "",
 )

@@ -21,11 +21,11 @@ MESHES = (
     "seconds",
     "microseconds each",
     "of Triangle's",
-    "asked",
-    "mean edge / asked",
+    "required",
+    "mean edge / requested",
     "least angle",
     "mean ratio",
-    "six neighbours",
+    "six neighbors",
     "memory, MB",
     "",
 )
@@ -37,11 +37,11 @@ OUTLINES = (
     "seconds",
     "least angle",
     "mean ratio",
-    "asked",
-    "six neighbours",
+    "required",
+    "six neighbors",
     "",
 )
-POLYGONS = ("polygon", "corners", "ours, s", "earcut, s", "ours / earcut", "asked", "")
+POLYGONS = ("polygon", "corners", "ours, s", "earcut, s", "ours / earcut", "required", "")
 # How long a triangle may take of Triangle's time for one, the mean ratio at least, and bytes at most.
 _ASKED = {"delaunay": (1.0, None), "frontal": (3.0, 0.99), "grid": (None, None)}
 _MOST_MEMORY = 2e9

@@ -12,14 +12,14 @@ from .process import ROOT, Skipped, alone
 
 BESIDE = (
     "work",
-    "beside",
+    "compared with",
     "s",
     "processors, s",
-    "s beside",
-    "processors, s beside",
+    "s of the other",
+    "processors, s of the other",
     "times",
     "of processors",
-    "asked",
+    "required",
     "",
 )
 SIZES = (
@@ -28,9 +28,9 @@ SIZES = (
     "cells",
     "s",
     "processors, s",
-    "of it the lead, s",
+    "main process, s",
     "microseconds for each triangle",
-    "lead, MB",
+    "main process, MB",
     "largest worker, MB",
     "all, MB",
     "",

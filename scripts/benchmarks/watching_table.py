@@ -16,13 +16,21 @@ PROGRESS = (
     "estimate, s",
     "memory, MB",
     "estimate at most, MB",
-    "told at half of the time",
+    "reported at half of the time",
     "largest deviation",
     "of processor time",
     "longest gap, s",
     "calls",
 )
-CANCELS = ("work", "cells are", "cancels", "slowest answer, s", "median, s", "all gone after, s", "kept, MB")
+CANCELS = (
+    "work",
+    "cells are",
+    "cancels",
+    "slowest response, s",
+    "median, s",
+    "all memory freed after, s",
+    "still held, MB",
+)
 _CASES = (
     ("10 x 20,000", StackSpec(10, 100)),
     ("10 x 180,000", StackSpec(10, 300)),

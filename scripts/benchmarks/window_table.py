@@ -10,13 +10,13 @@ from collections.abc import Callable
 
 from .process import ROOT, Skipped, run_apart
 
-LIVE = ("10 surfaces x 7,200 triangles", "edit to new blocks, s", "asked, s", "")
+LIVE = ("10 surfaces x 7,200 triangles", "edit to new blocks, s", "required, s", "")
 STILL = (
-    "what goes on",
+    "task",
     "polygons",
-    "window still at most, s",
+    "window frozen, s",
     "without drawing, s",
-    "asked, s",
+    "required, s",
     "meshes to Blender, s",
     "one drawing, s",
     "",

@@ -24,7 +24,7 @@ class Documentation(PanelCase):
         page = opened(bpy.ops.realmodel.documentation)
         self.assertIn("RealModel user guide", page.read_text(encoding="utf-8"))
 
-    def test_the_manual_of_a_button_is_the_tour(self):
+    def test_the_manual_of_a_button_is_the_page_of_the_panel(self):
         for name in ("realmodel.build", "RealModelRock.region"):
             page = opened(bpy.ops.wm.doc_view_manual, doc_id=name)
-            self.assertIn("tour of the panel", page.read_text(encoding="utf-8"), name)
+            self.assertIn("Every control of the tab", page.read_text(encoding="utf-8"), name)

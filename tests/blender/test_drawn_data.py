@@ -240,8 +240,8 @@ class DrawnData(PanelCase):
         given = {"filepath": path, "first": "0,0", "second": "100,0", "heights": "0,10"}
         before = len(bpy.data.images)
         self.refused(ops.image_place, "both points are one", **{**given, "second": "0, 0"})
-        self.refused(ops.image_place, "both heights are the same", **{**given, "heights": "3,3"})
-        self.refused(ops.image_place, "heights must be a number", **{**given, "kind": "MAP"})
+        self.refused(ops.image_place, "both elevations are the same", **{**given, "heights": "3,3"})
+        self.refused(ops.image_place, "elevations must be a number", **{**given, "kind": "MAP"})
         self.refused(ops.image_place, "second point must be two numbers", **{**given, "second": "east"})
         self.refused(
             ops.image_place, "differ in x and in y", **given, first_pixel=(3, 3), second_pixel=(3, 9)

@@ -51,7 +51,7 @@ def test_shapes_that_count_from_an_origin(tmp_path):
     for path, more in ((plain, []), (near, ["--origin", "-1e3,2000,0.5"])):
         done = run("--export", path, *more)
         assert done.returncode == 0, done.stderr
-    assert f"{near}: coordinates count from -1000.0, 2000.0, 0.5" in done.stdout
+    assert f"{near}: coordinates are relative to -1000.0, 2000.0, 0.5" in done.stdout
     one, two = (read_mesh(path).vertices for path in (plain, near))
     assert two == pytest.approx(one - (-1000, 2000, 0.5), abs=1e-9)
     done = run("--export", tmp_path / "m.vtu", "--origin", "0,0,0")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`realmodel check-data` prints what is wrong with the data of a project."""
+"""`realmodel check-data` prints the problems in the data of a project."""
 
 import pytest
 from realmodel.batch.command import main

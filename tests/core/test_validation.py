@@ -353,7 +353,7 @@ def test_check_model_keeps_a_wrong_model_from_being_written(main, monkeypatch, l
 def test_the_report_of_a_wrong_model_says_so(main, monkeypatch, layers, tmp_path, capsys):
     spoil_builds(monkeypatch)
     assert main([str(layers([0, 1])), "--report", str(tmp_path / "r.json")]) == 0
-    assert "the model fails its check" in capsys.readouterr().out
+    assert "the model fails its validation" in capsys.readouterr().out
     report = json.loads((tmp_path / "r.json").read_text())
     assert report["validation"]["passed"] is False
     assert any(warning["kind"] == "validation" for warning in report["warnings"])

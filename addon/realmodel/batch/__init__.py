@@ -9,10 +9,10 @@ cuts           sections, fences, boreholes and cuts
 probabilities  the same of ensembles
 interruption   Ctrl-C while Blender renders or saves
 table          the table of volumes
-check_data     what is wrong with the data of a project
+check_data     the problems in the data of a project
 terminal       the progress bar
 
-`command`, `options` and this module import nothing of NumPy: `command` says itself what is missing.
+`command`, `options` and this module import nothing of NumPy: `command` reports what is missing.
 """
 
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`realmodel check-data`: what is wrong with the data of a project, file by file; nothing is built."""
+"""`realmodel check-data`: lists the problems in the data of a project by file, without a build."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     """The options of `check-data`. Raises SystemExit with status 2 where they are wrong."""
     parser = argparse.ArgumentParser(
         prog=f"{PROGRAM} check-data",
-        description="Prints what is wrong with the data of a project, by file and line, and what is done "
-        "about it. Exit status: 0 where nothing is left out, else 1.",
+        description="Prints the problems in the data of a project by file and line, and how each is treated. "
+        "Exit status: 1 if data are left out, else 0.",
         allow_abbrev=False,
     )
     parser.add_argument("project", metavar="PROJECT", type=Path, help="project file (.toml)")

@@ -67,10 +67,10 @@ def _not_importable(error: ImportError) -> str:
     version = f"Python {sys.version_info.major}.{sys.version_info.minor}"
     if IN_BLENDER:
         return (
-            f"Blender's {version} cannot run this: {error}; it looks for modules under {sys.prefix}, of the "
-            "python3 that comes first on PATH: install NumPy there, or start Blender with another PATH"
+            f"Blender's {version} cannot run this: {error}; it uses the modules under {sys.prefix}, of "
+            "the first python3 on PATH: install NumPy there, or start Blender with another PATH"
         )
-    return f"{version} cannot run this: {error}; it takes Python 3.11 or newer with NumPy"
+    return f"{version} cannot run this: {error}; it needs Python 3.11 or newer with NumPy"
 
 
 def _arguments() -> list[str]:

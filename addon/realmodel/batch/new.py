@@ -21,29 +21,29 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog=f"{PROGRAM} new",
         usage=_USAGE,
-        description="Writes a project that builds at once: its file with the reason of each choice, the "
-        "tables, and proposal.json. FILE has boreholes with all their tables. Options of a build, such as "
-        "--export, build the project as well.",
+        description="Proposes a project from data, ready to build: its file with the reason of each choice, "
+        "the tables, and proposal.json. FILE has boreholes with all their tables. With options of a build, "
+        "such as --export, the project is also built.",
         allow_abbrev=False,
     )
     for table in _TABLES:
-        parser.add_argument(f"--{table}", type=Path, metavar="F", help=f"the table of {table} of boreholes")
-    parser.add_argument("--block", metavar="NAME", help="the column of boreholes that names units")
+        parser.add_argument(f"--{table}", type=Path, metavar="F", help=f"table of the {table} of boreholes")
+    parser.add_argument("--block", metavar="NAME", help="column with the units, in tables of boreholes")
     parser.add_argument("--map", type=Path, metavar="F", help="polygons of units: a geological map")
-    parser.add_argument("--map-layer", metavar="NAME", help="the layer of the map")
+    parser.add_argument("--map-layer", metavar="NAME", help="layer of the map")
     parser.add_argument(
-        "--map-block", metavar="NAME", help="the attribute that names units (default: found by its name)"
+        "--map-block", metavar="NAME", help="attribute with the units (default: detected by its name)"
     )
     parser.add_argument(
-        "--ground", type=Path, metavar="F", help="heights of the ground: raster, points or mesh"
+        "--ground", type=Path, metavar="F", help="elevations of the ground: raster, points or mesh"
     )
-    parser.add_argument("--dips", type=Path, metavar="F", help="the table of dips")
-    parser.add_argument("--region", type=Path, metavar="F", help="the outline (default: around the data)")
-    parser.add_argument("--units", metavar="UNIT", default="m", help="of lengths in the model (default: m)")
+    parser.add_argument("--dips", type=Path, metavar="F", help="table of dips")
+    parser.add_argument("--region", type=Path, metavar="F", help="outline (default: around the data)")
+    parser.add_argument("--units", metavar="UNIT", default="m", help="unit of lengths (default: m)")
     parser.add_argument(
-        "--crs", metavar="CODE", help="the coordinate system, EPSG:25832 (default: as files name it)"
+        "--crs", metavar="CODE", help="coordinate system, such as EPSG:25832 (default: from the files)"
     )
-    parser.add_argument("--out", type=Path, metavar="FOLDER", required=True, help="the folder, a new one")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", required=True, help="a new folder")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     options, rest = parser.parse_known_args(arguments)
     is_file = rest and not rest[0].startswith("-")
@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> None:
     require_new(options.out)
     tables = {name: getattr(options, name) for name in _TABLES if getattr(options, name) is not None}
     if options.file is not None and tables:
-        raise UsageError(f"{options.file} holds all tables, so --{next(iter(tables))} is one too many")
+        raise UsageError(f"{options.file} holds all tables; leave out --{next(iter(tables))}")
     map_keys = {"file": options.map, "layer": options.map_layer, "block": options.map_block}
     map_keys = {key: value for key, value in map_keys.items() if value is not None}
     if map_keys and options.map is None:

@@ -121,7 +121,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class Option(NamedTuple):
-    """An option of the command line. help: with names of `_Parser` in the place of endings.
+    """An option of the command line. help: with names of `_Parser` instead of endings.
 
     value: how the help shows its value, or the values to choose from; "" where it has none. default: [] where
     it may be given several times. needs: it goes with one of these options only. ending: of its file.
@@ -169,7 +169,7 @@ OPTIONS = (
     Option(
         "export",
         "F",
-        "write the model to F, whose ending says the format ({model}); may be given several times",
+        "write the model to F in the format of its extension ({model}); may be repeated",
         Path,
         [],
     ),
@@ -183,40 +183,39 @@ OPTIONS = (
     Option(
         "cell-size",
         "X[,Y[,Z]]",
-        "the cells of regular grids by --export and --cut ({cell_size})",
+        "size of the cells of regular grids by --export and --cut ({cell_size})",
         _sizes,
     ),
     Option(
         "grid-layers",
         "N",
-        "the layers of each block in corner-point grids by --export ({grid_layers}); default: 1",
+        "layers of each block in corner-point grids by --export ({grid_layers}); default: 1",
         _layers,
         needs=("export",),
     ),
     Option(
         "grid-azimuth",
         "A",
-        "the direction of their columns, degrees clockwise from north ({grid_azimuth}); default: 0",
+        "direction of their columns, degrees clockwise from north ({grid_azimuth}); default: 0",
         _angle,
         needs=("export",),
     ),
     Option(
         "contour-interval",
         "H",
-        "the distance of contours in maps by --export and --cut ({contour_interval})",
+        "distance of contours in maps by --export and --cut ({contour_interval})",
         _length,
     ),
     Option(
         "cell-tolerance",
         "T",
-        "clean the cells by --export and --cut ({tolerance}): T is the least size",
+        "clean the cells by --export and --cut ({tolerance}): remove details smaller than T",
         _length,
     ),
     Option(
         "origin",
         "X,Y,Z",
-        "the place from which the coordinates of shapes by --export count ({origin}), for programs with "
-        "short numbers",
+        "origin of the coordinates of shapes by --export ({origin}), for programs with 32-bit numbers",
         _place,
         needs=("export",),
     ),
@@ -225,8 +224,8 @@ OPTIONS = (
     Option(
         "section",
         "X,Y,Z,NX,NY,NZ=F",
-        "write the section by a plane (point, normal) to F, a drawing or polygons ({section}); any number of "
-        "times",
+        "write the section by a plane (point, normal) to F, a drawing or polygons ({section}); may be "
+        "repeated",
         default=[],
     ),
     Option(
@@ -238,27 +237,27 @@ OPTIONS = (
     Option(
         "juxtaposition",
         "FAULT=F",
-        "draw what lies on both sides of a fault, and its throw, to F ({drawing}); any number of times",
+        "draw the blocks on both sides of a fault, and its throw, to F ({drawing}); may be repeated",
         default=[],
     ),
     Option(
         "stereonet",
         "[NAME=]F",
         "draw the dips of the project, or those of a surface, block, series, rock mass or fault, to F "
-        "({drawing}), with their mean plane and fold axis; any number of times",
+        "({drawing}), with their mean plane and fold axis; may be repeated",
         default=[],
     ),
     Option(
         "net",
         ("equal_area", "equal_angle"),
-        "of --stereonet: equal area (Schmidt, default) or equal angle (Wulff)",
+        "net of --stereonet: equal area (Schmidt, default) or equal angle (Wulff)",
         needs=("stereonet",),
     ),
     Option(
         "borehole",
         "X,Y=F",
-        "write what a vertical borehole at a position in plan meets to F ({borehole}); "
-        "X,Y,Z,AZIMUTH,DIP,LENGTH=F: what a planned hole meets, by depth along it",
+        "write the blocks in a vertical borehole at a position in plan to F ({borehole}); "
+        "X,Y,Z,AZIMUTH,DIP,LENGTH=F: the blocks in a planned hole, by depth along it",
         default=[],
     ),
     Option(
@@ -270,21 +269,21 @@ OPTIONS = (
     Option(
         "sheet-size",
         "SIZE",
-        "its paper, A4 to A0, wide, or high as A3-portrait (default: A3)",
+        "paper of the sheets: A4 to A0 for landscape, A4-portrait to A0-portrait (default: A3)",
         _paper,
         needs=("sheet",),
     ),
     Option(
         "sheet-scale",
         "N",
-        "the scale 1 : N of its map and sections (default: the largest round one at which they fit)",
+        "scale 1 : N of the map and sections (default: the largest round scale at which they fit)",
         _length,
         needs=("sheet",),
     ),
     Option(
         "exaggeration",
         "X",
-        "exaggerate the heights of drawings by --section, --fence, --juxtaposition and --sheet X times",
+        "vertical exaggeration of drawings by --section, --fence, --juxtaposition and --sheet",
         _factor,
         1.0,
         needs=("section", "fence", "juxtaposition"),
@@ -308,23 +307,24 @@ OPTIONS = (
         "cut",
         "CUTTER=BELOW,ABOVE",
         "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK, "
-        "MODEL.npz:BLOCK or :BLOCK (of the model itself) and write its halves as --export does; one may be "
-        "left out",
+        "MODEL.npz:BLOCK or :BLOCK (of this model), and write the halves as --export does; one file may be "
+        "omitted",
         default=[],
     ),
     Option(
         "mesh",
         "FILE",
-        "write a mesh for simulation to FILE, whose ending says the format ({mesh}); may be given several "
-        "times",
+        "write a mesh for simulation to FILE in the format of its extension ({mesh}); may be repeated",
         Path,
         [],
     ),
-    Option("mesh-edge", "L", "its edge length in plan (default: 1/50 of the model)", _length, needs=_MESH),
+    Option(
+        "mesh-edge", "L", "edge length of the mesh in plan (default: 1/50 of the model)", _length, needs=_MESH
+    ),
     Option(
         "mesh-thickness",
         "T",
-        "layers end where they are thinner (default: 1/10 of the edge length)",
+        "minimum thickness: layers end where they are thinner (default: 1/10 of the edge length)",
         _length,
         needs=_MESH,
     ),
@@ -332,21 +332,21 @@ OPTIONS = (
     Option(
         "mesh-layer-thickness",
         "H",
-        "divide blocks into layers no thicker than H (with --mesh-layers: into N at most)",
+        "divide blocks into layers of thickness H or less (with --mesh-layers: at most N layers)",
         _length,
         needs=_MESH,
     ),
     Option(
         "mesh-elements",
         ("prisms", "tetrahedra"),
-        "prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone, which "
-        "models with bodies and inclined faults and halves of cuts need",
+        "prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra only, as required "
+        "for models with bodies or inclined faults and for halves of cuts",
         needs=_MESH,
     ),
     Option(
         "ensemble",
         "N",
-        "build N realizations on several processes by Dask and write their volumes to the folder --out; "
+        "build N realizations with Dask and write their volumes to the folder --out; "
         "--section, --fence, --borehole, and --export (a grid) write the probability of each block",
         _whole,
         in_blender=False,
@@ -355,37 +355,37 @@ OPTIONS = (
     Option(
         "tiles",
         "W,H",
-        "build the model in tiles of this width and height by Dask, and write it to the folder --out",
+        "build the model with Dask in tiles of this width and height, and write it to the folder --out",
         _tile_size,
         in_blender=False,
         beside=("out", "scheduler", "cells", "export-field"),
     ),
-    Option("out", "FOLDER", "the folder of --ensemble or --tiles", Path, needs=_OF_DASK),
-    Option("seed", "S", "of the random numbers (default: 0)", _whole, needs=("ensemble",)),
+    Option("out", "FOLDER", "folder of --ensemble or --tiles", Path, needs=_OF_DASK),
+    Option("seed", "S", "seed of the random numbers (default: 0)", _whole, needs=("ensemble",)),
     Option(
         "correlation",
         "C",
-        "of the errors of each surface with those of the next older one, -1 to 1 (default: 0)",
+        "correlation of the errors of each surface and the next older one, -1 to 1 (default: 0)",
         _correlation,
         needs=("ensemble",),
     ),
     Option(
         "scheduler",
         "ADDRESS",
-        "of a running scheduler of Dask (default: the processors of this machine)",
+        "address of a running Dask scheduler (default: all processors of this machine)",
         needs=_OF_DASK,
     ),
-    Option("stage", "M", "only up to surface M, counted from 0", _whole),
+    Option("stage", "M", "build only the surfaces up to M, counted from 0", _whole),
     Option(
         "cells",
         ("columns", "blocks"),
-        "columns under facets (default), or one cell for each connected part of a block",
+        "one cell for each facet (default), or one cell for each connected component of a block",
     ),
-    Option("threads", "N", "0 (default): all that there are", _whole, 0),
+    Option("threads", "N", "number of threads; 0 (default): all", _whole, 0),
     Option(
         "memory",
         "GB",
-        "what building may take (default: what is free); what would take more is refused at once",
+        "memory limit of the build (default: the free memory); a build that needs more is refused",
         _gigabytes,
     ),
     Option(
@@ -400,22 +400,22 @@ OPTIONS = (
     Option(
         "surfaces-only",
         "",
-        "stop after the heights: --export then writes the surfaces with height, variance and distance",
+        "stop after the interpolation: --export writes the surfaces with elevation, variance and distance",
         beside=("export", "report", "stage", "cells", "threads", "cell-size", "contour-interval"),
     ),
     Option(
         "eroded",
         "",
-        "add the volume that each surface removed and each body took of each block to table and report",
+        "add to the table and the report how much of each block each surface and each body removed",
     ),
     Option(
         "cross-validate",
         "N",
-        "leave the boreholes out in N groups, and print what models without them have where they are; "
+        "cross-validation by boreholes in N groups: print how well models without a group predict it; "
         "--report lists each hole",
         _groups,
     ),
-    Option("check-model", "", "prove the model before anything is written, and print the proof"),
+    Option("check-model", "", "validate the model before anything is written, and print the result"),
     Option("quiet", "", "print nothing but errors"),
 )
 
@@ -431,7 +431,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "project",
         metavar="PROJECT",
         type=Path,
-        help="project file (.toml), or a model that was built before (.npz)",
+        help="project file (.toml), or a model built before (.npz)",
     )
     for option in OPTIONS:
         option.add_to(parser)

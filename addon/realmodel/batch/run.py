@@ -104,15 +104,15 @@ def run(options: argparse.Namespace) -> None:
             ignore_interruption()
         finally:
             progress.close()
-    proof = [f"{validation}\n"] if options.check_model else []
-    lines = [*proof, volume_table(model, erosion), *lines]
+    validated = [f"{validation}\n"] if options.check_model else []
+    lines = [*validated, volume_table(model, erosion), *lines]
     if any(rock.observed is not None for rock in model.project.rocks):
         lines.append(f"observed: {model.observed().summary()}")
     if holes is not None:
         lines += [f"cross-validation: {holes.summary()}", left_out_table(holes)]
     if options.origin is not None:
         names = map(str, _with_option(options.export, "origin"))
-        lines.append(f"{', '.join(names)}: coordinates count from {', '.join(map(str, options.origin))}")
+        lines.append(f"{', '.join(names)}: coordinates are relative to {', '.join(map(str, options.origin))}")
     lines += [wanted.line(mesh) for wanted in mesh_requests]
     if cells is not None:
         lines.append(cleaned_line(cells))
@@ -170,7 +170,10 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
     print(forecast.table(), flush=True)
     limit = forecast.available if options.memory is None else options.memory
     if forecast.memory > limit:
-        print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
+        print(
+            "a build would be refused: it needs more memory than available (see --cells, --memory)",
+            flush=True,
+        )
 
 
 @contextlib.contextmanager
@@ -232,12 +235,12 @@ def _left_out_holes(options: argparse.Namespace, model, progress):
 def _erosion(options: argparse.Namespace, model, progress):
     if not options.eroded:
         return None
-    return model.eroded(progress=lambda _share, text: progress(1.0, f"what was eroded: {text}"))
+    return model.eroded(progress=lambda _share, text: progress(1.0, f"eroded volumes: {text}"))
 
 
 def _validation(options: argparse.Namespace, model, progress):
-    """The proof of the model, if it is requested or part of the report. If a requested one fails, nothing is
-    written."""
+    """The validation of the model, if it is requested or part of the report. If a requested one fails,
+    nothing is written."""
     if not options.check_model and options.report is None:
         return None
     report = model.validate(
@@ -252,10 +255,10 @@ def _validation(options: argparse.Namespace, model, progress):
         if not options.quiet:
             print(report, flush=True)
         raise BuildFailed(
-            f"the model fails its check: {report.failure()}; nothing was written; this is a defect of "
+            f"the model fails its validation: {report.failure()}; nothing was written; this is a defect of "
             "RealModel: please report it with the project"
         )
-    text = f"the model fails its check: {report.failure()}; the report says more"
+    text = f"the model fails its validation: {report.failure()}; see the report"
     model.warnings.append(BuildWarning(text, "validation"))
     return report
 
@@ -413,7 +416,7 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 
 @contextlib.contextmanager
 def _named(path, target: Path):
-    """Names the user's path in errors of writing, in the place of the temporary one."""
+    """Names the user's path in errors of writing, instead of the temporary one."""
     try:
         yield
     except OutputFailed as error:

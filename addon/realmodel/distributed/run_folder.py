@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder of a model in tiles while it is built, and what the table says of the tiles in it."""
+"""The folder of a model in tiles while it is built, and the table of its tiles."""
 
 from __future__ import annotations
 

@@ -194,8 +194,8 @@ class _Drawing(InViewport):
 
 
 class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
-    """Draw contacts of the active surface: click places, or draw a line with the button held, on the section
-    plane, or on a placed image that is the active object. The points are added to those of the surface"""
+    """Draw contacts of the active surface on the section plane, or on a placed image that is the active
+    object: click points, or draw a line with the button held. The contacts are added to the surface"""
 
     bl_label = "Draw Contacts"
     needs = (a_surface, object_mode)
@@ -208,8 +208,7 @@ class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
 
 
 class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):
-    """Draw a stick of the active fault, as Draw Contacts does: the surface of the fault is fitted through its
-    sticks"""
+    """Draw a stick of the active fault. The surface of the fault is fitted through its sticks"""
 
     bl_label = "Draw Stick"
     needs = (a_fault, object_mode)
@@ -249,7 +248,7 @@ def _numbers(text, count, what):
 
 class REALMODEL_OT_image_place(Reporting, bpy.types.Operator, ImportHelper):
     """Place an image by the coordinates of two of its points: a scanned section upright along a line, a map
-    at a height. It is stored in the .blend, and can be drawn on while it is the active object"""
+    at an elevation. The .blend stores it. You can draw on it while it is the active object"""
 
     bl_label = "Place Image"
     needs = (object_mode,)
@@ -271,9 +270,8 @@ class REALMODEL_OT_image_place(Reporting, bpy.types.Operator, ImportHelper):
     first: StringProperty(name="First Point", description="x and y of the first point, model coordinates")
     second: StringProperty(name="Second Point", description="x and y of the second point, model coordinates")
     heights: StringProperty(
-        name="Heights",
-        description="Of a section the elevations of the first and of the second point; of a map the one at "
-        "which it lies",
+        name="Elevations",
+        description="Section: the elevations of the first and of the second point. Map: its elevation",
     )
     first_pixel: _pixel("First Pixel")
     second_pixel: _pixel("Second Pixel")
@@ -282,7 +280,7 @@ class REALMODEL_OT_image_place(Reporting, bpy.types.Operator, ImportHelper):
         path = chosen_path(self, "the image")
         require_file(path)
         is_section = self.kind == "SECTION"
-        heights = _numbers(self.heights, 2 if is_section else 1, "heights")
+        heights = _numbers(self.heights, 2 if is_section else 1, "the elevations")
         placing = placed_images.Placing(
             (tuple(self.first_pixel), tuple(self.second_pixel)),
             _numbers(self.first, 2, "the first point"),

@@ -94,7 +94,7 @@ class Replacing(Reporting):
 
 
 class REALMODEL_OT_new(Replacing, bpy.types.Operator):
-    """Begin an empty model in this scene. The blocks of an earlier one are removed, your own meshes stay"""
+    """Begin an empty model in this scene, and remove the blocks of the earlier one. Your own meshes stay"""
 
     bl_label = "New Model"
 
@@ -106,8 +106,7 @@ class REALMODEL_OT_new(Replacing, bpy.types.Operator):
 
 
 class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
-    """Open a RealModel project file (TOML), or a model that was built (NPZ), in this scene, in place of the
-    model that is there"""
+    """Open a RealModel project file (TOML), or a built model (NPZ), in this scene, in place of its model"""
 
     bl_label = "Open RealModel Project"
 
@@ -194,7 +193,7 @@ def _open_model(context, path):
 
 
 class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
-    """Open one of the examples that come with RealModel, and build it"""
+    """Open and build one of the examples that come with RealModel"""
 
     bl_label = "Open Example"
 
@@ -215,7 +214,7 @@ class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
 
 
 class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
-    """Save the model as a project file (TOML) with its library, meshes and points beside it: build_model.py
+    """Save the model as a project file (TOML), with its library, meshes and points beside it. build_model.py
     builds the same model from it"""
 
     bl_label = "Save RealModel Project"
@@ -240,7 +239,7 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
 
 
 class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
-    """Make a model with one rock mass from the selected mesh objects: the lowest is taken as the oldest"""
+    """Make a rock mass from the selected mesh objects. The lowest becomes the oldest surface"""
 
     bl_label = "Model from Selected Meshes"
     needs = (not_building, selected_sheets)
@@ -334,10 +333,10 @@ def _help_menu(self, _context):
 def _manual_map():
     """Links for F1 and "Online Manual" over a button of the tab."""
     page = guide()
-    folder = "" if page is None else page.resolve().parent.as_uri() + "/"
-    tour = "tour.html" if folder and page.suffix == ".html" else "tour.md"
+    folder = "" if page is None else page.resolve().parents[1].as_uri() + "/reference/"
+    panel = f"panel{page.suffix}" if folder else ""
     patterns = ("bpy.ops.realmodel.*", "bpy.types.realmodel*")
-    return folder, tuple((pattern, tour) for pattern in patterns) if folder else ()
+    return folder, tuple((pattern, panel) for pattern in patterns) if folder else ()
 
 
 def register():

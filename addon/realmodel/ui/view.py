@@ -240,7 +240,7 @@ class REALMODEL_PT_view_coordinates(OfABuiltModel, FoldedPanel, bpy.types.Panel)
 def _lines(scene, place):
     yield "East (x)", f"{place.x:.3f}"
     yield "North (y)", f"{place.y:.3f}"
-    yield "Height (z)", f"{place.z:.3f}"
+    yield "Elevation (z)", f"{place.z:.3f}"
     yield "Block", place.block
     yield "Property", place.property or (str(place.property_id) if place.property_id else "none")
     yield "Thickness", units.length_text(scene, place.thickness)

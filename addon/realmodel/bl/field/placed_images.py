@@ -50,7 +50,7 @@ class Placing:
             what = "the pixels of a section are one above the other, or at one height"
             raise InputRefused(what, advice="give pixels that differ in x and in y")
         if low == high:
-            raise InputRefused("both heights are the same", advice="give two heights of the section")
+            raise InputRefused("both elevations are the same", advice="give two elevations of the section")
         right = np.append(way, 0.0) / (x2 - x1)
         up = np.array([0.0, 0.0, (high - low) / (y2 - y1)])
         corner = np.append(first, low) - x1 * right - y1 * up

@@ -20,9 +20,7 @@ from .svg import write_svg
 _OPTIONS = ("exaggeration", "hole_width", "hole_column", "net")
 DRAWINGS = (
     Format(".svg", "SVG", ("drawing",), "Scalable drawing, for documents and web pages", write_svg, _OPTIONS),
-    Format(
-        ".pdf", "PDF", ("drawing",), "Page to print, with texts that can be searched", write_pdf, _OPTIONS
-    ),
+    Format(".pdf", "PDF", ("drawing",), "Page to print, with searchable text", write_pdf, _OPTIONS),
     Format(".dxf", "DXF", ("drawing",), "Lines on layers, for CAD programs", write_dxf, _OPTIONS),
     Format(".png", "PNG", ("drawing",), "Picture, 200 dots per inch", write_png, _OPTIONS),
 )

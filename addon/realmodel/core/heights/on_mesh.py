@@ -129,7 +129,7 @@ def within_bounds(task: Task, z: np.ndarray, at_border: np.ndarray) -> np.ndarra
             bound = heights_of(task, settings[option], task.nodes, option)
             z = np.where(np.isnan(z), z, limit(z, bound))
     if settings.get("border") is not None:
-        assert task.triangles is not None  # heights for a border are asked for on a mesh
+        assert task.triangles is not None  # heights for a border are requested on a mesh
         z = np.where(border_nodes(task.triangles, len(task.nodes)), at_border, z)
     return z
 

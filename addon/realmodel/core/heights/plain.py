@@ -161,8 +161,8 @@ def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) 
 
 def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     """The surface `to` and a thickness above it: `thickness`, or where it is not given what the points show,
-    spread by `thickness_method`, which run_method runs; upward, or perpendicular to that surface where the
-    task says so."""
+    spread by `thickness_method`, which run_method runs; upward, or perpendicular to that surface, by the
+    task."""
     below = heights_of(task, task.settings["to"], task.nodes, "to")
     thickness = task.settings["thickness"]
     if thickness is not None:

@@ -224,7 +224,7 @@ def _check_fault(project: Project, fault: Fault) -> None:
 
 
 def _check_trace(project: Project, fault: Fault, refuse: Refuse) -> None:
-    """Refuses a trace without a dip, and one on a surface that is not there."""
+    """Refuses a trace without a dip, and one on a surface that does not exist."""
     if fault.trace is not None and fault.trace_file is None and fault.dip is None:
         raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
     if isinstance(fault.elevation, str):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The proof of a model: the tests of docs/dev/geometry.md, as a report for its reviewer."""
+"""The validation of a model: the tests of docs/dev/geometry.md, with a report."""
 
 from __future__ import annotations
 
@@ -256,7 +256,7 @@ def _wrong_arrays(model: ModelData) -> list[str]:
     triangles = model.surface_triangles
     limit = np.repeat(counts, np.diff(model.surface_triangle_offsets))
     if len(limit) != len(triangles) or (triangles < 0).any() or (triangles >= limit[:, None]).any():
-        wrong.append("surface_triangles name vertices that are not there")
+        wrong.append("surface_triangles name vertices that do not exist")
     return wrong
 
 

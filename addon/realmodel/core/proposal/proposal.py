@@ -231,7 +231,7 @@ def _rules(data: _Data, out: Sorted, order: UnitOrder) -> list[RuleChoice]:
 
 
 class _Maker:
-    """Makes the project of a proposal, and says why in it."""
+    """Makes the project of a proposal, with the reasons."""
 
     def __init__(self, data: _Data, out: Sorted, proposal: Proposal, units: str):
         self._data, self._out, self._proposal, self._units = data, out, proposal, units
@@ -414,8 +414,11 @@ def _warn(proposal: Proposal, data: _Data) -> None:
             f"'{conflict.lower}', against the order of all holes; it is not used"
         )
     for lens in proposal.lenses:
+        hole, part = lens.parts[0]
+        one = f"hole '{hole}', depth {part.depth:.9g} to {part.end:.9g} (or a code is wrong there)"
         found.append(
-            f"'{lens.unit}' is a lens in '{lens.host}' in {counted(len(lens.parts), 'hole')}: the body "
+            f"'{lens.unit}' is a lens in '{lens.host}' in "
+            f"{one if len(lens.parts) == 1 else counted(len(lens.parts), 'hole')}: the body "
             f"'{lens.name}'; where it ends between holes is a guess"
         )
     for repeat in proposal.repeats:

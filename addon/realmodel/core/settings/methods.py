@@ -135,7 +135,7 @@ def _anisotropy(prefix: str, tip: str) -> Setting:
             ),
         },
         switch=("Anisotropy", tip),
-        unset="found with a variogram that is fitted, else none",
+        unset="fitted with the variogram; none if that is given",
         more="`{ratio = 2, azimuth = 30}`: the range is longest along the azimuth, in degrees clockwise from "
         "north (+y), and `ratio` times shorter across",
     )
@@ -198,7 +198,7 @@ _EXTRAPOLATE = {
         "Extrapolation",
         "What happens beyond the points",
         EXTRAPOLATE,
-        more='outside their convex hull: `"nearest"` takes the nearest point\'s height, `"none"` gives '
+        more='outside their convex hull: `"nearest"` takes the nearest point\'s elevation, `"none"` gives '
         "none: the surface ends there",
     )
 }
@@ -240,7 +240,7 @@ METHODS: dict[str, Method] = {
         leaves_one_out=True,
         is_local=True,
         is_constrained=True,
-        tamed_by='its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
+        tamed_by='its drift continues beyond them: use a simpler one, or extrapolate = "nearest"',
     ),
     "idw": Method(
         "Inverse Distance",
@@ -291,7 +291,7 @@ METHODS: dict[str, Method] = {
                 low=1e-9,
                 above=0.0,
                 switch=("Approximate Points", "The surface need not pass exactly through the points"),
-                unset="points hold",
+                unset="passes through the points",
             ),
             "border": _other_surface("Border", "Elevation at the border of the region. ", "free"),
             "above": _other_surface("Stay Above", "", "no bound"),
@@ -374,7 +374,7 @@ METHODS: dict[str, Method] = {
                 "Parallel To",
                 "Name of another surface of this rock mass, or an elevation",
                 check=check.surface,
-                unset="needed",
+                unset="required",
             ),
             "thickness": Setting(
                 None,

@@ -21,7 +21,7 @@ PARALLEL, FREE = "parallel", "free"
 THICKNESSES = {  # of the beds of a field
     BY_DATA: (
         "Automatic",
-        "Beds keep their thickness away from the data if the data, some of them left out, say that they do",
+        "Beds keep their thickness away from the data if this predicts left-out data better",
     ),
     PARALLEL: (
         "Parallel",

@@ -180,7 +180,7 @@ class Variogram:
 
 
 def _longest(structures: Sequence[Structure]) -> float:
-    """The longest range, of waves where there is nothing else: they go on far beyond what one shows."""
+    """The longest range, of waves where there is nothing else: they continue far beyond what one shows."""
     return max([part.range for part in structures if part.model != "wave"] or [structures[0].range])
 
 

@@ -56,7 +56,7 @@ def needed_surfaces(rock: Rock, number: int) -> list[int]:
 
 
 def counts_by_node(rock: Rock, number: int, surface: Surface, data: SurfaceData) -> bool:
-    """Whether heights of a surface, in the place of one of a rock mass, follow at each node from points near
+    """Whether heights of a surface, instead of one of a rock mass, follow at each node from points near
     it alone, without other surfaces and nodes."""
     method, settings = surface.method_options()
     is_tied = surface.tie and (len(data.bounds) > 0 or len(data.tied_points(surface)) > 0)

@@ -3,7 +3,7 @@
 
 A block is an IfcGeotechnicalStratum of the IfcGeomodel; each connected part of it is a closed set of
 triangles. Where blocks meet, or meet the outside on a surface, an IfcVirtualElement has the triangles that
-both have, and an IfcRelConnectsWithRealizingElements says whose boundary it is (an IfcRelSpaceBoundary takes
+both have, and an IfcRelConnectsWithRealizingElements connects the two blocks (an IfcRelSpaceBoundary takes
 spaces alone). A borehole is an IfcBorehole of strata.
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what is wrong with the intervals of boreholes, mends it or leaves it out, and lists it."""
+"""Finds faults in the intervals of boreholes, repairs them or leaves the rows out, and lists them."""
 
 from __future__ import annotations
 

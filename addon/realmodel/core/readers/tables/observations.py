@@ -288,7 +288,7 @@ KINDS = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Bounds(ShortRepr):
-    """Heights that a surface lies at or above, or at or below.
+    """Elevations at or above which, or at or below which, a surface lies.
 
     places: (N, 3) float64, model units; with faults a bound counts in the compartment of its place. is_lower:
     (N,) bool, True where the surface lies at the place or above it, False at it or below; of a level set,
@@ -339,8 +339,8 @@ class Bounds(ShortRepr):
         )
 
     def along(self, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Places (P, 3) at which bounds with ways are looked at, no farther apart than a step, but not the
-        ends of a way; and (P,) the row of each."""
+        """Places (P, 3) at which bounds with ways are tested, at most a step apart, without the ends of a
+        way; and (P,) the row of each."""
         if self.ends is None:
             return self.places, np.arange(len(self))
         way = self.ends - self.places

@@ -299,7 +299,7 @@ class ReadyMesh:
         return False
 
     def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
-        """Sheets of another family as they are: they go on by heights of their vertices."""
+        """Sheets of another family as they are: they continue by heights of their vertices."""
         return sheets
 
     def adopt(self, sheets: Sheets, others: Sheets) -> None:
