@@ -47,10 +47,10 @@ for name, throw in (
     print(f"{name:18} throw {throw:4.1f} m on average (true: {THROW})")
 
 view = Picture(toward=(0.35, -1.0, 0.45))
-view.blocks(model.clip("y", invert=False))  # the northern half, and the points within 100 m of it
+view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m before it
 sheet = model.surfaces_to_pyvista()["Main"].clip_box((0, 1000, 200, 300, -450, -20), invert=False)
 view.surface(sheet, "fault", opacity=0.5)
 for surface in surfaces[:3]:
-    near = surface.points[surface.points[:, 1] > 200]
-    view.points(near, "points, in the color of the block below", surface.block)
+    near = (surface.points[:, 1] > 200) & (surface.points[:, 1] < 300)
+    view.points(surface.points[near], "points, in the color of the block below", surface.block)
 view.save()

@@ -57,8 +57,9 @@ for block in model.blocks:
     print(f"{block.name:9} {block.volume / 1e6:6.2f} million m3, {block.components} part(s)")
 
 view = Picture()
-view.blocks(model.clip("y", invert=False))  # the northern half
+view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m before it
 for surface in surfaces:
-    near = surface.points[surface.points[:, 1] > 250]
-    view.points(near, "points, in the color of the block below", surface.block)
+    y = surface.points[:, 1]
+    near = (y > 250) & ((y < 350) | (surface.name == "ground"))
+    view.points(surface.points[near], "points, in the color of the block below", surface.block)
 view.save()

@@ -46,8 +46,9 @@ for block in model.blocks:
 print("closed, without gaps or overlaps:", model.validate().passed)
 
 view = Picture(exaggeration=4)
-view.blocks(model.clip("y", invert=False))  # the northern half, and the points within 100 m of it
+view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m before it
 for surface in surfaces:
-    near = surface.points[surface.points[:, 1] > 200]
-    view.points(near, "points, in the color of the block below", surface.block)
+    y = surface.points[:, 1]
+    near = (y > 200) & ((y < 300) | (surface.name == "ground"))
+    view.points(surface.points[near], "points, in the color of the block below", surface.block)
 view.save()
