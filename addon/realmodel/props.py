@@ -67,7 +67,7 @@ class RealModelProperty(
     has_color: BoolProperty(options={"HIDDEN"})
     look: EnumProperty(
         name="Look",
-        description="How the rock looks in rendered pictures",
+        description="Appearance of the rock in rendered pictures",
         items=[
             (library_rows.NO_LOOK, "As It Is", "The material stays as it is"),
             *looks.ITEMS,
@@ -91,10 +91,10 @@ class RealModelBlock(bpy.types.PropertyGroup):
     share: FloatProperty(name="Share", subtype="PERCENTAGE", options=set())
     cells: IntProperty(name="Cells", options=set())
     components: IntProperty(
-        name="Components", description="Number of separate parts of the block", options=set()
+        name="Components", description="Number of connected parts of the block", options=set()
     )
     slivers: IntProperty(
-        name="Slivers", description="How many of the parts have less than 0.1 % of its volume", options=set()
+        name="Slivers", description="Number of parts with less than 0.1 % of its volume", options=set()
     )
     object: PointerProperty(type=bpy.types.Object)
 
@@ -108,9 +108,9 @@ class RealModelMisfit(bpy.types.PropertyGroup):
     source: StringProperty(name="Source", description="The hole, or the file and the row")
     hole: StringProperty(name="Hole")
     depth: StringProperty(name="Depth", description="Along the hole")
-    says: StringProperty(name="Says", description="What the datum says")
-    has: StringProperty(name="Has", description="What the model has there, or why the datum is not used")
-    by: StringProperty(name="By", description="How much is between them")
+    says: StringProperty(name="Says", description="The value of the datum")
+    has: StringProperty(name="Has", description="The value of the model, or why the datum is not used")
+    by: StringProperty(name="By", description="The difference")
     place = ArraysProperty()  # model coordinates
 
 
@@ -120,8 +120,8 @@ class RealModelReason(bpy.types.PropertyGroup):
     kind: StringProperty(
         name="Kind", description="Choice, rule, alternative, conflict, lens, repeat, warning"
     )
-    name: StringProperty(name="Of", description="What it is about")
-    text: StringProperty(name="Reason", description="Why it was decided so")
+    name: StringProperty(name="Of", description="Subject of the row")
+    text: StringProperty(name="Reason", description="Reason of the choice")
     hole: StringProperty(name="Hole")
     depth: StringProperty(name="Depth", description="Along the hole")
 
@@ -133,7 +133,7 @@ class RealModelLeftOutHole(bpy.types.PropertyGroup):
     rock: StringProperty(name="Rock Mass")
     share: StringProperty(name="Right", description="Percent of its logged length in the right block")
     error: StringProperty(name="Worst", description="Largest distance of a contact from its surface")
-    refused: StringProperty(name="Refused", description="Why there are no surfaces without it")
+    refused: StringProperty(name="Refused", description="Why the surfaces cannot be made without this hole")
     detail: StringProperty(options={"HIDDEN"})  # JSON of its length and its contacts
 
 
@@ -171,7 +171,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     )
     show_data: BoolProperty(
         name="Show Data",
-        description="Show the points of the surfaces, the outlines, and the boreholes as they were read",
+        description="Show the points of the surfaces, the outlines, and the boreholes from the files",
         options=set(),
         update=data_objects.shown_changed,
     )
@@ -188,7 +188,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     bodies: CollectionProperty(type=props_rock.RealModelBody)
     structure_kind: EnumProperty(
         name="Kind",
-        description="Which of them the list shows",
+        description="Show faults or bodies in the list",
         items=(
             ("FAULT", "Faults", "Open surfaces in any position that displace the rock"),
             (
@@ -253,7 +253,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
             ("Z", "Upward", "The younger a block, the higher it is lifted"),
             ("CENTER", "From Center", "Each block moves away from the center of the model"),
             ("BLOCK", "Side by Side", "The blocks stand side by side, the oldest first"),
-            ("COMPARTMENT", "Compartments", "The parts that faults leave move away from each other"),
+            ("COMPARTMENT", "Compartments", "The compartments between faults move apart"),
         ),
         update=lambda self, _context: display.explode_changed(self.id_data),
     )
@@ -268,11 +268,11 @@ class RealModelSettings(bpy.types.PropertyGroup):
             (
                 "UNCERTAINTY",
                 "Standard Deviation",
-                "Standard deviation of the elevations of an interpolated surface, on blocks of the one above",
+                "Standard deviation of the elevations of an interpolated surface, on the blocks above",
             ),
             ("ELEVATION", "Elevation", "Elevation in the coordinates of the model"),
             ("THICKNESS", "Thickness", "Vertical thickness of the layer"),
-            ("COMPARTMENT", "Compartment", "A color for each of the parts that faults leave"),
+            ("COMPARTMENT", "Compartment", "A color for each compartment between faults"),
         ),
         update=lambda self, _context: display.colors_changed(self.id_data),
     )
@@ -288,8 +288,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     misfits: CollectionProperty(type=RealModelMisfit)
     active_misfit: IntProperty(
         name="Active Misfit",
-        description="Active row of the data that do not fit; choosing one turns the viewport there, and "
-        "picks its datum",
+        description="Active misfit. Click a row to turn the viewport there and to pick its datum",
         default=-1,
         update=changes.misfit_chosen,
         options=set(),
@@ -301,8 +300,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     left_out_holes: CollectionProperty(type=RealModelLeftOutHole)
     active_left_out_hole: IntProperty(
         name="Active Hole",
-        description="Active row of the table of holes that were left out; choosing one turns the viewport "
-        "there",
+        description="Active row of the table of left-out holes. Click a row to turn the viewport there",
         default=-1,
         update=changes.left_out_hole_chosen,
         options=set(),
@@ -310,7 +308,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     hole_validation: StringProperty(options={"HIDDEN"})  # JSON: what was found in all, of which model
     active_result: IntProperty(
         name="Active Block",
-        description="Active row of the results; choosing one selects the block in the viewport",
+        description="Active row of the results. Click a row to select the block in the viewport",
         update=results.row_chosen,
         options=set(),
     )
@@ -345,7 +343,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
     text: StringProperty(options={"SKIP_SAVE"})
     chart: EnumProperty(
         name="Chart",
-        description="What the panel Quality shows of the active surface",
+        description="Chart that the panel Quality shows",
         items=quality.CHARTS,
         options={"SKIP_SAVE"},
     )

@@ -16,7 +16,7 @@ def _collar_field(name, axis):
     return coordinate_field(
         name,
         axis,
-        "Where the hole begins, in model coordinates",
+        "Collar of the hole, in model coordinates",
         planned_holes.collar,
         planned_holes.move_collar,
     )
@@ -87,7 +87,7 @@ class RealModelEnsemble(bpy.types.PropertyGroup):
     )
     color_by: EnumProperty(
         name="Color By",
-        description="What the colors of the section show",
+        description="Meaning of the colors of the section",
         items=ensembles.COLORS,
         update=changes.ensemble,
         options=set(),

@@ -115,8 +115,8 @@ class RealModelSurface(
     filters: CollectionProperty(type=RealModelFilter)
     use_continuation: BoolProperty(
         name="Continue By",
-        description="Choose the method by which the mesh is continued to faults that it does not reach. Off: "
-        "natural neighbors, and beyond its vertices the nearest elevation",
+        description="Choose the method that continues the mesh to faults that it does not reach. Off: "
+        "natural neighbors, and the nearest elevation beyond its vertices",
         update=changes.setting,
         options=set(),
     )
@@ -168,9 +168,9 @@ class RealModelSeries(properties_of(SERIES, name=changes.name), bpy.types.Proper
 
     known_name: StringProperty(options={"HIDDEN"})
     youngest: _end(
-        "Youngest", "Youngest surface of the series: it and all down to the oldest belong to it", -1
+        "Youngest", "Youngest surface of the series, which contains all surfaces down to the oldest", -1
     )
-    oldest: _end("Oldest", "Oldest surface of the series: it and all up to the youngest belong to it", 0)
+    oldest: _end("Oldest", "Oldest surface of the series, which contains all surfaces up to the youngest", 0)
     dips = ArraysProperty()  # of realmodel.core.SpaceDips, or Dips of sheets
     exact = ArraysProperty()
 
@@ -187,7 +187,7 @@ _POINTS_SOURCE = (
 _INTERVALS_SOURCE = (
     "INTERVALS",
     "Boreholes",
-    "Between its contacts in the intervals of boreholes that bear its name: a vein, a sill, a lens",
+    "From the intervals of boreholes with its name: a vein, a sill, a lens",
 )
 _LINE_SOURCES = (
     (
@@ -230,7 +230,7 @@ class RealModelFaultEnd(bpy.types.PropertyGroup):
 
     name: StringProperty(
         name="Ends At",
-        description="Fault at which this one ends; the smaller part of this one beyond is dropped",
+        description="Fault at which this one ends. The smaller part beyond it is removed",
         search=choices.faults,
         update=changes.setting,
     )
@@ -337,11 +337,12 @@ _SETTINGS = properties_of(
 class RealModelCode(bpy.types.PropertyGroup):
     """A code of units in the field data of a rock mass, and what it means: a unit; "" for nothing."""
 
-    name: StringProperty(name="Code", description="As the data have it")
+    name: StringProperty(name="Code", description="Code in the data")
     unit: StringProperty(
-        name="Unit", description="The surface over the block that the code means, or a body; empty: nothing"
+        name="Unit",
+        description="The surface above the block that the code means, or a body. Empty: the code is ignored",
     )
-    holes: IntProperty(name="Holes", description="Boreholes in which the code is", options=set())
+    holes: IntProperty(name="Holes", description="Number of boreholes with the code", options=set())
     rows: IntProperty(
         name="Rows", description="Rows of tables, and polygons of maps, with the code", options=set()
     )
@@ -349,19 +350,19 @@ class RealModelCode(bpy.types.PropertyGroup):
         name="Length", description="Length of its intervals in all boreholes", options=set()
     )
     chosen: BoolProperty(
-        name="Choose", description="Choose the code for the buttons below the list", options=set()
+        name="Choose", description="Tick the code for the buttons below the list", options=set()
     )
 
 
 class RealModelHoleProblem(bpy.types.PropertyGroup):
     """Something wrong with a row of a table of boreholes, and what was done about it."""
 
-    kind: StringProperty(name="Kind", description="What is wrong with the row, in a word")
+    kind: StringProperty(name="Kind", description="Kind of error in the row")
     file: StringProperty(name="File", description="Name of the file of the table")
     line: IntProperty(name="Line", description="Line of the row in the file", options=set())
     hole: StringProperty(name="Hole", description="Name of the hole")
     depth: StringProperty(name="Depth", description="Along the hole, as in the table")
-    text: StringProperty(name="Problem", description="What is wrong with the row")
+    text: StringProperty(name="Problem", description="Description of the error")
     action: StringProperty(name="Action", description="Used as it is, repaired, or left out")
 
 
@@ -397,8 +398,8 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     imports: StringProperty(options={"HIDDEN"})  # JSON: see bl.project.imported
     ground: StringProperty(
         name="Ground",
-        description="File with the heights of the ground: a raster, points or a mesh. The youngest surface, "
-        "whichever it is, is made from it, where it is made from nothing else",
+        description="File with the elevations of the ground: a raster, points or a mesh. The youngest "
+        "surface is made from it, unless it has other data",
         subtype="FILE_PATH",
         update=changes.ground,
     )
@@ -418,7 +419,7 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     sizes: CollectionProperty(type=RealModelSize)
     edges_by: EnumProperty(
         name="Mesh Size From",
-        description="How the size of the triangles is set on which surfaces are interpolated",
+        description="How the size of the triangles for interpolation is set",
         items=plan_mesh.KINDS,
         default="LENGTH",
         update=changes.setting,

@@ -100,7 +100,7 @@ def _plane_field(name, axis):
     return coordinate_field(
         name,
         axis,
-        "Where the section plane is, in model coordinates",
+        "Position of the section plane, in model coordinates",
         lambda view: cuts.place(view.id_data),
         lambda view, place: cuts.move(view.id_data, place),
     )
@@ -136,12 +136,12 @@ class RealModelView(bpy.types.PropertyGroup):
     plane_z: _plane_field("Elevation (z)", 2)
     section_holes: StringProperty(
         name="Holes",
-        description="Names of the boreholes that a section goes through, in order, with commas between them",
+        description="Names of the boreholes of a section, in order, with commas between them",
         options=set(),
     )
     section_beyond: FloatProperty(
         name="Beyond",
-        description="How far a section through boreholes goes on at both ends, of its length",
+        description="How far a section through boreholes continues at both ends, in percent of its length",
         default=5.0,
         min=0.0,
         soft_max=100.0,
@@ -156,7 +156,8 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     exaggeration: FloatProperty(
         name="Vertical Exaggeration",
-        description="Factor by which heights are exaggerated in the display; measures and exports stay true",
+        description="Factor by which elevations are exaggerated in the display. Volumes and exports do not "
+        "change",
         default=1.0,
         min=1.0,
         soft_max=20.0,
@@ -171,7 +172,7 @@ class RealModelView(bpy.types.PropertyGroup):
         description="Which part of the surfaces is displayed",
         items=(
             ("INTERPOLATED", "As Interpolated", "The whole surfaces, including what was eroded"),
-            ("SURVIVING", "As They Survive", "What erosion has left of the surfaces"),
+            ("SURVIVING", "As They Survive", "The parts of the surfaces that erosion has left"),
         ),
         options=set(),
         update=changes.view,
@@ -196,8 +197,8 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     show_hole_curves: BoolProperty(
         name="Curve Beside",
-        description="Show the numbers that color the boreholes also as a curve beside each, from the lowest "
-        "to the highest; on sections that are saved, too",
+        description="Draw the numbers that color the boreholes as a curve beside each hole, from the "
+        "lowest to the highest, in the viewport and on saved sections",
         options=set(),
         update=changes.field_data,
     )
@@ -209,7 +210,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     log_hole: StringProperty(
         name="Log",
-        description="Borehole whose log stands beside the model, in the viewport and in pictures; empty: "
+        description="Borehole whose log is shown beside the model, in the viewport and in pictures. Empty: "
         "none",
         search=lambda self, _context, _text: shown_log.names(self.id_data),
         options=set(),
@@ -218,15 +219,15 @@ class RealModelView(bpy.types.PropertyGroup):
     show_stereonet: BoolProperty(
         name="Stereonet",
         description="Show the poles of dips with their density, mean plane and fold axis beside the model, "
-        "in the viewport and in pictures. Pick Datum finds the dip of a pole that is clicked; dips that were "
+        "in the viewport and in pictures. With Pick Datum, click a pole to find its dip. Dips that are "
         "not picked are light gray",
         options=set(),
         update=changes.field_data,
     )
     stereonet_of: StringProperty(
         name="Dips Of",
-        description="Surface, block, series, rock mass or fault whose dips the stereonet has; empty: those "
-        "that were picked, else all but those of faults",
+        description="Surface, block, series, rock mass or fault whose dips are shown. Empty: the picked "
+        "dips, or all except those of faults",
         search=lambda self, _context, _text: shown_net.names(self.id_data),
         options=set(),
         update=changes.field_data,
@@ -241,8 +242,8 @@ class RealModelView(bpy.types.PropertyGroup):
     picked_dips: StringProperty(options={"HIDDEN"})  # JSON of the texts of the picked data
     hole_width: FloatProperty(
         name="Holes Within",
-        description="Distance from the section plane within which boreholes, contacts and dips are shown on "
-        "the cut, and boreholes drawn on sections; 0: on the cut all, in their places, and none in drawings",
+        description="Distance from the section plane within which boreholes, contacts and dips are moved "
+        "onto the cut, and boreholes drawn on sections. 0: all stay in place, and drawings have none",
         min=0.0,
         subtype="DISTANCE",
         options=set(),
@@ -251,8 +252,8 @@ class RealModelView(bpy.types.PropertyGroup):
     holes_on: StringProperty(options={"HIDDEN"})  # JSON of the cut that the boreholes are shown on
     show_contacts: BoolProperty(
         name="Contacts",
-        description="Show the points of the surfaces, the observed places, and the tops of logged intervals, "
-        "in the colors of the blocks; gray: switched off",
+        description="Show the points of the surfaces, the observations, and the tops of logged intervals, "
+        "in the colors of the blocks. Gray: switched off",
         options=set(),
         update=changes.field_data,
     )
@@ -271,13 +272,13 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     show_misfits: BoolProperty(
         name="Misfits",
-        description="List the data that the model does not have as they say, and show them in red",
+        description="List the data that the model does not honor, and show them in red",
         options=set(),
         update=changes.field_data,
     )
     misfit_tolerance: FloatProperty(
         name="Tolerance",
-        description="Distance from which on a datum counts as a misfit; 0: all but rounding",
+        description="Smallest distance of a misfit. 0: everything above rounding",
         min=0.0,
         subtype="DISTANCE",
         options=set(),
@@ -285,7 +286,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     dip_tolerance: FloatProperty(
         name="Dip Tolerance",
-        description="Degrees between a dip and its surface from which on it counts as a misfit",
+        description="Smallest angle between a dip and its surface, in degrees, that is a misfit",
         min=0.0,
         max=90.0,
         default=DIP_TOLERANCE,
@@ -297,7 +298,7 @@ class RealModelView(bpy.types.PropertyGroup):
     datum: StringProperty(options={"HIDDEN"})  # JSON of the active datum, see bl/field/data.py
     field_series: StringProperty(
         name="Series",
-        description="Series whose field is shown; empty: the first that has one",
+        description="Series whose field is shown. Empty: the first series with a field",
         search=lambda self, _context, _text: fields.series(self.id_data),
         options=set(),
         update=changes.fields,
@@ -331,14 +332,14 @@ class RealModelView(bpy.types.PropertyGroup):
     field_surfaces: StringProperty(options={"HIDDEN"})  # JSON: [[surface, value of the field on it]]
     show_residuals: BoolProperty(
         name="Residuals",
-        description="Show the points of the surfaces, colored by point minus surface",
+        description="Show the points of the surfaces, colored by their distance above the surface",
         options=set(),
         update=changes.residuals,
     )
     residuals: StringProperty(options={"HIDDEN"})  # JSON: statistics of the residuals of each surface
     show_legend: BoolProperty(
         name="Legend",
-        description="Show what the colors mean, in the viewport and in pictures",
+        description="Show the meaning of the colors, in the viewport and in pictures",
         default=True,
         options=set(),
         update=changes.overlay,

@@ -145,7 +145,7 @@ class EnsembleInTheScene(PanelCase):
         job.wait()
         ops.build()
         self.assertTrue(ensembles.is_outdated(self.scene))
-        with self.assertRaisesRegex(Exception, "another model was built meanwhile"):
+        with self.assertRaisesRegex(Exception, "another model was built at the same time"):
             job.finish()
 
     def test_it_is_in_the_blend(self):

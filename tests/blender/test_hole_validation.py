@@ -53,7 +53,7 @@ class HoleValidation(PanelCase):
         ops.left_out_hole_show()
         ops.build()
         self.assertTrue(hole_validation.is_outdated(self.model))
-        self.assertIn("was built again", " ".join(draw_tab(bpy.context).labels))
+        self.assertIn("was rebuilt", " ".join(draw_tab(bpy.context).labels))
         ops.left_out_holes_clear()
         self.assertEqual((len(rows), self.model.hole_validation), (0, ""))
         self.refused(ops.left_out_hole_show, "no holes were left out")

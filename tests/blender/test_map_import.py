@@ -135,7 +135,7 @@ class MapImport(PanelCase):
         two = (VALLEY / "map.geojson").read_text().replace("FORMATION", 'A": "1", "B')
         (self.folder / "two.geojson").write_text(two)
         path = str(self.folder / "two.geojson")
-        self.refused(ops.boreholes_read, "which attribute names the blocks.*A, B", filepath=path)
+        self.refused(ops.boreholes_read, "no attribute is known to name the blocks.*A, B", filepath=path)
         self.refused(self.read, "no attribute 'ROCK'", map_block="ROCK")
         self.refused(self.read, "the ground of the map is not known", map_ground="")
         self.refused(self.read, "file not found", map_ground="none.asc")

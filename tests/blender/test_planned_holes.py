@@ -88,7 +88,7 @@ class PlannedHoles(PanelCase):
         self.assertIsNone(built_models.current(self.scene))
         self.assertIsNone(planned_holes.kept(row))
         self.refused(
-            ops.planned_hole_save, "not known what the hole meets", filepath=str(self.folder / "h.csv")
+            ops.planned_hole_save, "blocks are not known yet", filepath=str(self.folder / "h.csv")
         )
         ops.build()
         self.assertEqual([e.end for e in planned_holes.kept(row).intervals], [15, 20])

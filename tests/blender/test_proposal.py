@@ -65,7 +65,7 @@ class Proposals(PanelCase):
         ops.proposal_show()
         self.assertTrue(self.model.view.show_hole_names)
         self.model.active_reason = len(self.model.proposal) - 1
-        self.refused(ops.proposal_show, "about no hole")
+        self.refused(ops.proposal_show, "the row has no hole")
 
     def test_nothing_changes_where_it_is_refused(self):
         ops.boreholes_read(**write_tables(self.folder), propose=True)

@@ -134,7 +134,7 @@ class SceneExport(PanelCase):
         self.assertEqual(list(self.exported("glb")), ["S2 block"])
         select(bpy.data.objects["S1"])
         path = str(self.folder / "none.glb")
-        self.refused(ops.export_scene, "nothing of the model", filepath=path, only_selected=True)
+        self.refused(ops.export_scene, "no object of the model", filepath=path, only_selected=True)
         self.assertFalse(Path(path).exists())
 
     def test_displaced_blocks_and_those_without_a_look(self):

@@ -316,7 +316,7 @@ class Views(Viewed):
         np.testing.assert_allclose(self.view().view_location, (50.0, 40.0, 12.4), atol=0.5)
         self.assertGreater(self.view().view_distance, 50.0)
         bpy.ops.realmodel.new()
-        with self.assertRaisesRegex(RuntimeError, "no model to be seen"):
+        with self.assertRaisesRegex(RuntimeError, "no model is visible"):
             bpy.ops.realmodel.view_all()
 
 
@@ -388,7 +388,7 @@ class Pictures(Viewed):
                 bpy.ops.realmodel.capture(filepath=path and str(self.folder / path), width=32, height=32)
         bpy.ops.realmodel.hide_property(property_id=1, action="ONLY")
         bpy.ops.realmodel.hide_property(property_id=1, action="HIDE")
-        with self.assertRaisesRegex(RuntimeError, "nothing to be seen"):
+        with self.assertRaisesRegex(RuntimeError, "nothing is visible"):
             bpy.ops.realmodel.capture(filepath=str(self.folder / "x.png"), width=32, height=32)
         self.assertEqual([p.name for p in self.folder.glob("*.png")], [])
 
@@ -406,7 +406,7 @@ class Coordinates(Case):
         self.scene.cursor.location = (20.0, 30.0, 5.0)
         bpy.ops.realmodel.coordinates()
         self.assertEqual(coordinates.last(self.scene).block, "base block")
-        with self.assertRaisesRegex(RuntimeError, "no block at this place"):
+        with self.assertRaisesRegex(RuntimeError, "no block at this position"):
             bpy.ops.realmodel.coordinates(location=(50.0, 40.0, 400.0))
         self.assertIsNone(coordinates.last(self.scene))
 
@@ -439,7 +439,7 @@ class Coordinates(Case):
     def test_distances_from_an_origin(self):
         from realmodel.bl.display import coordinates
 
-        with self.assertRaisesRegex(RuntimeError, "no coordinates were asked for"):
+        with self.assertRaisesRegex(RuntimeError, "no coordinates were displayed"):
             bpy.ops.realmodel.set_origin(action="PLACE")
         bpy.ops.realmodel.coordinates(location=(50.0, 40.0, 12.0))
         bpy.ops.realmodel.set_origin(action="PLACE")

@@ -155,7 +155,7 @@ class Series(PanelCase):
         ops.boreholes_read(filepath=str(FOLDER / "dips.csv"))  # of the active surface's series
         self.assertIn("50 dips", draw_tab(bpy.context).labels)
         self.refused(ops.build, "has no region")
-        needs = "give that a base and a region"
+        needs = "needs a base elevation and a region"
         self.assertIn(needs, " ".join(draw_tab(bpy.context).labels))
         self.assertNotIn("is unbounded", " ".join(draw_tab(bpy.context).labels), "the hint says it")
         ops.region_around()
@@ -440,7 +440,7 @@ class LiveField(PanelCase):
         self.step()
         self.assertTrue(self.model.is_coarse)
         self.assertLess(self.cells(), 0.5 * whole)
-        self.refused(ops.report, "coarse field", filepath=str(self.folder / "r.json"), format="JSON")
+        self.refused(ops.report, "coarse preview", filepath=str(self.folder / "r.json"), format="JSON")
         self.move_a_contact(20.0)  # before the whole one: a coarse one comes again
         self.step()
         self.assertTrue(self.model.is_coarse)

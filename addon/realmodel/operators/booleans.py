@@ -55,8 +55,8 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
     )
     keep_operands: BoolProperty(
         name="Keep Operands",
-        description="Keep both objects as they are and add a new one with the result. Otherwise the active "
-        "object gets the result, its modifiers are applied, and the other object is hidden",
+        description="Keep both objects unchanged and add a new one with the result. Otherwise the active "
+        "object becomes the result, its modifiers are applied, and the other object is hidden",
     )
 
     def begin(self, context):

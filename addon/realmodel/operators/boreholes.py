@@ -67,27 +67,27 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
 
     names: StringProperty(
         name="Names",
-        description="What codes of units in the tables mean: surfaces, blocks or bodies, such as "
-        "SST = Sandstone; LC = (nothing: lost core)",
+        description="Meaning of the codes in the tables: surfaces, blocks or bodies, such as SST = "
+        "Sandstone; LC = (empty: ignored, as for lost core)",
     )
     series: StringProperty(
         name="Dips Of Series",
-        description="Series that the dips are of, of a field at any angle and with polarity, whatever their "
-        "rows name; empty: that of the active surface where it is a field, for rows without a name",
+        description="Series that gets the dips, at any angle and with polarity, whatever their rows name. "
+        "Empty: rows without a name go to the series of the active surface, if it is a field",
         search=lambda _properties, context, _text: _series(context),
         options={"SKIP_SAVE"},
     )
     add_surfaces: BoolProperty(
         name="Add Surfaces",
-        description="Add surfaces that are named in the tables but not in the list, the oldest first; a unit "
-        "of intervals is the block beneath its surface",
+        description="Add surfaces that are in the tables but not in the list, the oldest first. A unit of "
+        "intervals becomes the block beneath its surface",
         default=True,
     )
 
     propose: BoolProperty(
         name="Propose Project",
-        description="Make a project of these data alone, in place of the model there: the order of units and "
-        "which of them cut older ones, lenses, region, base and ground, each with its reason",
+        description="Make a project from these data, and replace the model: the order of units, erosion, "
+        "lenses, region, base and ground, each with its reason",
         options={"SKIP_SAVE"},
     )
 

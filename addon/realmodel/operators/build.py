@@ -45,7 +45,7 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
     def tell_done(self, model):
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None and live.check(scene):
-            self.report({"WARNING"}, "The model is out of date: what it is made from was changed meanwhile")
+            self.report({"WARNING"}, "The model is out of date: its input has changed during the build")
             live.touch(scene)  # Auto builds again
         has_picture = False
         if self._is_first and scene is not None:

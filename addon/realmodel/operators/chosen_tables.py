@@ -57,45 +57,44 @@ class ChosenTables(TableDialog, FilesImportHelper):
     )
     map_block: StringProperty(
         name="Block Column",
-        description="Attribute of the polygons that names the block, or its code; empty: the only one, or "
-        "that with a usual name",
+        description="Attribute of the polygons with the name or the code of the block. Empty: the only "
+        "attribute, or the one with a usual name",
         search=lambda properties, _context, _text: _of_map(
             properties, contents.column_names, properties.map_layer or None
         ),
     )
     map_ground: StringProperty(
         name="Ground",
-        description="Surface of the list that is the ground of the map, or a file of it beside the map or "
-        "anywhere: a raster, points or a mesh; empty: the youngest surface",
+        description="Ground of the map: a surface of the list, or a file (raster, points or mesh). Empty: "
+        "the youngest surface",
         search=lambda properties, context, _text: [*_surfaces(context), *_rasters(properties)],
     )
     map_accuracy: FloatProperty(
         name="Accuracy",
-        description="How far lines of the map may lie from where they should be, as a standard deviation; "
-        "0: a two-hundredth of the diagonal of the region",
+        description="Standard deviation of the positions of lines on the map. 0: a two-hundredth of the "
+        "diagonal of the region",
         min=0.0,
         subtype="DISTANCE",
     )
     layer: StringProperty(
         name="Layer",
-        description="Object of an OMF or geoh5 file with the boreholes; empty: all of its boreholes",
+        description="Object of an OMF or geoh5 file with the boreholes. Empty: all boreholes of the file",
     )
     collars: StringProperty(
         name="Collars",
-        description="Table with hole, x, y and z of each borehole, beside the other tables or anywhere; "
-        "empty: it is among the chosen files, or the rows of picks and intervals have x, y and z themselves",
+        description="Table with hole, x, y and z of each borehole. Empty: it is among the chosen files, or "
+        "the rows of picks and intervals have x, y and z",
     )
     survey: StringProperty(
         name="Survey",
-        description="Table with hole, depth along it, azimuth, and dip or inclination, beside the other "
-        "tables or anywhere; empty: it is among the chosen files, or holes go as the collars say, or "
-        "straight down",
+        description="Table with hole, depth along it, azimuth, and dip or inclination. Empty: it is among "
+        "the chosen files, or holes have the direction in the collars, or go straight down",
     )
     downward_dip: EnumProperty(
         name="Downward Dip",
-        description="Sign of the dips of holes that go down",
+        description="Sign of the dips of holes that point down",
         items=[
-            ("TABLE", "As in the table", "All dips of a table have one sign, and go down"),
+            ("TABLE", "As in the table", "All dips of a table have one sign, and point down"),
             ("NEGATIVE", "Negative", "-90 is straight down"),
             ("POSITIVE", "Positive", "90 is straight down"),
         ],
@@ -183,7 +182,7 @@ class ChosenTables(TableDialog, FilesImportHelper):
         block = self.map_block.strip() or field_tables.block_attribute(names)
         if maps and not block:
             advice = f"choose Block Column: it has {', '.join(map(str, names))}" if names else None
-            raise InputRefused("it is not said which attribute names the blocks", file=maps[0], advice=advice)
+            raise InputRefused("no attribute is known to name the blocks", file=maps[0], advice=advice)
         ground = self.map_ground.strip()
         if ground and ground not in _surfaces(context) and maps:
             path = _beside(maps[0], ground)

@@ -42,7 +42,7 @@ class _Regrouping(Reporting):
 
     pattern: StringProperty(
         name="Pattern",
-        description="The codes that this fits, in place of the chosen ones: Qal*, or several with commas",
+        description="Use the codes that match, instead of the ticked ones: Qal*, or several with commas",
         options={"SKIP_SAVE"},
     )
 
@@ -150,7 +150,8 @@ class REALMODEL_OT_codes_choose(Reporting, bpy.types.Operator):
 
     pattern: StringProperty(
         name="Pattern",
-        description="Of codes: Qal*, or several with commas; empty: none are ticked, or all where none were",
+        description="Pattern of codes: Qal*, or several with commas. Empty: untick all, or tick all if "
+        "none is ticked",
         options={"SKIP_SAVE"},
     )
 
@@ -198,9 +199,9 @@ class REALMODEL_OT_hole_problem_decide(_OfAProblem, bpy.types.Operator):
         name="Decision",
         description="What becomes of the row",
         items=(
-            ("REPAIR", "Repair", "It is repaired, or left out, as is found right"),
-            ("WRITTEN", "Use as Written", "It is used as it is written"),
-            ("LEFT_OUT", "Leave Out", "It is not used"),
+            ("REPAIR", "Repair", "RealModel repairs the row or leaves it out"),
+            ("WRITTEN", "Use as Written", "The row is used as written"),
+            ("LEFT_OUT", "Leave Out", "The row is not used"),
         ),
     )
 

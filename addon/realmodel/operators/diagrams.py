@@ -101,8 +101,8 @@ class REALMODEL_OT_save_stereonet(Exporting, bpy.types.Operator):
     )
     of: StringProperty(
         name="Dips Of",
-        description="Surface, block, series, rock mass or fault whose dips are drawn; empty: those that were "
-        "picked, else all but those of faults",
+        description="Surface, block, series, rock mass or fault whose dips are drawn. Empty: the picked "
+        "dips, or all except those of faults",
     )
 
     def of_what(self, _context):

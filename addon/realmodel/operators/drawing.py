@@ -153,8 +153,8 @@ class _Drawing(InViewport):
 
     use_object: BoolProperty(
         name="From Active Object",
-        description="Take the lines of the active curve or mesh, or the strokes of the active grease pencil, "
-        "in place of drawing them",
+        description="Use the lines of the active curve or mesh, or the strokes of the active grease "
+        "pencil, instead of drawing",
         options={"SKIP_SAVE"},
     )
 
@@ -170,7 +170,7 @@ class _Drawing(InViewport):
     def clicked(self, context, area, at, _is_held):
         place = drawn_data.on_plane(context.scene, viewports.ray(area, at), self._plane)
         if place is None:
-            return "The plane is seen from its edge: turn the view"
+            return "The view is parallel to the plane: turn the view"
         self._places.append(place)
         return None
 
@@ -223,8 +223,8 @@ class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):
 def _pixel(name):
     return FloatVectorProperty(
         name=name,
-        description="Pixel of the image that this point is at, from the lower left corner; 0, 0: the lower "
-        "left corner of the image for the first point, the upper right one for the second",
+        description="Pixel of this point in the image, from the lower left corner. 0, 0: the lower left "
+        "corner of the image for the first point, the upper right corner for the second",
         size=2,
         min=0.0,
         subtype="XYZ",
@@ -262,9 +262,9 @@ class REALMODEL_OT_image_place(Reporting, bpy.types.Operator, ImportHelper):
             (
                 "SECTION",
                 "Section",
-                "A vertical section; it stands along the line through both points",
+                "A vertical section along the line through both points",
             ),
-            ("MAP", "Map", "A map: the two points are in plan"),
+            ("MAP", "Map", "A map; both points are in plan"),
         ),
     )
     first: StringProperty(name="First Point", description="x and y of the first point, model coordinates")

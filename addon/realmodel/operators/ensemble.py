@@ -25,7 +25,7 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
 
     realizations: IntProperty(
         name="Realizations",
-        description="Number of times that the model is built",
+        description="Number of builds of the model",
         default=40,
         min=2,
         max=MOST,

@@ -58,14 +58,14 @@ class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
     bl_label = "Pick Datum"
     needs = (any_data,)
 
-    location: place_property("Where the datum is, in the coordinates of the scene: the nearest is picked")
+    location: place_property("Position in the coordinates of the scene. The nearest datum is picked")
 
     def act(self, context):
         has_location = self.properties.is_property_set("location")
         at = np.array(self.location if has_location else context.scene.cursor.location)
         groups, numbers, places = shown_places(context.scene)
         if not groups:
-            raise InputRefused("there are no data with a place", advice="import points, boreholes or dips")
+            raise InputRefused("there are no data with a position", advice="import points, boreholes or dips")
         best = int(np.linalg.norm(places - at, axis=1).argmin())
         self._activate(context, groups[best].datum(numbers[best]))
 

@@ -27,7 +27,7 @@ from ..core.exporters.report import model_report
 from .reporting import InBackground, Reporting, a_model, chosen_path, file_filter, not_building, object_mode
 from .start import invoke
 
-_OUTDATED = "The model is out of date: what it is made from was changed since it was built"
+_OUTDATED = "The model is out of date: its input has changed since the build"
 
 
 def format_menu(formats, default=None):
@@ -54,7 +54,7 @@ class Exporting(Reporting, ExportHelper):
     @classmethod
     def poll(cls, context):
         if context.scene.realmodel.is_coarse:
-            cls.poll_message_set("the blocks are of a coarse field; wait until Auto has refined it, or build")
+            cls.poll_message_set("the blocks are a coarse preview; wait for the full field of Auto, or build")
             return False
         return super().poll(context)
 
@@ -143,8 +143,8 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(MODEL.formats())
     cell_size: FloatVectorProperty(
         name="Cell Size",
-        description="Of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF, geoh5 and RESQML), in "
-        "model units; 0: automatic, and no cells in OMF, geoh5 and RESQML",
+        description="Cell size of regular grids (block models, GeoTIFF, ESRI ASCII, GRDECL; OMF, geoh5 and "
+        "RESQML), in model units. 0: automatic, and no cells in OMF, geoh5 and RESQML",
         size=3,
         min=0.0,
         default=(0.0, 0.0, 0.0),
@@ -174,16 +174,16 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
 
     cell_tolerance: FloatProperty(
         name="Cell Tolerance",
-        description="Of polyhedral cells (VTK, OpenFOAM, Exodus II, DISU), in model units: shorter edges and "
-        "thinner faces and cells, vanish. 0: the exact cells",
+        description="For polyhedral cells (VTK, OpenFOAM, Exodus II, DISU), in model units: remove shorter "
+        "edges, and thinner faces and cells. 0: the exact cells",
         min=0.0,
         default=0.0,
     )
 
     surfaces_only: BoolProperty(
         name="Surfaces Only",
-        description="Write the surfaces as they were used, a part for each, in place of cells and blocks "
-        "(OBJ, PLY, STL, glTF, DXF, GOCAD, VTK, NumPy)",
+        description="Write the input surfaces, each as a part, instead of cells and blocks (OBJ, PLY, STL, "
+        "glTF, DXF, GOCAD, VTK, NumPy)",
         default=False,
     )
 
@@ -234,7 +234,8 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(MESH.formats())
     edge_length: FloatProperty(
         name="Edge Length",
-        description="Length in plan, in model units; smaller details are lost. 0: a fiftieth of the model",
+        description="Edge length in plan, in model units. Smaller features are removed. 0: a fiftieth of "
+        "the model",
         min=0.0,
     )
     minimum_thickness: FloatProperty(
@@ -243,11 +244,11 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
         min=0.0,
     )
     layers: IntProperty(
-        name="Layers", description="Divide each block into so many layers. 0: by the layer thickness", min=0
+        name="Layers", description="Number of layers of each block. 0: from the layer thickness", min=0
     )
     layer_thickness: FloatProperty(
         name="Layer Thickness",
-        description="Divide blocks into layers no thicker than this; Layers then limits their number. 0: any",
+        description="Largest thickness of a layer. Layers limits their number. 0: any",
         min=0.0,
     )
     elements: EnumProperty(
@@ -289,7 +290,7 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
 
     format: format_menu(scene_export.FORMATS)
     filter_glob: format_filter(scene_export.FORMATS)
-    only_selected: BoolProperty(name="Selected Only", description="Only what is selected of the model")
+    only_selected: BoolProperty(name="Selected Only", description="Export only selected objects of the model")
     bake_looks: BoolProperty(
         name="Bake Looks",
         description="Write textures of looks to pictures; otherwise materials have the color of the property",
@@ -308,7 +309,7 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
         if self.only_selected:
             items = [obj for obj in items if obj.select_get()]
         if not items:
-            raise InputRefused("nothing of the model would be exported", advice="display or select blocks")
+            raise InputRefused("no object of the model would be exported", advice="display or select blocks")
         scene_export.write(context, items, path, self.picture_size if self.bake_looks else 0)
 
 

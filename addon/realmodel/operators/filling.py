@@ -64,7 +64,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     preset: EnumProperty(
         name="Preset",
-        description="Values to begin with; a choice replaces those below",
+        description="Initial values. A choice replaces the values below",
         items=(
             ("NONE", "None", "The values below"),
             *((key, name, f"Values for {name.lower()} strata") for key, (name, _) in PRESETS.items()),
@@ -73,11 +73,11 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         update=_set_preset,
         options={"SKIP_SAVE"},
     )
-    beds: IntProperty(name="Beds", description="How many", default=12, min=2, max=MOST_BEDS, soft_max=60)
+    beds: IntProperty(name="Beds", description="Number", default=12, min=2, max=MOST_BEDS, soft_max=60)
     thickness: _share(
         "Thickness",
-        "Of a bed on average, as a share of the height of the mesh; 0: the beds fill it. Otherwise the "
-        "lowest and the highest bed take the rest",
+        "Mean thickness of a bed, as a share of the height of the mesh. 0: the beds fill it. Otherwise the "
+        "lowest and the highest bed fill the rest",
     )
     variation: FloatProperty(
         name="Variation",
@@ -89,31 +89,31 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     )
     dip: FloatProperty(
         name="Dip",
-        description="Of the beds, before they are folded",
+        description="Dip of the beds, before they are folded",
         subtype="ANGLE",
         default=math.radians(10),
         min=0.0,
         max=math.radians(STEEPEST),
     )
-    dip_direction: _azimuth("Dip Direction", "Where the beds dip to", 120.0)
+    dip_direction: _azimuth("Dip Direction", "Direction of the dip", 120.0)
     fold_amplitude: _share("Fold Amplitude", "As a share of the height of the mesh; 0: no folds", soft=0.5)
     fold_wavelength: _share("Fold Wavelength", "As a share of the width of the mesh; 0: no folds", 0.5)
     fold_axis: _azimuth("Fold Axis", "Direction of the fold axes", 30.0)
     axial_dip: FloatProperty(
         name="Axial Dip",
-        description="Dip of the axial planes of folds: 90 upright, 10 recumbent. Folds lean to the right of "
-        "their axis; the fault strike is at right angles to it then",
+        description="Dip of the axial planes of folds: 90 upright, 10 recumbent. Folds lean to the right "
+        "of their axis. Faults then strike at right angles to it",
         subtype="ANGLE",
         default=math.radians(UPRIGHT),
         min=math.radians(RECUMBENT),
         max=math.radians(UPRIGHT),
     )
-    faults: IntProperty(name="Faults", description="How many", default=0, min=0, max=MOST_FAULTS, soft_max=10)
-    throw: _share("Throw", "Of each fault, as a share of the height of the mesh", 0.1, soft=0.5)
+    faults: IntProperty(name="Faults", description="Number", default=0, min=0, max=MOST_FAULTS, soft_max=10)
+    throw: _share("Throw", "Throw of each fault, as a share of the height of the mesh", 0.1, soft=0.5)
     fault_strike: _azimuth("Fault Strike", "Direction of the faults, which are vertical", 20.0)
     unconformity: FloatProperty(
         name="Unconformity",
-        description="Share of the height, from below, at which level beds cover eroded ones; 0: none",
+        description="Fraction of the height at which flat beds cover truncated ones. 0: none",
         subtype="FACTOR",
         default=0.0,
         min=0.0,
@@ -121,13 +121,14 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     )
     gap: _share(
         "Gap",
-        "Between beds, and between the two sides of a fault, for a print in parts: as a share of the height",
+        "Gap between beds, and between the two sides of a fault, for a print in parts, as a share of the "
+        "height",
         soft=0.05,
     )
     pegs: IntProperty(
         name="Pegs",
-        description="How many square pegs there are at most on each bed. The holes for them in the next one "
-        "are wider by the gap on each side",
+        description="Largest number of square pegs on each bed. Their holes in the next bed are wider by "
+        "the gap on each side",
         default=0,
         min=0,
         max=MOST_PEGS,
@@ -136,8 +137,8 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     peg_size: _share("Peg Size", "Width of a peg, as a share of the height of the mesh", 0.1, soft=0.3)
     base_depth: _share(
         "Base Depth",
-        "Of an open mesh: depth of the base beneath its lowest point, as a share of its height or of a tenth "
-        "of its width",
+        "For an open mesh: depth of the base below its lowest point, as a share of its height or of a "
+        "tenth of its width",
         0.5,
     )
     palette: EnumProperty(
@@ -150,13 +151,13 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     )
     rock_looks: BoolProperty(
         name="Rock Looks",
-        description="Give the rocks procedural textures; otherwise their colors alone",
+        description="Give the rocks procedural textures. Otherwise they have plain colors",
         default=True,
     )
     masks: BoolProperty(
         name="Bed Masks",
-        description="Add a hidden copy of the mesh whose vertices have the number of their bed and a mask, 0 "
-        "or 1, of each bed, as attributes",
+        description="Add a hidden copy of the mesh. Its vertices have attributes: the number of their bed, "
+        "and a mask of each bed, 0 or 1",
     )
     seed: IntProperty(name="Seed", description="Other thicknesses, rocks, folds and faults", min=0)
 

@@ -141,7 +141,7 @@ class ObjectDialog:
     )
     object_name: StringProperty(
         name="Named",
-        description="Only objects whose names have this text, or fit this pattern: Top* or *fault*",
+        description="Only objects whose names contain this text, or match this pattern: Top* or *fault*",
         options={"SKIP_SAVE", "HIDDEN", "TEXTEDIT_UPDATE"},
     )
     object_kind: EnumProperty(
@@ -149,7 +149,7 @@ class ObjectDialog:
     )
     object_size: IntProperty(
         name="At Least",
-        description="Only objects with so many triangles or points, or more",
+        description="Only objects with at least this number of triangles or points",
         min=0,
         options={"SKIP_SAVE", "HIDDEN"},
     )

@@ -134,7 +134,7 @@ class REALMODEL_OT_surface_add(
     )
     as_terrain: BoolProperty(
         name="Terrain",
-        description="Make it the terrain, the boundary above all other surfaces, in place of the one there",
+        description="Make it the terrain, the boundary above all other surfaces. Replaces an earlier one",
         options={"SKIP_SAVE", "HIDDEN"},
     )
     empty: BoolProperty(
@@ -142,8 +142,8 @@ class REALMODEL_OT_surface_add(
     )
     columns: StringProperty(
         name="x, y, z",
-        description="The columns of x, y and z in tables, by name or by number from 1; empty: those named "
-        "so, or the first three",
+        description="Columns of x, y and z in tables, by name or by number from 1. Empty: the columns with "
+        "these names, or the first three",
         options={"SKIP_SAVE"},
     )
     split: BoolProperty(
@@ -153,7 +153,7 @@ class REALMODEL_OT_surface_add(
     )
     split_column: StringProperty(
         name="Column",
-        description="The column whose values name the surfaces; empty: the first one that may",
+        description="Column whose values name the surfaces. Empty: the first suitable one",
         search=lambda properties, _context, _text: [
             name for preview in previews(properties) for name in preview.splits
         ],

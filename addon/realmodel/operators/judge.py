@@ -110,7 +110,7 @@ class REALMODEL_OT_cross_validate_holes(InBackground, bpy.types.Operator):
 
     folds: IntProperty(
         name="Groups",
-        description="In how many groups the holes are left out; 0: each by itself, but in at most 20",
+        description="Number of groups of holes that are left out. 0: each hole alone, in at most 20 groups",
         min=0,
     )
 

@@ -65,7 +65,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
     )
     sun_elevation: FloatProperty(
         name="Sun Elevation",
-        description="Height of the sun above the horizon; the light of a low one is warm",
+        description="Angle of the sun above the horizon. A low sun gives warm light",
         default=picture.SUN_ELEVATION,
         min=math.radians(2.0),
         max=0.5 * math.pi,
@@ -96,7 +96,7 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
     frames: IntProperty(name="Frames", description="Frames of one turn", default=120, min=2, soft_max=1000)
     elevation: FloatProperty(
         name="Elevation",
-        description="Height of the camera above the horizon, seen from the model",
+        description="Angle of the camera above the horizon, seen from the model",
         default=CAMERA_ELEVATION,
         min=0.0,
         max=math.radians(85.0),
@@ -120,7 +120,7 @@ class REALMODEL_OT_animate_stages(Reporting, bpy.types.Operator):
     needs = (a_model,)
 
     frames: IntProperty(
-        name="Frames per Stage", description="How long each stage is shown", default=12, min=1, soft_max=240
+        name="Frames per Stage", description="Duration of each stage", default=12, min=1, soft_max=240
     )
 
     def act(self, context):
@@ -150,7 +150,7 @@ class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
 
     look: EnumProperty(
         name="Look",
-        description="How the rocks look in rendered pictures",
+        description="Appearance of the rocks in rendered pictures",
         items=looks.ITEMS,
     )
     only_active: BoolProperty(
@@ -158,7 +158,7 @@ class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
     )
     scale: FloatProperty(
         name="Scale",
-        description="Size of the texture; 1 suits the model",
+        description="Size of the texture. 1 fits the model",
         default=1.0,
         min=0.001,
         soft_max=10.0,
@@ -200,7 +200,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
 
     strength: FloatProperty(
         name="Strength",
-        description="How much is worn away; 1 suits the model",
+        description="Strength of the erosion. 1 fits the model",
         default=1.0,
         min=0.0,
         soft_max=5.0,
@@ -215,7 +215,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     wear: FloatProperty(
         name="Edge Wear",
-        description="How far materials show edges worn, in Cycles also round, without a finer mesh; 1 suits "
+        description="Wear of edges in the materials, without a finer mesh. Cycles also rounds them. 1 fits "
         "the model",
         default=0.5,
         min=0.0,
@@ -223,7 +223,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     noise_scale: FloatProperty(
         name="Noise Scale",
-        description="Size of hollows and of eroded beds; 1 suits the model",
+        description="Size of hollows and of eroded beds. 1 fits the model",
         default=1.0,
         min=0.001,
         soft_max=10.0,
@@ -231,7 +231,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     seed: IntProperty(name="Seed", description="Other hollows", min=0)
     grass_slope: FloatProperty(
         name="Grass Slope",
-        description="The steepest ground that grass grows on; 0: none",
+        description="Steepest slope with grass. 0: none",
         subtype="ANGLE",
         default=math.radians(28.0),
         min=0.0,
@@ -239,7 +239,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     scree_slope: FloatProperty(
         name="Scree Slope",
-        description="The steepest ground that scree lies on; 0: none",
+        description="Steepest slope with scree. 0: none",
         subtype="ANGLE",
         default=math.radians(40.0),
         min=0.0,
@@ -247,7 +247,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     detail: IntProperty(
         name="Detail",
-        description="How often each polygon is divided: once makes four",
+        description="Number of subdivisions of each polygon. Each makes four of one",
         default=2,
         min=0,
         max=weathering.FINEST,
@@ -255,8 +255,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
 
     plants: FloatProperty(
         name="Plants and Stones",
-        description="How many tufts of grass and stones lie on grass and scree, as instances; 1 suits the "
-        "model, 0: none",
+        description="Density of tufts on grass and stones on scree, as instances. 1 fits the model. 0: none",
         default=0.0,
         min=0.0,
         soft_max=4.0,

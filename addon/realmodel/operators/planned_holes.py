@@ -110,5 +110,5 @@ class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):
     def write(self, context, path):
         hole = planned_holes.kept(planned_holes.active(context.scene))
         if hole is None:
-            raise InputRefused("it is not known what the hole meets", advice="press Build, then save again")
+            raise InputRefused("its blocks are not known yet", advice="press Build, then save again")
         hole.save(path)

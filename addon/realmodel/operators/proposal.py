@@ -55,7 +55,7 @@ class REALMODEL_OT_propose_project(InBackground, ChosenTables, bpy.types.Operato
 def a_reason_with_hole(context):
     rows, active = context.scene.realmodel.proposal, context.scene.realmodel.active_reason
     has_hole = 0 <= active < len(rows) and rows[active].hole
-    return None if has_hole else "the row is about no hole"
+    return None if has_hole else "the row has no hole"
 
 
 class REALMODEL_OT_proposal_show(Reporting, bpy.types.Operator):

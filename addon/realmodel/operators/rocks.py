@@ -103,15 +103,15 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
             (
                 "RECTANGLE",
                 "Rectangle",
-                "From the westernmost to the easternmost point, and likewise north",
+                "A rectangle around the points",
             ),
-            ("HULL", "Convex Hull", "As near around the points as an outline without dents can be"),
+            ("HULL", "Convex Hull", "The convex hull of the points"),
         ),
     )
     margin: FloatProperty(
         name="Margin",
-        description="Distance of the region from the points, in percent of their extent; of a map 0 where "
-        "it is not given",
+        description="Distance of the region from the points, in percent of their extent. Default for a "
+        "map: 0",
         subtype="PERCENTAGE",
         default=5.0,
         min=0.0,

@@ -32,7 +32,7 @@ _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
 _ON_LINE = 1e-3  # of the length of a section through boreholes: what is so near is on it
 _PIXELS = 20.0  # a borehole that is farther from the mouse is not meant
-_FLAT = "Unroll the section beside the model instead of leaving it in its place"
+_FLAT = "Unroll the section beside the model"
 
 
 def _show(operator, context, made):
@@ -79,7 +79,7 @@ def _draw_plane(operator, context):
 
 
 _PLACE = place_property(
-    "A point of the plane, in the coordinates of the scene: those of the model less its origin"
+    "A point of the plane, in the coordinates of the scene: model coordinates minus the origin"
 )
 _NORMAL = FloatVectorProperty(
     name="Normal",
@@ -239,7 +239,7 @@ class _DrawsSections(Exporting):
 
     exaggeration: FloatProperty(
         name="Vertical Exaggeration",
-        description="Factor by which heights are exaggerated",
+        description="Factor by which elevations are exaggerated",
         default=1.0,
         min=0.01,
         max=MOST_EXAGGERATION,
@@ -247,15 +247,15 @@ class _DrawsSections(Exporting):
     )
     hole_width: FloatProperty(
         name="Holes Within",
-        description="Draw the boreholes within this distance of the section; 0: none, but those that it goes "
+        description="Draw the boreholes within this distance of the section. 0: only those that it passes "
         "through",
         min=0.0,
         subtype="DISTANCE",
     )
     hole_column: StringProperty(
         name="Curve Beside",
-        description="Column of numbers of the intervals, or curve of the logs, that is drawn beside the "
-        "boreholes; empty: none",
+        description="Numerical column of the intervals, or curve of the logs, that is drawn beside the "
+        "boreholes. Empty: none",
         search=lambda _properties, context, _text: boreholes.columns(context.scene),
     )
 
@@ -348,7 +348,7 @@ class REALMODEL_OT_save_sheets(_DrawsSections, bpy.types.Operator):
     )
     scale: FloatProperty(
         name="Scale 1 :",
-        description="Number of the scale of map and sections; 0: the largest round scale at which they fit",
+        description="Scale of map and sections: 10000 for 1:10,000. 0: the largest round scale that fits",
         min=0.0,
     )
 
@@ -435,7 +435,7 @@ class REALMODEL_OT_section_flip(Reporting, bpy.types.Operator):
 
 def _a_cut(context):
     is_shown = cuts.is_on(context.scene)
-    return None if is_shown else "no cut is shown; add a section plane and switch Show Cut on"
+    return None if is_shown else "no cut is shown; add a section plane and enable Show Cut"
 
 
 class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):

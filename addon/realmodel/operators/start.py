@@ -246,7 +246,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
     add_base: BoolProperty(
         name="Base",
-        description="Add a block beneath the oldest surface, down to a fifth of the height of all below it",
+        description="Add a block beneath the oldest surface, down to a fifth of the height of all surfaces",
         options={"SKIP_SAVE"},
     )
 

@@ -49,7 +49,7 @@ from .surfaces import library_items
 from .view import edit_interface
 
 _KINDS = (
-    ("AUTO", "By Shape", "A closed mesh is a body, an open one a fault, and so are points"),
+    ("AUTO", "By Shape", "A closed mesh is a body. An open mesh is a fault, and so are points"),
     ("FAULT", "Faults", "All are faults"),
     ("BODY", "Bodies", "All are bodies"),
 )
@@ -510,7 +510,7 @@ class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
         if np.isnan(z).any():
             points = data_objects.row_points(scene, row, context.evaluated_depsgraph_get())
             if points is None or not len(points):
-                raise InputRefused("dips of a field need a height", advice="give them a column z")
+                raise InputRefused("dips of a field need an elevation", advice="give them a column z")
             z = np.where(np.isnan(z), points[:, 2].mean(), z)
         normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
         space_dips = SpaceDips(np.column_stack([dips.positions, z]), normals, dips.used)
@@ -540,7 +540,7 @@ class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
         precision=1,
     )
     overturned: BoolProperty(
-        name="Overturned", description="The older rock is above: for series that are fields alone"
+        name="Overturned", description="The older rock is above. Only for series of the kind Field"
     )
 
     def act(self, context):

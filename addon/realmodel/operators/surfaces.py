@@ -73,8 +73,8 @@ class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
         name="Direction",
         description="Which way it moves in the list",
         items=(
-            ("UP", "Up", "Make it younger: up in the list, as in the field"),
-            ("DOWN", "Down", "Make it older: down in the list"),
+            ("UP", "Up", "Make the surface younger: up in the list"),
+            ("DOWN", "Down", "Make the surface older: down in the list"),
         ),
     )
 

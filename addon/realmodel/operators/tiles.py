@@ -35,8 +35,8 @@ class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     column: IntProperty(name="Column", description="The westernmost of the tiles, from 0", min=0)
     row: IntProperty(name="Row", description="The southernmost of the tiles, from 0", min=0)
-    columns: IntProperty(name="Columns", description="How many tiles side by side", default=1, min=1)
-    rows: IntProperty(name="Rows", description="How many tiles behind each other", default=1, min=1)
+    columns: IntProperty(name="Columns", description="Number of tiles from west to east", default=1, min=1)
+    rows: IntProperty(name="Rows", description="Number of tiles from south to north", default=1, min=1)
 
     def draw(self, _context):
         layout = self.layout

@@ -186,7 +186,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
         name="Action",
         description="Hide or show the blocks of the property",
         items=(
-            ("TOGGLE", "Toggle", "Hide them where they are shown, show them where they are hidden"),
+            ("TOGGLE", "Toggle", "Hide visible blocks, show hidden blocks"),
             ("HIDE", "Hide", "Hide them"),
             ("SHOW", "Show", "Show them"),
             ("ONLY", "Only", "Hide all others"),
@@ -222,9 +222,7 @@ class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
     bl_label = "Coordinates"
     needs = (a_model,)
 
-    location: place_property(
-        "The place in the coordinates of the scene; where it is not given, the 3D cursor"
-    )
+    location: place_property("Position in the coordinates of the scene. Default: the 3D cursor")
 
     def act(self, context):
         has_location = self.properties.is_property_set("location")
@@ -234,7 +232,8 @@ class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
         if place is None:
             coordinates.remember(context.scene, None)
             raise InputRefused(
-                "there is no block at this place", advice="put the 3D cursor or the location inside a block"
+                "there is no block at this position",
+                advice="put the 3D cursor or the location inside a block",
             )
         coordinates.remember(context.scene, place)
         self.report({"INFO"}, place_text(context.scene, place))
@@ -275,7 +274,7 @@ def _under_mouse(context, event):
 
 def place_text(scene, place):
     """A place in one line, lengths in the units of the scene."""
-    parts = [f"x {place.x:.3f}  y {place.y:.3f}  height {place.z:.3f}", place.block]
+    parts = [f"x {place.x:.3f}  y {place.y:.3f}  elevation {place.z:.3f}", place.block]
     parts.append(place.property or f"property {place.property_id}" if place.property_id else "no property")
     parts.append(f"{units.length_text(scene, place.thickness)} thick")
     away = coordinates.from_zero(scene, place)
@@ -310,7 +309,7 @@ class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
         else:
             place = coordinates.last(scene)
             if place is None:
-                raise InputRefused("no coordinates were asked for yet", advice="use Coordinates first")
+                raise InputRefused("no coordinates were displayed yet", advice="use Coordinates first")
             coordinates.set_zero(scene, (place.x, place.y, place.z))
 
 

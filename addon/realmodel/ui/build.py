@@ -30,7 +30,7 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
                 layout.label(text="Out of date: changed since it was built", icon="ERROR")
             _draw_missing(layout, group)
         else:
-            hint(layout, "Add surfaces first; then the blocks between them are built here.")
+            hint(layout, "Add surfaces first. Then build the blocks between them here.")
         if activity.problem:
             _draw_problem(layout.box(), activity)
         elif group.warnings:
@@ -66,7 +66,7 @@ def _draw_estimate(layout, scene):
         row.label(text=name)
         right_label(row, value)
     if not fits:
-        hint(layout, "This would be refused: a build takes more memory than there is.")
+        hint(layout, "Not enough memory: this build would be refused.")
 
 
 def _draw_missing(layout, group):

@@ -27,13 +27,13 @@ class REALMODEL_PT_ensemble(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         row.operator("realmodel.ensemble", text="Curve").along = "LINE"
         table = ensembles.table(scene)
         if table is None:
-            hint(layout, "Builds the model many times: how certain are its volumes?")
+            hint(layout, "Builds the model many times to show how certain its volumes are.")
             return
         row = layout.row()
         row.label(text=f"{counted(table['count'], 'realization')}, seed {table['seed']}")
         row.operator("realmodel.ensemble_remove", text="", icon="X", emboss=False)
         if ensembles.is_outdated(scene):
-            hint(layout, "The model was built again since: make the ensemble again.")
+            hint(layout, "The model was rebuilt: make the ensemble again.")
         _draw_table(layout, scene, table)
         obj = ensembles.item_of(scene)
         if obj is None:

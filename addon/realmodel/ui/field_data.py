@@ -28,7 +28,7 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
     def draw_in(self, layout, context, group):
         layout.operator("realmodel.boreholes_read", text="Import Field Data...", icon="IMPORT")
         if not data.are_there(context.scene):
-            hint(layout, "Boreholes, outcrops, dips and maps: choose all their files at once.")
+            hint(layout, "Boreholes, outcrops, dips and maps: choose all files at once.")
             return
         grid = layout.grid_flow(row_major=True, columns=2, align=True)
         grid.use_property_split = False
@@ -84,7 +84,7 @@ def _draw_datum(layout, context):
         obj = handle.item_of(context.scene)
         if obj is not None:
             box.prop(obj, "location", text="Offset")
-        hint(layout, "Move its sphere with G; the model follows where Auto is on.")
+        hint(layout, "Move the sphere with G. With Auto the model follows.")
     if off:
         row = layout.row(align=True)
         row.label(text=f"{off:,} switched off")
@@ -107,10 +107,10 @@ class REALMODEL_PT_field_misfits(FoldedPanel, bpy.types.Panel):
         column.prop(group.view, "misfit_tolerance")
         column.prop(group.view, "dip_tolerance", text="Dips")
         if not group.view.show_misfits:
-            hint(layout, "Switch it on to see in red, and in a list, the data that the model does not have.")
+            hint(layout, "Enable to show the data that the model does not honor, in red and in a list.")
             return
         if not len(group.misfits):
-            hint(layout, "All data fit.")
+            hint(layout, "The model honors all data.")
             return
         more = group.view.misfit_count - len(group.misfits)
         layout.label(

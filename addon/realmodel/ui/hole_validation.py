@@ -37,14 +37,14 @@ class REALMODEL_PT_hole_validation(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     def draw_in(self, layout, context, group):
         layout.operator("realmodel.cross_validate_holes", icon="VIEWZOOM")
         if not len(group.left_out_holes):
-            hint(layout, "Leaves each borehole out: what do the others say of it?")
+            hint(layout, "Predicts each borehole from the others.")
             return
         row = layout.row()
         column = row.column(align=True)
         message(column, hole_validation.summary(group), taken=4)
         row.operator("realmodel.left_out_holes_clear", text="", icon="X", emboss=False)
         if hole_validation.is_outdated(group):
-            hint(layout, "The model was built again since: leave the holes out again.")
+            hint(layout, "The model was rebuilt: leave the holes out again.")
         unit = units.unit_text(context.scene, 1)
         for part, text in zip(_columns(layout), ("Hole", "%", f"Worst {unit}"), strict=True):
             part.label(text=text) if text == "Hole" else right_label(part, text)

@@ -34,7 +34,7 @@ class REALMODEL_PT_planned_holes(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         buttons.operator("realmodel.planned_hole_remove", text="", icon="REMOVE")
         hole = planned_holes.active(scene)
         if hole is None:
-            hint(layout, "Plan a hole to see which blocks it will meet, and how certain that is.")
+            hint(layout, "Plan a hole to see which blocks it will meet, and how certain they are.")
             return
         column = layout.column(align=True)
         for key in ("east", "north", "height"):
@@ -56,10 +56,10 @@ def _draw_table(layout, scene, row):
         hint(layout, str(error))
         return
     if hole is None:
-        hint(layout, "Press Build to see what it meets.")
+        hint(layout, "Click Build to see the blocks along the hole.")
         return
     if not hole.intervals:
-        hint(layout, "It meets no block.")
+        hint(layout, "The hole meets no block.")
         return
     box = layout.box().column(align=True)
     unit, factor = units.shown_unit(scene, 1)

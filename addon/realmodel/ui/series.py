@@ -38,8 +38,8 @@ class REALMODEL_PT_series(FoldedPanel, bpy.types.Panel):
         if not len(rock.series):
             hint(
                 layout,
-                "A series is a run of surfaces that were folded together. In a field they may stand upright, "
-                "overturned or lie on their side.",
+                "A series is a run of surfaces that were folded together. In a field they may be vertical, "
+                "overturned or recumbent.",
             )
             layout.operator("realmodel.series_add", icon="ADD").kind = FIELD
             return
@@ -62,7 +62,7 @@ def _draw_series(layout, rock, row):
     if row.kind == FIELD:
         panel.draw(layout, row, "resolution", SERIES)
         if not row.resolution:
-            hint(layout, "0: by the size of the rock mass")
+            hint(layout, "0: chosen from the size of the rock mass")
         panel.draw(layout, row, "thickness", SERIES)
     _draw_dips(layout, row)
     if not (row.kind == FIELD and _draw_needs(layout, rock)):
@@ -89,7 +89,7 @@ def _draw_needs(layout, rock):
     lacks_region = rock.region is None and not (rock.region_file or rock.region_stored)
     is_lacking = lacks_region or not rock.use_base
     if is_lacking:
-        hint(layout, "The field ends where the rock mass does: give that a base and a region.")
+        hint(layout, "The rock mass needs a base elevation and a region, which bound the field.")
     panel.draw(layout, rock, "base_elevation", ROCK)
     if lacks_region:
         layout.operator("realmodel.region_around", icon="SHADING_BBOX")

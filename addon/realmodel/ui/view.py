@@ -29,7 +29,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
             column.prop(group.view, "surfaces", text="Part")
         column.prop(group, "color_by")
         if group.color_by == "UNCERTAINTY" and group.view.shade_limits[1] == 0.0:
-            hint(layout, "No surface has a standard deviation. Kriging of enough points gives one.")
+            hint(layout, "No surface has a standard deviation. It needs kriging and enough points.")
         _stage(layout, context.scene)
         column = layout.column(align=True)
         column.prop(group, "explode", slider=True)
@@ -113,7 +113,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         view, scene = group.view, context.scene
         plane = cuts.plane_of(scene)
         if plane is None:
-            hint(layout, "Add a plane; move and turn it (G, R) to see the model cut open there.")
+            hint(layout, "Add a plane to cut the model. Move and rotate the plane (G, R).")
             layout.operator_menu_enum(
                 "realmodel.section_plane", "axis", text="Add Section Plane", icon="MESH_PLANE"
             )
@@ -144,7 +144,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             row.operator("realmodel.pick_holes", text="", icon="EYEDROPPER")
             layout.prop(view, "section_beyond")
             _section_buttons(layout, "fence_holes", "HOLES", "Save Section...", "Through Holes")
-        hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
+        hint(layout, "Sections along a line: draw a curve from above, and select it.")
         _section_buttons(layout, "fence", "LINE", "Save Fence...")
         layout.operator("realmodel.save_sheets", text="Save Sheets...", icon="FILE_TICK")
 
@@ -178,14 +178,14 @@ class REALMODEL_PT_view_fields(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         if fields.is_working(context.scene):
             row.label(icon="SORTTIME")
         if view.show_field_section and not cuts.is_shown(context.scene):
-            hint(layout, "Add a section plane, and switch on Show Cut (Section).")
+            hint(layout, "Add a section plane, and enable Show Cut (Section).")
         row = layout.row(align=True, heading="Level Sets")
         row.prop(view, "show_field_levels", text="")
         number = row.row()
         number.active = view.show_field_levels
         number.prop(view, "field_levels", text="")
         if view.show_field_levels and group.display == "BLOCKS" and not cuts.is_shown(context.scene):
-            hint(layout, "They lie inside the blocks: show the cut, or other than blocks.")
+            hint(layout, "Level sets are inside the blocks: show the cut, or another mode.")
 
 
 class REALMODEL_PT_view_camera(OfABuiltModel, FoldedPanel, bpy.types.Panel):
@@ -209,7 +209,7 @@ class REALMODEL_PT_view_picture(OfABuiltModel, FoldedPanel, bpy.types.Panel):
 
     def draw_in(self, layout, context, _group):
         if not viewpoints.camera_sees(context.scene):
-            hint(layout, "F12 would not show the model: its camera looks elsewhere, or there is none.")
+            hint(layout, "F12 would not show the model: no camera points at it.")
         layout.operator("realmodel.set_up_picture", icon="LIGHT_SUN")
         layout.operator("realmodel.render_picture", icon="RENDER_STILL")
         column = layout.column(align=True)  # side by side their names would be cut

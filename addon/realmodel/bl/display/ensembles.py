@@ -21,8 +21,8 @@ from . import bodies, colors, sections
 BLOCKS = "realmodel_ensemble"  # on the object: StoredArrays, the blocks (R, N) int16
 ENTROPY, PROBABILITY, REALIZATION = "ENTROPY", "PROBABILITY", "REALIZATION"
 COLORS = (  # items of an enum
-    (ENTROPY, "Entropy", "How uncertain the block is, in bits: 0 where all realizations have the same"),
-    (PROBABILITY, "Probability", "The share of the realizations in which a block is there"),
+    (ENTROPY, "Entropy", "Uncertainty of the block, in bits. 0: all realizations have the same block"),
+    (PROBABILITY, "Probability", "Share of the realizations with this block"),
     (REALIZATION, "Realization", "The blocks of one realization"),
 )
 _STEPS = 15  # of the color scales: each is a material, which all ways of shading show

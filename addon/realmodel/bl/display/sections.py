@@ -49,9 +49,7 @@ def through(scene, line):
 def colored(scene, section):
     """A section in the colors that the library has now."""
     if not len(section):
-        raise InputRefused(
-            "the section does not meet the model", advice="move it to where there are blocks, or turn it"
-        )
+        raise InputRefused("the section does not meet the model", advice="move it to the blocks, or turn it")
     for block, property_id in set(zip(section.block.tolist(), section.property.tolist(), strict=True)):
         row = library_rows.find(scene, property_id)
         if row is not None and row.has_color:

@@ -53,7 +53,7 @@ class StageRequest:
         if scene is None:
             raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
         if scene.realmodel.built_stamp != self.stamp or not len(scene.realmodel.results):
-            raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
+            raise BuildFailed("another model was built at the same time; nothing was changed: start again")
         return scene
 
     def make(self):

@@ -69,7 +69,7 @@ def frame(context):
     """Zooms to the whole model. Raises InputRefused where there is none."""
     spaces = viewports.spaces(context)
     if len(model_points(context.scene)) == 0:
-        raise InputRefused("there is no model to be seen", advice="build one first")
+        raise InputRefused("no model is visible", advice="build one first")
     _remember(spaces[0])
     for space in spaces:
         _frame(context.scene, space)

@@ -20,8 +20,8 @@ from ..project import surface_dips
 from . import data, edits
 
 NET_ITEMS = (
-    (EQUAL_AREA.upper(), "Equal Area (Schmidt)", "Areas keep their ratios, so densities can be compared"),
-    (EQUAL_ANGLE.upper(), "Equal Angle (Wulff)", "Circles stay circles, and angles between them are kept"),
+    (EQUAL_AREA.upper(), "Equal Area (Schmidt)", "Equal areas, so densities can be compared"),
+    (EQUAL_ANGLE.upper(), "Equal Angle (Wulff)", "Equal angles: circles stay circles"),
 )
 _NEAR = 0.1  # of the radius of a net, between the mouse and a pole, at most
 

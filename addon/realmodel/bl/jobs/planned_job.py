@@ -43,7 +43,7 @@ class PlannedJob(ThreadJob):
         if row is None or scene.realmodel.built_stamp != self._request.stamp:
             raise BuildFailed("the hole or its model is gone; nothing was changed")
         if planned_holes.axis_of(row) != self._axis:
-            raise BuildFailed("the hole was moved meanwhile; nothing was changed: ask again")
+            raise BuildFailed("the hole was moved during the computation; nothing was changed: try again")
         self._request.keep()
         planned_holes.keep(scene, row, hole)
         return hole

@@ -22,13 +22,13 @@ DIVIDE = "DIVIDE"
 VOLUME = "realmodel_volume"  # on the object of a sub-block
 OPERATIONS = (  # items of an enum
     ("UNION", "Union", "Join the selected solid to the active one"),
-    ("INTERSECT", "Intersect", "Keep what is inside of both solids"),
-    ("DIFFERENCE", "Difference", "Take the selected solid from the active one"),
+    ("INTERSECT", "Intersect", "Keep the part inside both solids"),
+    ("DIFFERENCE", "Difference", "Subtract the selected solid from the active one"),
     (
         DIVIDE,
         "Divide",
-        "Divide both objects, open or closed, along one another: into parts of their surfaces, the solids "
-        "that these enclose with their volumes, and the loops in which they meet",
+        "Divide both objects, open or closed, along their intersection: into parts of their surfaces, the "
+        "solids that these enclose with their volumes, and the loops where they meet",
     ),
 )
 _BOUNDARIES = {"UNION": "union", "INTERSECT": "intersection", "DIFFERENCE": "difference"}
@@ -77,7 +77,7 @@ class BooleanJob(ThreadJob):
         try:
             surfaces = [(operand.vertices, operand.triangles) for operand in self._operands]
             intersection = intersect_within(job, *surfaces, _SHARE)
-            with job.phase(_SHARE, 1.0, "taking over materials and attributes"):
+            with job.phase(_SHARE, 1.0, "copying materials and attributes"):
                 if self._operation == DIVIDE:
                     return self._divided(intersection, job)
                 return self._solid(intersection)

@@ -79,7 +79,7 @@ def require_open(item):
     if len(used) and (np.bincount(used, minlength=len(mesh.edges)) == 2).all():
         raise InputRefused(
             f"{item.name} is a closed solid; RealModel takes open sheets, such as a grid",
-            advice="choose a mesh with one height everywhere",
+            advice="choose a mesh with one elevation at each position",
         )
 
 
@@ -182,7 +182,7 @@ def polyline(item, depsgraph):
     line = all_lines[0][:, :2]
     line = line[begins_run(line)]
     if len(line) < 2:
-        raise InputRefused("it is a point seen from above", item=what, advice="draw a line")
+        raise InputRefused("seen from above it is a point", item=what, advice="draw a line")
     return line
 
 

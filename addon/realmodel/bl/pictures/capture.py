@@ -104,7 +104,7 @@ def _render(context, path, size):
     scene = context.scene
     points = viewpoints.model_points(scene)
     if not modes.shows_something(scene):
-        raise InputRefused("there is nothing to be seen", advice="build a model")
+        raise InputRefused("nothing is visible", advice="build a model")
     spaces = viewports.spaces(context)
     try:
         with picture.discard_scene(scene.copy()) as stage:

@@ -166,7 +166,7 @@ def check_modes(scene, prepared=None):
         obj = _interface(row)
         if obj is not None and obj.mode != "OBJECT" and digest != row.interface_digest:
             raise BuildFailed(
-                f"interface '{obj.name}' is in {_mode_name(obj)}, and its heights have become others; "
+                f"interface '{obj.name}' is in {_mode_name(obj)}, and its elevations have changed; "
                 "leave the mode (Tab), then build again"
             )
 

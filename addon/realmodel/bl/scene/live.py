@@ -33,7 +33,7 @@ _REFINE_SECONDS = 0.3  # without a change, after a coarse model, before the whol
 _CHECK_SECONDS = 0.3  # without a change, before the fingerprint of what a model is made from is taken
 _WATCH_SECONDS = 2.0  # between two looks at the files
 _CANCELLED = "the build was cancelled: press Build, or Auto builds after the next change"
-_DIFFERS = "the model differs from its input, though it was built again: press Build"
+_DIFFERS = "the model still differs from its input after a build: click Build"
 _to_refine, _refined = set(), set()  # names of scenes: with a coarse model of the last change; in work
 _again = set()  # names of scenes that are built though nothing was reported
 

@@ -19,8 +19,8 @@ from ..objects import viewports
 from ..project import settings
 
 CHARTS = (
-    ("VARIOGRAM", "Variogram", "Semivariance over distance: of pairs of points, and the curve that is used"),
-    ("CROSS_VALIDATION", "Points", "Cross-validation: each point as the others estimate it"),
+    ("VARIOGRAM", "Variogram", "Semivariance over distance: pairs of points, and the fitted curve"),
+    ("CROSS_VALIDATION", "Points", "Cross-validation: each point predicted from the others"),
     ("MESH", "Mesh", "Smallest angles of the triangles"),
 )
 _LOOK_SECONDS = 0.05

@@ -101,7 +101,7 @@ FORMATS = (
     ),
     Format(".usdc", "USD", _OBJECTS, "For film and visualization; pictures are beside the file", _write_usd),
     Format(".usda", "USD as Text", _OBJECTS, "The same, as text", _write_usd),
-    Format(".obj", "Wavefront OBJ", _OBJECTS, "For everything else; knows no custom properties", _write_obj),
+    Format(".obj", "Wavefront OBJ", _OBJECTS, "For other programs; no custom properties", _write_obj),
 )
 
 

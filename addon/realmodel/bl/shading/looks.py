@@ -36,7 +36,7 @@ def says(key, look):
 
 
 ITEMS = (
-    (AUTO, "Automatic", "The look that suits the lithology, else the name of the property"),
+    (AUTO, "Automatic", "The look for the lithology, or for the name of the property"),
     *((key, look.label, says(key, look)) for key, look in LOOKS.items()),
 )
 UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
