@@ -17,7 +17,7 @@ import re
 import sys
 from pathlib import Path
 
-from realmodel.core import InputRefused, read_boreholes
+from realmodel.core import InputRefused, RealModelError, read_boreholes
 
 UNITS = (
     ("Marine Deposit", r"MARINE DEPOSIT\)"),
@@ -39,7 +39,7 @@ def unit_of(description: str) -> str:
 
 
 def with_granite(log: list[list]) -> list[list]:
-    """The log of a hole, rows of (hole, from, to, unit), with rock as granite or as corestones in saprolite."""
+    """The log of a hole, rows of (hole, from, to, unit): its rock is granite, or corestones in saprolite."""
     end = len(log)
     while end and log[end - 1][3] == "rock":
         end -= 1
@@ -78,4 +78,7 @@ def write(path: Path, header, rows) -> None:
 if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    try:
+        main(Path(sys.argv[1]), Path(sys.argv[2]))
+    except RealModelError as error:
+        sys.exit(f"read_units.py: {error}")

@@ -57,12 +57,11 @@ def _series(context):
 
 
 class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
-    """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
-    the surfaces), of logged intervals and of assays, with LAS files of logs along them, or the drillholes of
-    an OMF or geoh5 file; tables of places in known blocks, such as outcrops; dips, which count for the
-    surfaces or blocks that their rows name, or for the active surface or its series where none names any; and
-    geological maps. Choose all of them at once: each is told by its columns. Surfaces get these
-    data beside their own, and are added where they are not there yet"""
+    """Read field data, all files at once: boreholes as tables of collars, surveys, picks, intervals and
+    assays, LAS files, and drillholes of OMF or geoh5 files; observations of blocks, such as outcrops; dips;
+    geological maps. The columns show the type of each table. Dips apply to the surfaces or blocks that their
+    rows name, otherwise to the active surface or its series. Surfaces keep the data that they have; missing
+    surfaces are added"""
 
     bl_label = "Import Field Data"
 
@@ -372,7 +371,7 @@ def with_dips(context):
 
 
 class REALMODEL_OT_observations_remove(Reporting, bpy.types.Operator):
-    """Remove the observations of blocks of the rock mass, logged intervals too; points and picks stay"""
+    """Remove the observations of the rock mass, including logged intervals. Points and picks stay"""
 
     bl_label = "Remove Observations"
     needs = (a_rock, observed)
@@ -397,7 +396,7 @@ class REALMODEL_OT_dips_remove(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_rock_dips_remove(Reporting, bpy.types.Operator):
-    """Remove the dips of the rock mass; those of single surfaces stay"""
+    """Remove the dips of the rock mass. The dips of single surfaces stay"""
 
     bl_label = "Remove Dips of Rock Mass"
     needs = (a_rock, dips_of_rock)

@@ -60,8 +60,8 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
 
 
 class REALMODEL_OT_estimate(InBackground, bpy.types.Operator):
-    """Estimate what the build takes before anything is built: the triangles of all surfaces, the nodes of
-    fields, memory and time. Esc cancels"""
+    """Estimate the triangles of all surfaces, the nodes of fields, the memory and the time of a build. Esc
+    cancels"""
 
     bl_label = "Estimate"
     bl_options = {"REGISTER"}
@@ -104,7 +104,8 @@ def _a_bad_place(context):
 
 
 class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
-    """Select the triangles of the refused surface in Edit Mode, or move the 3D cursor there, and zoom in"""
+    """Select the triangles of the refused surface in Edit Mode, or move the 3D cursor to the error, and zoom
+    in"""
 
     bl_label = "Zoom to Error"
     needs = (_a_bad_place,)
@@ -119,7 +120,7 @@ def a_message(context):
 
 
 class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
-    """Remove the message from the panel; the report of the model keeps its warnings"""
+    """Remove the message from the panel. The report of the model keeps its warnings"""
 
     bl_label = "Dismiss Message"
     bl_options = {"REGISTER", "INTERNAL"}
@@ -133,7 +134,7 @@ class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
-    """Copy the table of blocks to the clipboard, to be pasted into a spreadsheet"""
+    """Copy the table of blocks to the clipboard, for a spreadsheet"""
 
     bl_label = "Copy Table"
     bl_options = {"REGISTER"}

@@ -95,8 +95,8 @@ def _give_way(scene, rock, before):
 
 
 class REALMODEL_OT_codes_assign(_Regrouping, bpy.types.Operator):
-    """Give the chosen codes of field data, or those that a pattern fits, a unit: a surface, a body, or a new
-    one. Their files are read again"""
+    """Assign the ticked codes of field data, or those that match a pattern, to a unit: a surface, a body, or
+    a new one. Their files are read again"""
 
     bl_label = "Assign to Unit"
 
@@ -123,8 +123,8 @@ def _units(context):
 
 
 class REALMODEL_OT_codes_ignore(_Regrouping, bpy.types.Operator):
-    """The chosen codes of field data, or those that a pattern fits, say nothing, as lost core. Their files
-    are read again"""
+    """Ignore the ticked codes of field data, or those that match a pattern, as for lost core. Their files are
+    read again"""
 
     bl_label = "Ignore Codes"
 
@@ -133,8 +133,8 @@ class REALMODEL_OT_codes_ignore(_Regrouping, bpy.types.Operator):
 
 
 class REALMODEL_OT_codes_reset(_Regrouping, bpy.types.Operator):
-    """The chosen codes of field data, or those that a pattern fits, mean the units that are called as they
-    are. Their files are read again"""
+    """Make each ticked code of field data, or each that matches a pattern, a unit of its own name. Their
+    files are read again"""
 
     bl_label = "Reset Codes"
 
@@ -143,7 +143,7 @@ class REALMODEL_OT_codes_reset(_Regrouping, bpy.types.Operator):
 
 
 class REALMODEL_OT_codes_choose(Reporting, bpy.types.Operator):
-    """Tick the codes that a pattern fits"""
+    """Tick the codes that match a pattern"""
 
     bl_label = "Choose Codes"
     needs = (a_rock, with_codes)

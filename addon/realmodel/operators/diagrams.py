@@ -42,7 +42,7 @@ def _exaggerate(operator, context):
 
 
 class REALMODEL_OT_save_juxtaposition(Exporting, bpy.types.Operator):
-    """Save a drawing of what lies on both sides of the active fault, along its strike, with its throw"""
+    """Save a drawing of the rocks on both sides of the active fault, along its strike, with its throw"""
 
     bl_label = "Save Juxtaposition"
     needs = (a_model, a_fault)
@@ -64,8 +64,8 @@ class REALMODEL_OT_save_juxtaposition(Exporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_juxtaposition(Reporting, bpy.types.Operator):
-    """Show what lies on both sides of the active fault, along its strike, with its throw, in an image editor.
-    Press it again after a build"""
+    """Show the rocks on both sides of the active fault, along its strike, with its throw, in an image editor.
+    Click again after a build"""
 
     bl_label = "View Juxtaposition"
     bl_options = {"REGISTER"}
@@ -118,8 +118,8 @@ class REALMODEL_OT_save_stereonet(Exporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_dips_pick(InViewport, bpy.types.Operator):
-    """Pick dips in the viewport by clicks, or by brushing over them with the button held: the stereonet has
-    these alone"""
+    """Pick dips in the viewport: click them, or brush over them with the button held. The stereonet then
+    shows only these"""
 
     bl_label = "Pick Dips"
     bl_options = {"UNDO"}

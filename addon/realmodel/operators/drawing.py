@@ -194,8 +194,8 @@ class _Drawing(InViewport):
 
 
 class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
-    """Draw contacts of the active surface: click places, or draw a line with the button held, on the section
-    plane, or on a placed image that is the active object. The points are added to those of the surface"""
+    """Draw contacts of the active surface on the section plane, or on a placed image that is the active
+    object: click points, or draw a line with the button held. The contacts are added to the surface"""
 
     bl_label = "Draw Contacts"
     needs = (a_surface, object_mode)
@@ -208,8 +208,7 @@ class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
 
 
 class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):
-    """Draw a stick of the active fault, as Draw Contacts does: the surface of the fault is fitted through its
-    sticks"""
+    """Draw a stick of the active fault. The surface of the fault is fitted through its sticks"""
 
     bl_label = "Draw Stick"
     needs = (a_fault, object_mode)

@@ -16,9 +16,9 @@ from .reporting import InBackground, Reporting, a_model, an_ensemble, an_outline
 
 
 class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
-    """Build the model many times, each time with other elevations between the points, as these and the
-    variograms allow: how certain are the volumes, and which block is where? Esc cancels and leaves the scene
-    unchanged"""
+    """Build the model many times, each time with other elevations between the points, as the data and the
+    variograms permit. Shows how certain the volumes are, and how probable each block is. Esc cancels and
+    leaves the scene unchanged"""
 
     bl_label = "Make Ensemble"
     needs = (not_building, a_model)

@@ -52,8 +52,8 @@ def _changed(scene):
 
 
 class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
-    """Pick a datum in the viewport - a point, a dip, an outcrop, an interval, or a pole in the stereonet - to
-    move it, or to switch it off; move its sphere as any object (G)"""
+    """Pick a datum in the viewport to move it or to switch it off: a point, a dip, an outcrop, an interval,
+    or a pole in the stereonet. Move its sphere like any object (G)"""
 
     bl_label = "Pick Datum"
     needs = (any_data,)
@@ -110,8 +110,8 @@ def _under_mouse(context, event):
 
 
 class REALMODEL_OT_datum_switch(Reporting, bpy.types.Operator):
-    """Switch the active datum off, or on: what is switched off stays in the file, and a build does not use
-    it"""
+    """Switch the active datum off, or on. A datum that is switched off stays in the file, but builds do not
+    use it"""
 
     bl_label = "Switch Datum Off or On"
     needs = (a_datum,)
@@ -150,7 +150,7 @@ class REALMODEL_OT_datum_show(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_datum_leave(Reporting, bpy.types.Operator):
-    """No datum is active any more; its sphere is removed"""
+    """Deselect the active datum and remove its sphere"""
 
     bl_label = "Leave Datum"
     needs = (a_datum,)
@@ -160,7 +160,7 @@ class REALMODEL_OT_datum_leave(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_misfit_show(Reporting, bpy.types.Operator):
-    """Turn the viewport to the active row of the list of data that do not fit, and pick its datum"""
+    """Turn the viewport to the active misfit, and pick its datum"""
 
     bl_label = "Show Misfit"
     needs = (any_data,)

@@ -205,7 +205,7 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
 
 
 class REALMODEL_OT_share(ExportingInBackground, bpy.types.Operator):
-    """Write the built model as one web page, which anybody can open, and show it. Esc cancels"""
+    """Write the built model as one web page, which opens in any browser, and show it. Esc cancels"""
 
     bl_label = "Share"
     command = "share"
@@ -281,7 +281,7 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
 
 
 class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
-    """Export what is displayed of the model to other 3D programs, with names, materials, looks, and custom
+    """Export what is displayed of the model for other 3D programs, with names, materials, looks, and custom
     properties"""
 
     bl_label = "Export Scene"

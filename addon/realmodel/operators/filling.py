@@ -54,8 +54,9 @@ def _azimuth(name, description, default=0.0):
 
 
 class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
-    """Fill the active mesh with strata: each bed a closed object with a rock of its own, together exactly the
-    mesh, which is hidden. An open mesh with one height everywhere is filled down to a base. Esc cancels"""
+    """Fill the active mesh with strata. Each bed is a closed object with its own rock; together the beds
+    equal the mesh, which is hidden. An open mesh with one elevation at each position is filled down to a
+    base. Esc cancels"""
 
     bl_label = "Fill with Strata"
     bl_options = {"REGISTER", "UNDO", "PRESET"}

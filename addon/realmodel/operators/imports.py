@@ -112,7 +112,7 @@ class REALMODEL_OT_surface_add(
     bpy.types.Operator,
     FilesImportHelper,
 ):
-    """Add surfaces above the youngest one: from one or more files of points or meshes, or a mesh object"""
+    """Add surfaces above the youngest one, from files of points or meshes, or from a mesh object"""
 
     bl_label = "Import Surfaces"
 

@@ -76,7 +76,7 @@ class REALMODEL_OT_save_chart(Exporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_cursor_to_point(Reporting, bpy.types.Operator):
-    """Move the 3D cursor to a point of the active surface, one of those with the largest errors"""
+    """Move the 3D cursor to one of the points of the active surface with the largest errors"""
 
     bl_label = "Cursor to Point"
     needs = (a_surface, _a_result)
@@ -102,8 +102,8 @@ def a_table(context):
 
 
 class REALMODEL_OT_cross_validate_holes(InBackground, bpy.types.Operator):
-    """Make the surfaces again without each borehole, and compare: which share of the hole do the others have
-    in the right block, and how far off are its contacts? Esc cancels"""
+    """Predict each borehole from the others: report the share of the hole in the right block, and the errors
+    of its contacts. Esc cancels"""
 
     bl_label = "Leave Out Holes"
     needs = (not_building, a_model, some_holes)
@@ -138,7 +138,7 @@ class REALMODEL_OT_left_out_hole_show(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_left_out_holes_clear(Reporting, bpy.types.Operator):
-    """Remove the table of holes that were left out"""
+    """Remove the table of left-out holes"""
 
     bl_label = "Remove Table"
     needs = (a_table,)

@@ -41,8 +41,8 @@ def set_up_first(scene):
 
 
 class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
-    """Add a camera, sun, sky and ground for the model and choose the renderer, so that Render Image (F12)
-    gives a good picture. Earlier ones of RealModel are replaced, your own cameras and lights stay"""
+    """Add a camera, a sun, a sky and a ground for the model and choose the renderer, for Render Image (F12).
+    They replace earlier ones of RealModel. Your own cameras and lights stay"""
 
     bl_label = "Light and Camera"
     needs = (a_model_or_beds,)
@@ -87,8 +87,8 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
-    """Set up light and camera, and have the camera go around the model once. Render Animation (Ctrl-F12)
-    writes it; an earlier turntable is replaced"""
+    """Set up light and camera, and make the camera go around the model once. Replaces an earlier turntable.
+    Render Animation (Ctrl F12) renders it"""
 
     bl_label = "Turntable"
     needs = (a_model_or_beds,)
@@ -113,8 +113,8 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_animate_stages(Reporting, bpy.types.Operator):
-    """Set keyframes of the stage from the oldest rock to the whole model. Keyframes that the stage has are
-    replaced. Switches on Lock Interface in the menu Render, which their renders need"""
+    """Set keyframes of the stage from the oldest rock to the whole model; they replace earlier keyframes of
+    the stage. Enables Lock Interface in the menu Render, which their renders need"""
 
     bl_label = "Animate Stages"
     needs = (a_model,)
@@ -130,7 +130,7 @@ class REALMODEL_OT_animate_stages(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
-    """Render the model with its camera; where the scene has none, set up light and camera first"""
+    """Render the model with the camera of the scene. If there is none, set up light and camera first"""
 
     bl_label = "Render Picture"
     needs = (a_model_or_beds,)
@@ -192,7 +192,8 @@ def _blocks(context):
 
 
 class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
-    """Weather the selected blocks, or all, for pictures: a modifier on top of the exact blocks"""
+    """Weather the selected blocks, or all, for pictures. A modifier changes their appearance; the exact
+    blocks do not change"""
 
     bl_label = "Weathering"
     needs = (a_model_or_beds,)

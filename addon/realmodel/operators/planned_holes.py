@@ -24,8 +24,8 @@ def a_planned_hole(context):
 
 
 class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
-    """Plan a hole that goes straight down through the middle of the model, or at the 3D cursor where you have
-    put it over the model; its collar, azimuth, dip and length can be changed then"""
+    """Plan a hole that goes straight down through the middle of the model, or at the 3D cursor if it is over
+    the model. Change its collar, azimuth, dip and length afterward"""
 
     bl_label = "Plan Hole"
     needs = (a_model,)
@@ -82,8 +82,8 @@ class REALMODEL_OT_planned_hole_collar(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_planned_hole_certainty(InBackground, bpy.types.Operator):
-    """Draw the surfaces of the ensemble's realizations again, and see which blocks they have along the active
-    planned hole: how probable is each block, how far may a contact move? Esc cancels"""
+    """Draw the surfaces of the ensemble's realizations again, and compute along the active planned hole how
+    probable each block is, and how far each contact may move. Esc cancels"""
 
     bl_label = "How Certain"
     needs = (not_building, a_model, a_planned_hole, an_ensemble)
@@ -96,7 +96,7 @@ class REALMODEL_OT_planned_hole_certainty(InBackground, bpy.types.Operator):
 
 
 class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):
-    """Save what the active planned hole meets as a table"""
+    """Save the blocks along the active planned hole as a table"""
 
     bl_label = "Save Planned Hole"
     needs = (a_model, a_planned_hole)

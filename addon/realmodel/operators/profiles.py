@@ -62,7 +62,7 @@ class REALMODEL_OT_profile_remove(_OfAProfile, bpy.types.Operator):
 
 
 class REALMODEL_OT_profiles_export(Reporting, bpy.types.Operator, ExportHelper):
-    """Save all import profiles to a file (JSON), for others"""
+    """Save all import profiles to a file (JSON), to share them"""
 
     bl_label = "Save Import Profiles"
     bl_options = {"REGISTER"}
@@ -78,7 +78,7 @@ class REALMODEL_OT_profiles_export(Reporting, bpy.types.Operator, ExportHelper):
 
 
 class REALMODEL_OT_profiles_import(Reporting, bpy.types.Operator, ImportHelper):
-    """Load import profiles from a file (JSON); one for the same header takes the place of your own"""
+    """Load import profiles from a file (JSON). A profile for the same header replaces yours"""
 
     bl_label = "Load Import Profiles"
     bl_options = {"REGISTER"}

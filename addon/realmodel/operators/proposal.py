@@ -16,9 +16,9 @@ from .start import show
 
 
 class REALMODEL_OT_propose_project(InBackground, ChosenTables, bpy.types.Operator):
-    """Make a project of boreholes, or of a geological map, alone, in place of the model of this scene: the
-    order of units, which of them cut older ones, lenses, region, base and ground, each with its reason. Esc
-    cancels and leaves the scene unchanged"""
+    """Make a project from boreholes, or from a geological map, and replace the model of this scene: the order
+    of units, erosion, lenses, region, base and ground, with the reason of each choice. Esc cancels and leaves
+    the scene unchanged"""
 
     bl_label = "Propose Project"
     needs = (not_building,)

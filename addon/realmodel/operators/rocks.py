@@ -28,7 +28,7 @@ _ABOVE = 0.1  # of the height of the points: how far over them a region is, as o
 
 
 class REALMODEL_OT_rock_add(Reporting, bpy.types.Operator):
-    """Add a rock mass: a region in plan with surfaces of its own"""
+    """Add a rock mass: a region in plan with its own surfaces"""
 
     bl_label = "Add Rock Mass"
 
@@ -51,7 +51,7 @@ def add_rock(scene):
 
 
 class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
-    """Remove the active rock mass with its surfaces and blocks; meshes that you brought stay in the scene"""
+    """Remove the active rock mass with its surfaces and blocks. Your own meshes stay in the scene"""
 
     bl_label = "Remove Rock Mass"
     needs = (a_rock,)

@@ -90,8 +90,8 @@ _NORMAL = FloatVectorProperty(
 
 
 class REALMODEL_OT_section(Reporting, bpy.types.Operator):
-    """Make an exact section of the model as a mesh object in the materials of its layers, where the section
-    plane is unless a location is given"""
+    """Make an exact section of the model as a mesh object with the materials of its layers, at the section
+    plane or at a given location"""
 
     bl_label = "Make Section"
     needs = (a_model,)
@@ -110,8 +110,7 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
-    """Make vertical sections of the model along the active curve, or a mesh of edges, as a mesh object; along
-    that of a fence where one is active"""
+    """Make a mesh object of vertical sections along the active curve, mesh of edges, or fence"""
 
     bl_label = "Make Fence"
     needs = (a_model, an_outline_object)
@@ -132,7 +131,7 @@ def chosen_holes(context):
 
 
 class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
-    """Click boreholes in the viewport, one after another: the section goes through them in this order"""
+    """Click boreholes in the viewport, in the order of the section"""
 
     bl_label = "Pick Holes"
     bl_options = {"UNDO"}
@@ -171,7 +170,7 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
 
 
 class REALMODEL_OT_hole_log(InViewport, bpy.types.Operator):
-    """Click a borehole in the viewport: its log stands beside the model, with intervals, picks and curves"""
+    """Click a borehole in the viewport to show its log beside the model, with intervals, picks and curves"""
 
     bl_label = "Hole Log"
     bl_options = {"UNDO"}
@@ -330,8 +329,8 @@ class REALMODEL_OT_save_section(_DrawsSections, bpy.types.Operator):
 
 
 class REALMODEL_OT_save_sheets(_DrawsSections, bpy.types.Operator):
-    """Save sheets to print: the geological map, and the sections by the section plane, along the line of each
-    fence, and through the chosen boreholes, at one scale with frame, legend and title block"""
+    """Save sheets to print: the geological map, and the sections of the section plane, of each fence, and
+    through the chosen boreholes. They have one scale, a frame, a legend and a title block"""
 
     bl_label = "Save Sheets"
     needs = (a_model,)
@@ -387,7 +386,7 @@ def _of_scene(context):
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
-    """Cut the model open along a plane that you can move, turn and keyframe as any object"""
+    """Cut the model along a plane. Move, rotate and keyframe the plane like any object"""
 
     bl_label = "Section Plane"
     needs = (a_model,)
@@ -440,7 +439,7 @@ def _a_cut(context):
 
 
 class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
-    """Cut the model along the section plane now: for scripts, which do not wait for the pause"""
+    """Cut the model along the section plane at once, without the pause. For scripts"""
 
     bl_label = "Cut at Section Plane"
     needs = (a_model, _a_cut)
@@ -451,7 +450,7 @@ class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_section_remove(Reporting, bpy.types.Operator):
-    """Remove the section plane; the model is whole again"""
+    """Remove the section plane and show the whole model"""
 
     bl_label = "Remove Section Plane"
     needs = (a_section_plane,)

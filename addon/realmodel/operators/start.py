@@ -94,7 +94,7 @@ class Replacing(Reporting):
 
 
 class REALMODEL_OT_new(Replacing, bpy.types.Operator):
-    """Begin an empty model in this scene. The blocks of an earlier one are removed, your own meshes stay"""
+    """Begin an empty model in this scene, and remove the blocks of the earlier one. Your own meshes stay"""
 
     bl_label = "New Model"
 
@@ -106,8 +106,7 @@ class REALMODEL_OT_new(Replacing, bpy.types.Operator):
 
 
 class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
-    """Open a RealModel project file (TOML), or a model that was built (NPZ), in this scene, in place of the
-    model that is there"""
+    """Open a RealModel project file (TOML), or a built model (NPZ), in this scene, in place of its model"""
 
     bl_label = "Open RealModel Project"
 
@@ -194,7 +193,7 @@ def _open_model(context, path):
 
 
 class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
-    """Open one of the examples that come with RealModel, and build it"""
+    """Open and build one of the examples that come with RealModel"""
 
     bl_label = "Open Example"
 
@@ -215,7 +214,7 @@ class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
 
 
 class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
-    """Save the model as a project file (TOML) with its library, meshes and points beside it: build_model.py
+    """Save the model as a project file (TOML), with its library, meshes and points beside it. build_model.py
     builds the same model from it"""
 
     bl_label = "Save RealModel Project"
@@ -240,7 +239,7 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
 
 
 class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
-    """Make a model with one rock mass from the selected mesh objects: the lowest is taken as the oldest"""
+    """Make a rock mass from the selected mesh objects. The lowest becomes the oldest surface"""
 
     bl_label = "Model from Selected Meshes"
     needs = (not_building, selected_sheets)

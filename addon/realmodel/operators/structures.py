@@ -119,8 +119,8 @@ def _counts_text(kinds):
 
 
 class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
-    """Add the selected objects: a closed mesh as a body, an open one as a fault, and a curve or a mesh of
-    edges as the trace of a vertical fault, whose dip can be set then"""
+    """Add the selected objects: a closed mesh as a body, an open mesh as a fault, and a curve or a mesh of
+    edges as the trace of a vertical fault. Set its dip afterward"""
 
     bl_label = "From Selected Meshes"
     needs = (selected_shapes,)
@@ -160,8 +160,8 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelper):
-    """Add faults and bodies from files: meshes (TSurf, OFF, OBJ, ...), fault sticks and points, through
-    which a surface is fitted, or lines of a map, which continue down their dip"""
+    """Add faults and bodies from files: meshes (TSurf, OFF, OBJ, ...); fault sticks and points, through which
+    a surface is fitted; or lines of a map, which continue along their dip"""
 
     bl_label = "Import Faults and Bodies"
 
@@ -227,7 +227,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
 
 
 class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
-    """Remove the active fault or body; a mesh that you brought stays in the scene"""
+    """Remove the active fault or body. Your own mesh stays in the scene"""
 
     bl_label = "Remove Fault or Body"
     needs = (a_structure,)
@@ -274,7 +274,7 @@ class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
-    """Move the active fault or body in its list; of bodies that overlap the later one counts"""
+    """Move the active fault or body in its list. Where bodies overlap, the lower one in the list counts"""
 
     bl_label = "Move Fault or Body"
     needs = (a_structure,)
@@ -298,8 +298,7 @@ class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_fault_body_hide(Reporting, bpy.types.Operator):
-    """Hide the surface of the active fault or body in the viewport, or show it again; it is built all the
-    same"""
+    """Hide the surface of the active fault or body in the viewport, or show it again. Builds still use it"""
 
     bl_label = "Hide or Show Fault or Body"
     needs = (a_structure,)
@@ -408,8 +407,8 @@ def dips_to_give(context):
 
 
 class REALMODEL_OT_series_add(Reporting, bpy.types.Operator):
-    """Add a series of consecutive surfaces that share their structure. It begins with the active surface;
-    choose its youngest and its oldest one then"""
+    """Add a series of consecutive surfaces that share their structure. It begins with the active surface.
+    Choose its youngest and its oldest surface afterward"""
 
     bl_label = "Add Series"
     needs = (a_rock, a_surface)
@@ -429,7 +428,7 @@ class REALMODEL_OT_series_add(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_series_remove(Reporting, bpy.types.Operator):
-    """Remove the active series with its dips; its surfaces stay, each by itself"""
+    """Remove the active series with its dips. Its surfaces stay as single surfaces"""
 
     bl_label = "Remove Series"
     needs = (a_rock, a_series)
@@ -448,8 +447,8 @@ class REALMODEL_OT_series_remove(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_series_move(Reporting, bpy.types.Operator):
-    """Make all surfaces of the active series younger (up) or older (down): past the next surface, or past all
-    of the next series"""
+    """Make all surfaces of the active series younger (up) or older (down), past the next surface or the
+    entire next series"""
 
     bl_label = "Move Series"
     needs = (a_rock, a_series)
@@ -498,8 +497,8 @@ class REALMODEL_OT_series_dips_remove(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
-    """Give the dips of the active surface, which is a level set, to the field of its series. Where they have
-    no height they lie at that of the mean of its points"""
+    """Give the dips of the active surface, which is a level set, to the field of its series. Dips without an
+    elevation get the mean elevation of the surface's points"""
 
     bl_label = "Give to Series"
     needs = (a_surface, dips_to_give)
@@ -522,8 +521,8 @@ class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
-    """Add a dip at the 3D cursor: of the active surface's series, in a field at any angle, or of the active
-    surface, where it is in none"""
+    """Add a dip at the 3D cursor: to the series of the active surface, or to the surface if it has none. In a
+    field the dip may have any angle"""
 
     bl_label = "Add Dip at Cursor"
     needs = (a_surface,)

@@ -13,7 +13,7 @@ from .reporting import Reporting, a_fault, a_surface, remove_row, row_number
 
 
 class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
-    """Remove the active surface; a mesh that you brought stays in the scene"""
+    """Remove the active surface. Your own mesh stays in the scene"""
 
     bl_label = "Remove Surface"
     needs = (a_surface,)
@@ -91,8 +91,8 @@ class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_surface_sort(Reporting, bpy.types.Operator):
-    """Sort the surfaces of the rock mass by age, as their points show it: the older one is the lower one at
-    the same places. Where points do not decide, by name"""
+    """Sort the surfaces of the rock mass by age: at the same position the older surface is the lower one. If
+    points do not decide, sort by name"""
 
     bl_label = "Sort Surfaces"
     needs = (a_surface,)
@@ -118,7 +118,7 @@ class REALMODEL_OT_surface_sort(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_surface_hide(Reporting, bpy.types.Operator):
-    """Hide the active surface's interface in the viewport, or show it again; it is built all the same"""
+    """Hide the interface of the active surface in the viewport, or show it again. Builds still use it"""
 
     bl_label = "Hide or Show Surface"
     needs = (a_surface,)
@@ -154,7 +154,7 @@ class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
-    """Add a structure to the variogram of the active surface: structures of several ranges make it nested"""
+    """Add a structure to the variogram of the active surface, which becomes nested"""
 
     bl_label = "Add Structure"
     needs = (a_surface,)
@@ -209,7 +209,7 @@ def _filtered(context, of_fault):
 
 
 class REALMODEL_OT_filter_add(Reporting, bpy.types.Operator):
-    """Read only the rows of the file that have a value in a column; values of one column are alternatives"""
+    """Read only rows of the file with a certain value in a column. Values of one column are alternatives"""
 
     bl_label = "Add Filter"
     needs = (_a_file,)

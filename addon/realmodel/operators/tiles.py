@@ -11,8 +11,8 @@ from .reporting import Reporting, chosen_path, file_filter
 
 
 class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
-    """Read a model that was built in tiles: all of it with coarse blocks, or some of its tiles as they are.
-    The model of this scene stays"""
+    """Read a model that was built in tiles: the whole model with coarse blocks, or some tiles unchanged. The
+    model of this scene stays"""
 
     bl_label = "Import Tiles"
 

@@ -74,7 +74,7 @@ class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
-    """Go forth to the next view of the viewports, after Previous View"""
+    """Go forward to the next view of the viewports, after Previous View"""
 
     bl_label = "Next View"
     bl_options = {"REGISTER"}
@@ -96,7 +96,7 @@ class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
-    """Write the 3D viewport as it is seen to a picture (PNG) of any size"""
+    """Save the 3D Viewport as a picture (PNG) of any size"""
 
     bl_label = "Capture View"
     bl_options = {"REGISTER"}
@@ -176,7 +176,7 @@ class REALMODEL_OT_edit_done(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
-    """Hide the blocks of a property, or show them again; renders follow"""
+    """Hide the blocks of a property, or show them again, in renders as well"""
 
     bl_label = "Hide or Show Blocks by Property"
     needs = (a_model,)
@@ -216,8 +216,8 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
-    """Show the coordinates of the model, its block, property and thickness: under the mouse until you click,
-    or at the 3D cursor"""
+    """Show coordinates, block, property and thickness: under the mouse until you click, or at the 3D
+    cursor"""
 
     bl_label = "Coordinates"
     needs = (a_model,)
@@ -285,8 +285,8 @@ def place_text(scene, place):
 
 
 class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
-    """Set the point that distances are measured from: the last coordinates, or the 3D cursor. The model
-    itself does not move"""
+    """Set the point from which distances are measured: the last coordinates, or the 3D cursor. The model does
+    not move"""
 
     bl_label = "Set Origin"
 
@@ -315,8 +315,8 @@ class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
-    """Choose another origin so that a model far from the zero of the scene stands near it. Your objects that
-    it is made from move with it; all model coordinates stay. A built model is built again"""
+    """Change the origin so that a distant model moves to the zero point of the scene. The source objects move
+    with it. Model coordinates do not change. A built model is built again"""
 
     bl_label = "Move Model to Scene's Zero"
     needs = (any_surface, not_building)
