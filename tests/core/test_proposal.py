@@ -73,7 +73,7 @@ def test_two_orders_that_the_data_allow_are_both_offered(tmp_path):
         ["rock", "clay", "sand", "soil"],
         ["rock", "sand", "clay", "soil"],
     ]
-    assert any("heights" in reason for reason in other.reasons)
+    assert any("elevations" in reason for reason in other.reasons)
     assert any("'clay'" in text and "'sand'" in text for text in proposal.warnings)
 
 

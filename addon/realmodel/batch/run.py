@@ -170,10 +170,7 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
     print(forecast.table(), flush=True)
     limit = forecast.available if options.memory is None else options.memory
     if forecast.memory > limit:
-        print(
-            "a build would be refused: it needs more memory than available (see --cells, --memory)",
-            flush=True,
-        )
+        print("a build would be refused: it needs more memory (see --cells, --memory)", flush=True)
 
 
 @contextlib.contextmanager

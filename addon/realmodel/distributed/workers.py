@@ -273,9 +273,7 @@ def _result(distributed: Any, future: Any) -> Any:
 
 
 def _gone() -> UsageError:
-    return UsageError(
-        "the connection to the scheduler or its workers was lost; start again: finished steps are kept"
-    )
+    return UsageError("the scheduler or its workers were lost; start again: finished steps are kept")
 
 
 def _distributed() -> Any:

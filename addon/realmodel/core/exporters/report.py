@@ -255,8 +255,7 @@ def fault_entry(fault: Fault) -> dict:
 
 
 def _dips(model: ModelData) -> list[dict]:
-    """The numbers of the stereonets: of all dips except those of faults (`of` is null), and of each named
-    group."""
+    """The numbers of the stereonets: of all dips but those of faults (`of` is null), and of each group."""
     sets = dip_sets(model.project)
     has_beds = any(entry.dips.in_use.any() for entry in sets if not entry.of_fault)
     names = [*([None] if has_beds else []), *dip_names(sets)]

@@ -30,9 +30,7 @@ def with_methods(project: Project, holes: int) -> tuple[list[Rock], str]:
     if 0 < holes < _FEW:
         surfaces = [s if s.method or not s.has_points else replace(s, method="auto") for s in rock.surfaces]
         rock = replace(rock, surfaces=surfaces)
-        plain = (
-            "each surface separately, by the method that predicts left-out points best: there are few points"
-        )
+        plain = "each surface separately, by the method that predicts left-out points best (few points)"
     if not sheets.series:
         return [rock], f"{plain}: no two that follow one another are conformable"
     if not 3 <= holes <= _MOST_HOLES:

@@ -110,9 +110,7 @@ def _bounds(tables: HoleTables, file: Path, sheet: RawTable, model_unit: str) ->
         advice = "write the unit of the depths into the file, such as M or FT"
         raise InputRefused(f"'{text}' is not a unit of length", file=file, line=sheet.line, advice=advice)
     if unit not in (None, of_tables):
-        tables.warnings.append(
-            f"{file}: its depths are in {unit}, as the file states: converted to {of_tables}"
-        )
+        tables.warnings.append(f"{file}: its depths are in {unit}, as stated: converted to {of_tables}")
     bounds = np.array([[float(entry) for entry in entries[1:3]] for _, entries in sheet.rows])
     return bounds * (1.0 if unit is None else factor(unit, of_tables))
 

@@ -27,8 +27,7 @@ class Erosion(ShortRepr):
 
     volume: (S, B) float64, what surface k (global index) removed of block j: the volume of the block just
     before the surface came, minus the volume just after. remaining: (B,) the present volumes of the model.
-    taken: (N, B) float64, the volume of block j that body n (from 0) replaced when it came, which is not
-    erosion.
+    taken: (N, B) float64, the volume of block j that body n (from 0) replaced; this is no erosion.
     """
 
     volume: np.ndarray

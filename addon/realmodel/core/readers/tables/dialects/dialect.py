@@ -27,9 +27,8 @@ class FileHeader:
 
 @dataclass(frozen=True)
 class Dialect:
-    """A kind of table that is recognized by its beginning: begins(head, size), as of a FileFormat.
-    header(file, lines): of its first lines; raises InputRefused. not_rows: lines among its rows that are
-    none."""
+    """A kind of table, recognized by its beginning: begins(head, size), as of a FileFormat. header(file,
+    lines): of its first lines; raises InputRefused. not_rows: lines among its rows that are none."""
 
     label: str
     endings: tuple[str, ...]
