@@ -287,9 +287,9 @@ def our_page_units(mark):
     return np.array([block.name for block in model.blocks])[model.block_at(page_places())]
 
 
-def closed_page_solids(names):
-    """The volumes of what the surfaces of LoopStructural cut a box into, by the code of the page."""
-    surfaces = run_page("strati.surfaces", names)["surfaces"]
+def closed_page_solids(mark, names):
+    """What the page prints of the solids that surfaces cut out of a box. mark: the code of the surfaces."""
+    surfaces = run_page(mark, names)["surfaces"]
     (code,) = (code for code in _BLOCKS.findall(PAGE.read_text(encoding="utf-8")) if "cut_by_surface" in code)
     begin = code.index("# The box")
     lines = [line for line in code[:begin].splitlines() if line.startswith(("import", "from"))]
@@ -300,19 +300,22 @@ def closed_page_solids(names):
 
 
 def agreement():
-    """The table of the page, and what its code cuts with LoopStructural's surfaces."""
+    """The table of the page, and what its code makes of their surfaces."""
     import gempy
 
     places = page_places()
     true = true_units(places)
     rows = ["| | right | same as RealModel | RealModel right |", "|---|---|---|---|"]
-    theirs = run_page("import gempy")["geo_model"]
+    of_gempy = run_page("import gempy")
+    solids = [closed_page_solids("scalar_field_matrix", of_gempy)]
+    theirs = of_gempy["geo_model"]
     theirs.interpolation_options.mesh_extraction = False
     with contextlib.redirect_stdout(io.StringIO()):
         numbers = np.rint(gempy.compute_model_at(theirs, places)).astype(int).ravel()
     names = np.array([element.name for element in theirs.structural_frame.structural_elements])
-    left = run_page("import LoopStructural")
-    values = left["strati"].evaluate_value(places)
+    of_loop = run_page("import LoopStructural")
+    solids.append(closed_page_solids("strati.surfaces", of_loop))
+    values = of_loop["strati"].evaluate_value(places)
     loop = np.array(["basement", "shale", "sand"])[np.searchsorted([0, _THICKNESS], values)]
     for package, units, mark in (
         ("gempy", names[numbers - 1], "import build, from_gempy"),
@@ -322,7 +325,7 @@ def agreement():
         name = f"{package.replace('gempy', 'GemPy')} {importlib.metadata.version(package)}"
         shares = ((units == true).mean(), (units == ours).mean(), (ours == true).mean())
         rows.append(f"| {name} | " + " | ".join(f"{100 * part:.1f} %" for part in shares) + " |")
-    return "\n".join([*rows, ""]), f"```text\n{closed_page_solids(left)}```\n"
+    return "\n".join([*rows, ""]), "```text\n" + "\n".join(solids) + "```\n"
 
 
 def write_page():

@@ -47,10 +47,11 @@ def test_our_share_is_what_the_page_says(peer, call):
 
 
 def test_the_solids_fill_the_box():
-    volumes = [float(volume) for volume in re.findall(r"([\d.]+) million", written("solids"))]
-    assert len(volumes) == 3
-    assert sum(volumes) == pytest.approx(990 * 790 * 600 / 1e6, abs=0.15)  # each is rounded to a tenth
-    assert written("solids").count("closed: True") == 3
+    of_gempy, of_loop = written("solids").split("\n\n")
+    for solids in (of_gempy, of_loop):
+        volumes = [float(volume) for volume in re.findall(r"([\d.]+) million", solids)]
+        assert len(volumes) == solids.count("closed: True") == 3
+        assert sum(volumes) == pytest.approx(970 * 770 * 600 / 1e6, abs=0.15)  # each is rounded to a tenth
 
 
 @pytest.mark.skipif(bool(MISSING), reason=f"{' and '.join(MISSING)} not installed: scripts/compare_peers.py")
