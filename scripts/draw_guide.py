@@ -53,7 +53,13 @@ def run_in_window(number, names):
     """Runs chapters in Blender; returns its exit status."""
     size = WINDOWS[number][0]
     with tempfile.TemporaryDirectory() as folder:
-        command = ["xvfb-run", "-a", "-s", f"-screen 0 {size[0]}x{size[1]}x24 -fbdir {folder}", "blender"]
+        command = [
+            "xvfb-run",
+            "-a",
+            "-s",
+            f"-screen 0 {size[0]}x{size[1]}x24 -nocursor -fbdir {folder}",
+            "blender",
+        ]
         command += ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0"]
         command += [*map(str, size), "-P", __file__, "--", folder, str(number), *names]
         done = subprocess.run(command, cwd=ROOT, check=False)

@@ -41,8 +41,8 @@ def tour(walk):
     dismiss(walk)
     guide_panels.choose_rows(bpy.context.scene.realmodel)
     found = {}
-    for name, parts in guide_panels.PANELS.items():
-        yield from keep(walk, name, "UI", parts)
+    for name in guide_panels.PANELS:
+        yield from keep(walk, name, "UI", [name])
         found[name] = guide_panels.shown(bpy.context, name)
     guide_panels.keep(found)
 

@@ -11,14 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 RECORD = ROOT / "docs" / "images" / "guide" / "panels.json"
 EXAMPLE = "castle_hill"
-PANELS = {  # by the name of the picture: what it shows
-    "build": ("build", "build_options"),
-    "results": ("results", "ensemble", "hole_validation", "planned_holes"),
-    "view": ("view", "view_section", "view_camera", "view_picture", "view_coordinates"),
-    "surfaces": ("surfaces",),
-    "rocks": ("rocks",),
-    "library": ("library",),
-}
+PANELS = ("build", "results", "view", "surfaces", "rocks", "library")  # each a picture of this name
 START = "start"  # the picture of the tab in an empty file: of all of its panels
 
 
@@ -31,7 +24,7 @@ def choose_rows(group):
 
 
 def shown(context, name):
-    """Sorted texts: the operators, settings and labels that a picture has; START has the whole tab."""
+    """Sorted texts: the operators, settings and labels that a panel has; of START all panels of the tab."""
     import bpy
     import recording_layout
 
@@ -39,8 +32,7 @@ def shown(context, name):
         drawing = recording_layout.draw_tab(context)
     else:
         drawing = recording_layout.Drawing()
-        for part in PANELS[name]:
-            recording_layout.draw(getattr(bpy.types, f"REALMODEL_PT_{part}"), context, drawing)
+        recording_layout.draw(getattr(bpy.types, f"REALMODEL_PT_{name}"), context, drawing)
     labels = {text for text in drawing.labels if text and not any(letter.isdigit() for letter in text)}
     return sorted({*drawing.operators, *drawing.properties, *drawing.menus, *labels})
 

@@ -6,7 +6,7 @@ import json
 import math
 
 SIZE = (1280, 720)
-PAUSE = 80  # milliseconds that a frame is shown
+PAUSE = 100  # milliseconds that a frame is shown
 # an arrow, pixels
 POINTER = ((0, 0), (0, 17), (4, 13.5), (6.5, 19.5), (9, 18.5), (6.5, 12.5), (12, 12))
 _VALLEY = ((4.0, -57.0), (6.0, -40.0), (0.0, -24.0), (-10.0, -10.0), (-12.0, 4.0))  # lines of (x, y)
@@ -79,13 +79,13 @@ def carving(walk):
     yield from guide_window.show_panels(walk, ["build", "view", "results"])
     yield from guide_window.example(walk, "sculpted_island")
     group = bpy.context.scene.realmodel
-    group.cells, group.rocks[0].edge_length = "BLOCKS", 4.0
+    group.cells, group.rocks[0].edge_length = "BLOCKS", 5.0
     yield from guide_window.build(walk)
     group.live = True
     ground = next(row.interface for row in group.rocks[0].surfaces if row.name == "ground")
     # Blender evaluates a mesh during a stroke only where it has a modifier
-    ground.modifiers.new("Smooth", "SMOOTH").factor = 0.0
-    group.active_result = len(group.results) - 2
+    ground.modifiers.new("Smooth", "SMOOTH").factor = 0.01
+    group.active_result = len(group.results) - 4
     for item in bpy.context.selected_objects:
         item.select_set(False)
     ground.hide_set(False)
@@ -97,18 +97,18 @@ def carving(walk):
     tools.sculpt.brush.direction, tools.sculpt.brush.strength = "SUBTRACT", 0.7
     tools.sculpt.brush.sculpt_plane = "Z"  # a stroke along the normals would make overhangs
     tools.unified_paint_settings.size, tools.unified_paint_settings.use_unified_strength = 55, False
-    places = _line_on(ground, _VALLEY, 20)
+    places = _line_on(ground, _VALLEY, 16)
     yield from guide_window.settled(walk)
     record = Recording(walk, "window")
     region = walk.region("WINDOW")
     record.move(region.x + 0.25 * region.width, region.y + 0.12 * region.height)
     yield from record.frame(600)
-    yield from record.glide(*walk.pixel_of(places[0]), 8)
+    yield from record.glide(*walk.pixel_of(places[0]), 5)
     yield from stroke(record, places)
-    places = _line_on(ground, _HILL, 12)
-    yield from record.glide(*walk.pixel_of(places[0]), 6)
+    places = _line_on(ground, _HILL, 9)
+    yield from record.glide(*walk.pixel_of(places[0]), 4)
     yield from stroke(record, places, ctrl=True)
-    yield from record.glide(region.x + 0.25 * region.width, region.y + 0.12 * region.height, 6)
+    yield from record.glide(region.x + 0.25 * region.width, region.y + 0.12 * region.height, 4)
     yield from record.frame(1500)
     record.finish()
 

@@ -186,13 +186,16 @@ def example(walk, name):
     yield walk.redrawn(3)
 
 
-def frame(walk, share=0.92, elevation=ELEVATION):
-    """Turns the viewport to the blocks, or else to what the scene has. elevation: of the eye, radians."""
+def frame(walk, share=0.92, elevation=ELEVATION, **more):
+    """Turns the viewport to the blocks, or else to what the scene has. elevation: of the eye, radians; more:
+    its azimuth."""
     import bpy
 
     for item in bpy.context.selected_objects:
         item.select_set(False)
-    fill_view(walk, blocks() or [item for item in bpy.data.objects if item.type == "MESH"], share, elevation)
+    fill_view(
+        walk, blocks() or [item for item in bpy.data.objects if item.type == "MESH"], share, elevation, **more
+    )
 
 
 def blocks():
@@ -202,7 +205,7 @@ def blocks():
     return [row.object for row in bpy.context.scene.realmodel.results if row.object is not None]
 
 
-def fill_view(walk, items, share=0.92, elevation=ELEVATION):
+def fill_view(walk, items, share=0.92, elevation=ELEVATION, **more):
     """Turns the viewport to objects, which then fill a share of it."""
     import bpy
     import numpy as np
@@ -213,7 +216,7 @@ def fill_view(walk, items, share=0.92, elevation=ELEVATION):
     bpy.context.view_layer.update()
     corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
     view = walk.area.spaces.active.region_3d
-    rotation = viewports.view_rotation(elevation=elevation)
+    rotation = viewports.view_rotation(elevation=elevation, **more)
     view.view_perspective, view.view_rotation = "PERSP", rotation.to_quaternion()
     view.update()
     tangents = share / np.array([view.window_matrix[0][0], view.window_matrix[1][1]])

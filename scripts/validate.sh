@@ -6,7 +6,7 @@
 #
 #   scripts/validate.sh               the parts that are missing
 #   scripts/validate.sh PART...       these again: near_flat rough folded folds moureze claudius methods wells
-#                                     exact solvers calibration
+#                                     exact solvers heights volumes
 #   scripts/validate.sh --again       all again
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

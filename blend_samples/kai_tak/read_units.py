@@ -17,7 +17,7 @@ import re
 import sys
 from pathlib import Path
 
-from realmodel.core import InputRefused, read_boreholes
+from realmodel.core import InputRefused, RealModelError, read_boreholes
 
 UNITS = (
     ("Marine Deposit", r"MARINE DEPOSIT\)"),
@@ -78,4 +78,7 @@ def write(path: Path, header, rows) -> None:
 if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    try:
+        main(Path(sys.argv[1]), Path(sys.argv[2]))
+    except RealModelError as error:
+        sys.exit(f"read_units.py: {error}")

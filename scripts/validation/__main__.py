@@ -32,7 +32,8 @@ PARTS = {
     "wells": holes.wells,
     "exact": exact.exact,
     "solvers": solving.solver_results,
-    "calibration": calibration.calibration,
+    "heights": calibration.heights,
+    "volumes": calibration.volumes,
 }
 PACKAGES = {
     "GemPy": "gempy",

@@ -20,7 +20,7 @@ from .programs import PROGRAMS, Beds, Refused, Solved, gempy_model, gempy_values
 SEEDS = 20  # of each kind of history
 KINDS = ("near_flat", "rough", "folded")
 DRAWS = 20  # of Moureze
-NODDY_POINTS = 5000  # of the 20,000 of each truth
+NODDY_POINTS = 5000  # of each truth
 NODDY = ("n_upright", "n_unconformity", "n_fault")
 FOLDS = places.REAL_DATA / "folds"
 SHARE = 0.1  # of the points of Claudius that are given
@@ -56,10 +56,13 @@ def _rows(cases: Iterator, programs: dict) -> dict:
 
 def _of_history(program):
     def share(history):
-        beds = Beds(history.data, np.zeros(3), history.size, history.levels)
-        return history._share(program(beds).blocks(history._places()))
+        return history._share(program(_beds(history)).blocks(history._places()))
 
     return share
+
+
+def _beds(history: histories.History) -> Beds:
+    return Beds(history.data, np.zeros(3), history.size, history.levels)
 
 
 def random_histories(kind: str) -> dict:
@@ -92,23 +95,18 @@ def _noddy_beds(name: str) -> Beds:
 
 
 def _noddy_truth(name: str) -> tuple[np.ndarray, np.ndarray]:
-    """The points of the truth, and the number of the block at each: A unit 0 is 0, B unit 0 is 6."""
-    numbers = {f"A unit {k}": k for k in range(6)} | {"B unit 0": 6, "B unit 1": 7}
-    with np.load(FOLDS / name / "truth.npz") as truth:
-        block = np.array([numbers[name] for name in truth["block"][:NODDY_POINTS]])
-        return truth["points"][:NODDY_POINTS], block
+    """Points of the truth in the folded series, and the number of the block at each."""
+    _, points, block = test_fields.noddy(name)
+    return points[:NODDY_POINTS], block[:NODDY_POINTS]
 
 
 def _noddy_realmodel(name: str) -> float:
+    """The whole model, with its unconformity or fault."""
     model = build(load_project(FOLDS / name / "project.toml"))
     points, block = _noddy_truth(name)
     names = np.array([*(each.name.split(" / ")[0] for each in model.blocks), ""])
-    expected = np.array([f"{'A' if n < 6 else 'B'} unit {n if n < 6 else n - 6}" for n in block])
+    expected = np.array([f"A unit {number}" for number in block])
     return float((names[model.block_at(points)] == expected).mean())
-
-
-def _points(name: str, file: str) -> np.ndarray:
-    return np.loadtxt(FOLDS / name / file, delimiter=",", skiprows=1).reshape(-1, 3)
 
 
 def _of_one_surface(points, normals, beds: Beds) -> Beds:
@@ -121,12 +119,6 @@ def _noddy_gempy(name: str) -> float:
     beds = _noddy_beds(name)
     points, block = _noddy_truth(name)
     groups, faults, units = [("A", beds)], [], [*range(5, -1, -1)]
-    if name == "n_unconformity":
-        base, inside = _points(name, "s5.csv"), _points(name, "s6.csv")
-        surfaces = np.repeat(np.arange(2, dtype=np.int32), [len(base), len(inside)])
-        none = np.empty((0, 3))
-        data = LevelSetData("AB", np.concatenate([base, inside]), surfaces, none, none)
-        groups, units = [("B", Beds(data, beds.low, beds.high, np.zeros(2))), *groups], [7, 6, *units]
     if name == "n_fault":
         vertices, normal = _fault(name)
         groups, faults = [("fault", _of_one_surface(vertices, normal, beds)), *groups], ["fault"]
@@ -146,13 +138,11 @@ def _fault(name: str):
 
 
 def _noddy_other(program_name: str):
-    """Of programs that model one series: where the truth has no other rock and no fault."""
+    """Of programs that model one series: where it has no fault."""
 
     def share(name):
         if name == "n_fault":
             raise Refused("a fault needs its displacement, which is not in the data")
-        if name == "n_unconformity":
-            raise Refused("one series only is modeled here")
         points, block = _noddy_truth(name)
         return float((PROGRAMS[program_name](_noddy_beds(name)).blocks(points) == block).mean())
 
@@ -166,37 +156,18 @@ def folds() -> dict:
     return {"folds": list(NODDY), "programs": _rows(iter(NODDY), programs)}
 
 
-def _moureze(seed: int):
-    """Some contacts and dips of Moureze, and places beside its other dips with the side that each is on."""
-    random = np.random.default_rng([9, seed])
-    contacts, rows = (
-        np.loadtxt(FOLDS / "moureze" / f, delimiter=",", skiprows=1) for f in ("s0.csv", "dips.csv")
-    )
-    low = np.minimum(contacts.min(axis=0), rows[:, :3].min(axis=0)) - 20
-    high = np.maximum(contacts.max(axis=0), rows[:, :3].max(axis=0)) + 20
-    dip, azimuth = np.radians(rows[:, 3:5]).T
-    normals = np.column_stack([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
-    normals *= rows[:, 5:6]
-    count, dips = random.integers(5, 40), random.integers(3, 16)
-    seen = contacts[random.choice(len(contacts), count, replace=False)]
-    known = random.choice(len(rows), dips, replace=False)
-    surfaces = np.zeros(count, np.int32)
-    data = LevelSetData("M", seen, surfaces, rows[known, :3], normals[known])
-    beside = random.choice([5.0, 10.0, 20.0, 40.0], len(rows)) * random.choice([-1, 1], len(rows))
-    asked = rows[:, :3] + beside[:, None] * normals
-    counts = np.all((asked > low) & (asked < high), axis=1)
-    counts[known] = False
-    return Beds(data, low, high, np.zeros(1)), asked[counts], (beside[counts] > 0).astype(int)
-
-
 def moureze() -> dict:
     """The share of places beside dips that are on the right side of the surface."""
 
     def of(program):
-        return lambda case: float((program(case[0]).blocks(case[1]) == case[2]).mean())
+        def share(case):
+            history, asked, is_above = case
+            return float((program(_beds(history)).blocks(asked) == is_above).mean())
+
+        return share
 
     programs = {name: of(program) for name, program in PROGRAMS.items()}
-    return {"draws": DRAWS, "programs": _rows(map(_moureze, range(DRAWS)), programs)}
+    return {"draws": DRAWS, "programs": _rows(map(histories.moureze, range(DRAWS)), programs)}
 
 
 def _distances(solved: Solved, points: list[np.ndarray]) -> list[np.ndarray]:

@@ -29,6 +29,7 @@ METHODS = (
     "plane",
     "constant",
 )
+WITH_LOGS, WITH_SERIES = "default, with logs and dips", "and with series"
 GROUPS = 5  # in which holes are left out
 WELLS = places.REAL_DATA / "field" / "geoinr_intervals" / "project.toml"
 
@@ -77,9 +78,9 @@ def methods() -> dict:
 
         works = {name: lambda name=name, of=of: of("contacts", name) for name in METHODS}
         works["SciPy RBF"] = lambda given=(history, *points): _rbf_share(*given)
-        works["kriging, all data"] = lambda of=of: of("all", None)
+        works[WITH_LOGS] = lambda of=of: of("all", None)
         if history.conformable:
-            works["kriging, all data and series"] = lambda of=of: of("series", None)
+            works[WITH_SERIES] = lambda of=of: of("series", None)
         for name, work in works.items():
             began = time.process_time()
             share = work()

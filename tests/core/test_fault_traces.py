@@ -387,7 +387,9 @@ def test_attributes_of_a_file(write):
         of("F2")
     with pytest.raises(InputRefused, match="no dip direction; set dip_direction = 90 or 270"):
         of("F2", dip=60)
-    with pytest.raises(InputRefused, match=r"faults.geojson: fault 'F': the lines of its trace are not connected"):
+    with pytest.raises(
+        InputRefused, match=r"faults.geojson: fault 'F': the lines of its trace are not connected"
+    ):
         fault_of(Fault("F", trace=file))
     file.write_text(faults_geojson(Dip=95))
     with pytest.raises(

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import importlib.util
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -72,6 +73,25 @@ def test_the_commands_of_the_page_are_those_that_ran(script):
     page = " ".join((PAGE / "README.md").read_text(encoding="utf-8").replace("\\\n", " ").split())
     for command in script.STEPS.values():
         assert command.replace(f"{SAMPLE}/", "../../blend_samples/kai_tak/") in page
+
+
+def test_what_the_page_says_of_its_numbers_is_so(results):
+    """The sentences below the tables."""
+    flat, plane, nearest, kriging = (
+        [float(cell.split()[0]) for cell in line.strip("| ").split(" | ")[1:]]
+        for line in results["baselines"].splitlines()[2:]
+    )
+    assert flat[0] < plane[0] < nearest[0] < kriging[0]
+    assert 5.5 < 100 / (100 - kriging[0]) < 6.5  # one meter in six
+    assert max(kriging[1:]) == kriging[1]  # the top of granite is the hardest to predict
+    assert max(range(1, 4), key=lambda n: nearest[n] - kriging[n]) == 1  # and gains most
+    assert plane[3] == pytest.approx(kriging[3], abs=0.2)  # of the base of the fill
+    worst = re.findall(r"^BH ?\d+", results["model"], re.MULTILINE)
+    assert worst[:3] == ["BH12", "BH 6", "BH 7"]
+    assert "| Marine Deposit | 6 | 6 |" in results["codes"]
+    assert all(f"| {unit} | 80 |" in results["codes"] for unit in ("Fill", "Granite"))
+    assert results["units"].startswith("```text\n80 holes, 1603 intervals, 3 of them without a unit")
+    assert len(results["wrong"].splitlines()) == 2 + 3
 
 
 def test_another_file_is_refused(tmp_path):

@@ -178,7 +178,7 @@ class ModelData:
 
     @property
     def cell_component(self) -> np.ndarray:
-        """(C,) int32: the least cell of the connected part of a block that each cell belongs to."""
+        """(C,) int32: the least cell of the connected component of a block that each cell belongs to."""
         return self.complex.cell_component
 
     @cached_property
@@ -195,11 +195,10 @@ class ModelData:
         return self.complex.cell_volumes(self.threads)
 
     def block_boundary(self, block: int | str) -> BlockBoundary:
-        """The closed boundary of one block, all its connected parts together. block: its name, or its number
-        from 0; that of a block of which nothing is left has no faces.
+        """The closed boundary of one block, all its connected components together. block: its name, or its
+        number from 0; the boundary of an absent block has no faces.
 
-        Raises UsageError for an unknown one, and for a name of several blocks or of one of which nothing is
-        left.
+        Raises UsageError for an unknown one, and for a name of several blocks or of an absent one.
         """
         number = number_of(block, self.blocks.names, "block")
         if isinstance(block, str) and not self.blocks[number].cells:
@@ -212,7 +211,7 @@ class ModelData:
 
     @cached_property
     def component_volumes(self) -> list[np.ndarray]:
-        """For each block the volumes of its connected parts, largest first."""
+        """For each block the volumes of its connected components, largest first."""
         volume = np.bincount(self.cell_component, self.cell_volumes, len(self.cell_block))
         roots = np.flatnonzero(self.cell_component == np.arange(len(self.cell_block)))
         order = roots[np.lexsort((roots, -volume[roots], self.cell_block[roots]))]

@@ -114,8 +114,8 @@ def _smoothest(task: Task) -> Result:
         )
     if not output["converged"]:
         warnings.append(
-            "the solver stopped before the heights were as smooth as possible: triangles of the mesh differ "
-            "much in size or shape; a more even mesh helps"
+            "the solver stopped before the elevations were as smooth as possible: triangles of the mesh "
+            "differ much in size or shape; a more even mesh helps"
         )
     return Result(output["z"], warnings=warnings)
 
@@ -138,7 +138,7 @@ def _called(reference: Reference) -> str:
     """The surface or height that an option names, as messages write it."""
     if isinstance(reference, str):
         return f"'{reference}'"
-    return f"{reference:g}" if isinstance(reference, float) else "the given heights"
+    return f"{reference:g}" if isinstance(reference, float) else "the given elevations"
 
 
 def _refuse_crossed(task: Task, limits: dict, lower: str, upper: str) -> None:

@@ -171,7 +171,7 @@ def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     finite = np.isfinite(under)
     if not finite.any():
         raise InputRefused(
-            "none of its points lies where the surface that it is parallel to has a height", item="points"
+            "none of its points lies where the surface that it is parallel to has an elevation", item="points"
         )
     points = measured(task, task.points[finite], under[finite])
     method = task.settings["thickness_method"]
@@ -180,8 +180,8 @@ def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     if not finite.all():
         left_out = int((~finite).sum())
         warnings.append(
-            f"{left_out} of {len(finite)} points lie where the surface that it is parallel to has no height: "
-            "they are left out"
+            f"{left_out} of {len(finite)} points lie where the surface that it is parallel to has no "
+            "elevation: they are left out"
         )
     z, variance = lifted(task, below, shown.z), shown.variance
     if task.true_thickness and variance is not None:

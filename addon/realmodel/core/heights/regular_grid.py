@@ -85,7 +85,7 @@ def _heights(points: np.ndarray, grid: RegularGrid) -> np.ndarray:
         differs = z[tuple(grid.nodes(piece).T)] != piece[:, 2]
         for bad in piece[differs][:1]:
             raise InputRefused(
-                f"two points with different heights lie at one node of the grid, {place_text(bad)}",
+                f"two points with different elevations lie at one node of the grid, {place_text(bad)}",
                 item="points",
                 place=tuple(bad),
             )

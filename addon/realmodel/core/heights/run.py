@@ -131,7 +131,7 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str, rise: float = 0.0)
     if not max(low - lowest, highest - high) > 2 * (high - low) + rise or not 2 * (high - low) > rounding:
         return []
     return [
-        f"its heights, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
+        f"its elevations, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
         f"{high:.6g}; {tamed_by}"
     ]
 

@@ -85,7 +85,7 @@ class HoleValidation:
             worst = float(np.abs(errors).max())
             rmse, middle = float(np.sqrt((errors**2).mean())), float(np.median(np.abs(errors)))
             heights = (
-                f"; heights of {len(errors)} contacts: root mean square error {rmse:.4g}, median "
+                f"; elevations of {len(errors)} contacts: root mean square error {rmse:.4g}, median "
                 f"{middle:.4g}, largest {worst:.4g}"
             )
         refused = sum(bool(hole.refused) for hole in self.holes)

@@ -33,7 +33,7 @@ _SAYS = {
     "outside": (3, "faces with one cell are the outer boundary"),
     "volumes": (4, "every cell has positive volume"),
     "block volumes": (4, "the volume of each block is the sum of its cells"),
-    "places": (5, "on vertical lines the model has the blocks of the closed form, at their heights"),
+    "places": (5, "on vertical lines the model has the blocks of the closed form, at their elevations"),
     "surfaces": (5, "faces lie on the surfaces that they name"),
     "walls": (5, "each side of a wall is the block that the wall names, or the outside"),
 }

@@ -277,11 +277,11 @@ class _Hints:
     def reasons(self, upper: int, lower: int) -> list[str]:
         names, rises = self._names, self._rises(upper, lower)
         if not len(rises):
-            return ["no heights speak for either order"]
+            return ["no elevations speak for either order"]
         by = float(rises.mean())
         said = []
         if abs(by) <= 1e-6 * (1.0 + np.abs(rises).max()):
-            said.append("both lie equally high: heights speak for neither")
+            said.append("both lie equally high: elevations speak for neither")
         else:
             higher, other = (names[upper], names[lower]) if by > 0 else (names[lower], names[upper])
             said.append(f"'{higher}' lies {abs(by):.3g} higher than '{other}', over what nearby holes share")

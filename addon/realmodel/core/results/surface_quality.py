@@ -86,7 +86,7 @@ def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossV
         if option.kind == "surface" and settings.get(name) is not None
     ]
     if others:
-        return None, f"its heights follow another surface ({others[0]})"
+        return None, f"its elevations follow another surface ({others[0]})"
     points = data.points
     if len(points) < 2 or len(distinct_points(points)) < 2:
         return None, "it takes two points or more"

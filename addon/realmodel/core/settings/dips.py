@@ -70,7 +70,7 @@ class SpaceDips:
         """The same as slopes of sheets. Raises InputRefused where one is vertical or overturned."""
         steep = np.flatnonzero(~(self.normals[:, 2] > 0) & self.in_use)
         if len(steep):
-            what = f"dip {steep[0]} is vertical or overturned, and a sheet has one height at each position"
+            what = f"dip {steep[0]} is vertical or overturned, and a sheet has one elevation at each position"
             raise InputRefused(what, item="dips", advice='leave it out, or use a series with kind = "field"')
         upward = self.normals[:, 2] > 0
         places, normals = self.positions[upward], self.normals[upward]
@@ -182,7 +182,7 @@ class Dips:
         steep = np.flatnonzero(~((dips >= 0) & (dips < 90)))
         if len(steep):
             raise InputRefused(
-                f"dip {steep[0]} is {dips[steep[0]]:g} degrees, and a sheet has one height at each position",
+                f"dip {steep[0]} is {dips[steep[0]]:g} degrees; a sheet has one elevation at each position",
                 item="dips",
                 advice="use SpaceDips in a series whose kind is field",
             )

@@ -161,7 +161,7 @@ def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_
         return np.full(len(plan), float(level))
     if surface.has_points and surface.points is None:
         what = f"the ground of the map is not known: surface '{surface.name}' has no points or mesh"
-        raise rock.refused(what, "map", 'give its heights: ground = "dem.tif"')
+        raise rock.refused(what, "map", 'give its elevations: ground = "dem.tif"')
     read = SurfaceInput.of(rock, surface, units).read(no_step)
     if read.shape is not None:
         return native_module().surface_heights(*read.shape.arrays, np.ascontiguousarray(plan))

@@ -223,8 +223,8 @@ def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Shee
 
 def no_triangle_known() -> InputRefused:
     return InputRefused(
-        "no triangle of the region's mesh has heights at all its nodes",
-        advice='extrapolate = "method" or "nearest" gives heights beyond the points',
+        "no triangle of the region's mesh has elevations at all its nodes",
+        advice='extrapolate = "method" or "nearest" gives elevations beyond the points',
     )
 
 

@@ -119,7 +119,7 @@ def _check(file: Path, tiff: Any, page: Any, is_kept_in_memory: bool) -> None:
 
     if page.samplesperpixel != 1:
         advice = "save the band with the elevations in a separate file"
-        raise refuse(f"it has {page.samplesperpixel} numbers per pixel; heights have one", advice)
+        raise refuse(f"it has {page.samplesperpixel} numbers per pixel; elevations have one", advice)
     if page.dtype is None or page.dtype.kind not in "iuf" or page.bitspersample != 8 * page.dtype.itemsize:
         raise refuse(f"pixels of {page.bitspersample} bits are not supported")
     if page.compression not in (_NONE, _LZW, *_DEFLATE, _PACKBITS):
@@ -302,7 +302,7 @@ def _world(file: Path) -> tuple[float, ...]:
 def _warnings(keys: dict) -> list[str]:
     if keys.get(_MODEL_TYPE) == _GEOGRAPHIC:
         return [
-            "its plan coordinates are degrees of longitude and latitude, its heights are not: "
+            "its plan coordinates are degrees of longitude and latitude, its elevations are not: "
             "project it (to UTM, say) in a GIS"
         ]
     return []

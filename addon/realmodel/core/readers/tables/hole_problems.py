@@ -34,7 +34,7 @@ HOLE_PROBLEMS = {
     "gap": "gaps between intervals are closed at their middle",
     "overlap": "overlaps of intervals are closed at their middle",
     "reversed": "intervals end above where they begin, and are turned around",
-    "elevations": "depths are heights, and are converted: the collar's height less them",
+    "elevations": "depths are elevations; converted: the collar's elevation minus them",
     "minus_sign": "depths have a minus sign, which is taken away",
     "unrepaired": "rows are used unchanged, because of 'unrepaired'",
     "switched_off": "rows are not used, because of 'left_out'",

@@ -286,7 +286,7 @@ class Holes:
         has_depth = any(row.has(column) for column in ("depth", "from", "to"))
         z = row.number("z") if "z" in row.columns and has_depth else float("nan")
         if np.isnan(z) and has_depth:
-            raise row.refuse("a depth needs the collar's height", "give a column z, or a table of collars")
+            raise row.refuse("a depth needs the collar's elevation", "give a column z, or a table of collars")
         return np.array((row.number("x"), row.number("y"), z))
 
     def way_to(self, row: Row, depth: float) -> np.ndarray:

@@ -88,7 +88,7 @@ class Observations(ShortRepr):
                 text = f"{count} places have {len(values)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
         if not (np.isfinite(errors) & (errors >= 0)).all():
-            raise InputRefused("an error of a height is negative, or not finite", item="observations")
+            raise InputRefused("an error of an elevation is negative, or not finite", item="observations")
         arrays = places, blocks, holes, depths, intervals, used, on, errors, rows
         for name, value in zip(_ARRAYS, arrays, strict=True):
             object.__setattr__(self, name, value)
@@ -445,7 +445,7 @@ def read_observed_places(
 def _height_error(row: Row) -> float:
     error = row.number("error") if row.has("error") else 0.0
     if error < 0:
-        raise row.refuse(f"the error of the height, {error:g}, is negative", "leave it empty where it is 0")
+        raise row.refuse(f"the error of the elevation, {error:g}, is negative", "leave it empty for 0")
     return error
 
 

@@ -288,7 +288,7 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str)
         if {called[wanted[0]], called[wanted[1]]} & {*_DEGREES["x"], *_DEGREES["y"]}:
             doubts.append(
                 f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, "
-                "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
+                "elevations are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
             )
         words = re.findall(r"[^\W\d_]+", names[wanted[2]].lower())
         if z_axis == "up" and not set(words).isdisjoint(_DEPTHS):
@@ -604,5 +604,5 @@ def read_point_array(file: Path, gather: JoinPieces) -> np.ndarray:
 
     points = gather(known(), np.empty((0, 3)))
     if not len(points):
-        raise InputRefused("no point of the array has a height", file=file)
+        raise InputRefused("no point of the array has an elevation", file=file)
     return points

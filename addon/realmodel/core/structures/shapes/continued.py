@@ -58,7 +58,7 @@ def _are_outer(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -
 
 
 def connected(edges: np.ndarray) -> np.ndarray:
-    """(E,) the number of the connected part, from 0, that each edge is in."""
+    """(E,) the number of the connected component, from 0, that each edge is in."""
     _, ends = np.unique(edges, return_inverse=True)
     ends = ends.reshape(-1, 2)
     least = np.arange(ends.max(initial=-1) + 1)

@@ -489,7 +489,7 @@ def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:
 
 def _two_heights_beyond(fault: str, place: np.ndarray) -> InputRefused:
     return InputRefused(
-        f"it has two heights beyond the tip of fault '{fault}' near {place_text(place)}",
+        f"it has two elevations beyond the tip of fault '{fault}' near {place_text(place)}",
         advice="extend the fault, or give data beyond the tip that agree",
         place=tuple(place.tolist()),
     )
