@@ -41,13 +41,12 @@ region = [[0, 0], [1000, 0], [1000, 600], [0, 600]]
 rock = Rock("basin", surfaces, region=region, edge_length=30, base_elevation=-450)
 model = build(Project("Fault", [rock], library, faults=[fault]))
 
-for name, throw in (
-    model.report().table("faults")[["surfaces.surface", "surfaces.throw.mean"]].itertuples(index=False)
-):
+throws = model.report().table("faults")[["surfaces.surface", "surfaces.throw.mean"]]
+for name, throw in throws.itertuples(index=False):
     print(f"{name:18} throw {throw:4.1f} m on average (true: {THROW})")
 
 view = Picture(toward=(0.35, -1.0, 0.45))
-view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m before it
+view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m in front of it
 sheet = model.surfaces_to_pyvista()["Main"].clip_box((0, 1000, 200, 300, -450, -20), invert=False)
 view.surface(sheet, "fault", opacity=0.5)
 for surface in surfaces[:3]:

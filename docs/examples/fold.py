@@ -48,7 +48,7 @@ print(sum(map(len, contacts.values())), "contacts,", len(measured), "dips")
 print(f"{np.mean(model.block_at(sample) == true):.0%} of the rock is in the right bed")
 
 view = Picture(toward=(0.4, -1.0, 0.45))
-view.blocks(model.clip("y", invert=False))  # the northern half; data up to 100 m before it
+view.blocks(model.clip("y", invert=False))  # the northern half; data up to 100 m in front of it
 near = (measured[:, 1] > 100) & (measured[:, 1] < 200)
 view.dips(measured[near], normals(measured)[near], 25, "dips, the stroke toward younger rock")
 for surface in surfaces[:3]:

@@ -57,7 +57,7 @@ for block in model.blocks:
     print(f"{block.name:9} {block.volume / 1e6:6.2f} million m3, {block.components} part(s)")
 
 view = Picture()
-view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m before it
+view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m in front of it
 for surface in surfaces:
     y = surface.points[:, 1]
     near = (y > 250) & ((y < 350) | (surface.name == "ground"))

@@ -46,7 +46,7 @@ for block in model.blocks:
 print("closed, without gaps or overlaps:", model.validate().passed)
 
 view = Picture(exaggeration=4)
-view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m before it
+view.blocks(model.clip("y", invert=False))  # the northern half; points up to 100 m in front of it
 for surface in surfaces:
     y = surface.points[:, 1]
     near = (y > 200) & ((y < 300) | (surface.name == "ground"))
