@@ -231,29 +231,15 @@ def _solvers(data: dict) -> str:
 
 
 def _calibration(data: dict) -> str:
-    part, drawn = data["parts"]["heights"], data["parts"]["volumes"]
     rows = [
-        [f"heights of {row['surface']}", f"{_percent(row['most'], 0)}", f"{_percent(row['half'], 0)}"]
-        for row in part["surfaces"]
+        [row["surface"], _percent(row["most"], 0), _percent(row["half"], 0)]
+        for row in data["parts"]["calibration"]["surfaces"]
     ]
-    rows += [
-        [
-            f"volumes, {row['method'].replace('_', ' ')}, {row['places']} places, {drawn['truths']} truths",
-            _percent(row["most"], 0),
-            "",
-        ]
-        for row in drawn["volumes"]
-    ]
-    return _table(["asked", "within P10-P90 (right: 80 %)", "within P25-P75 (right: 50 %)"], rows)
+    return _table(["surface", "within P10-P90 (right: 80 %)", "within P25-P75 (right: 50 %)"], rows)
 
 
 def _versions(data: dict) -> str:
     return _table(["program", "version"], [[name, version] for name, version in data["versions"].items()])
-
-
-def _minutes(data: dict) -> str:
-    rows = [[name, f"{part['minutes']:.0f}"] for name, part in data["parts"].items()]
-    return _table(["part", "minutes"], rows)
 
 
 TABLES: dict[str, Callable[[dict], str]] = {
@@ -267,7 +253,6 @@ TABLES: dict[str, Callable[[dict], str]] = {
     "solvers": _solvers,
     "calibration": _calibration,
     "versions": _versions,
-    "minutes": _minutes,
 }
 
 
@@ -299,16 +284,11 @@ def values(data: dict) -> dict[str, str]:
         numbers[f"methods {name}"] = _percent(statistics.mean(_made(shares)))
     numbers["exact stacks"] = f"{parts['exact']['stacks']['stacks']:,}"
     numbers["exact joined"] = str(parts["exact"]["stacks"]["joined"])
-    numbers["calibration volumes"] = _percent(
-        statistics.mean(r["most"] for r in parts["volumes"]["volumes"]), 0
-    )
-    shares = [row["most"] for row in parts["heights"]["surfaces"]]
+    shares = [row["most"] for row in parts["calibration"]["surfaces"]]
     numbers["calibration least"], numbers["calibration most"] = (
         _percent(min(shares), 0),
         _percent(max(shares), 0),
     )
-    numbers["calibration truths"] = str(parts["volumes"]["truths"])
-    numbers["minutes"] = f"{sum(part['minutes'] for part in parts.values()):.0f}"
     return numbers
 
 
@@ -431,12 +411,7 @@ def figures(data: dict) -> dict[str, str]:
         "difference from the truth, as a share of it",
         lambda power: f"1e{power}",
     )
-    part = parts["heights"]
-    rows = [(row["surface"], {"RealModel": 100 * row["most"]}) for row in part["surfaces"]]
-    rows += [
-        (f"volumes, {row['method'].replace('_', ' ')}, {row['places']}", {"RealModel": 100 * row["most"]})
-        for row in parts["volumes"]["volumes"]
-    ]
+    rows = [(row["surface"], {"RealModel": 100 * row["most"]}) for row in parts["calibration"]["surfaces"]]
     drawn["calibration.svg"] = _dots(
         rows, (40, 100), range(40, 101, 10), "% within P10-P90; the dashed line is right", mark=80
     )
