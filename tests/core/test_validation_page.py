@@ -5,12 +5,14 @@ import re
 import sys
 from pathlib import Path
 
+import histories
 import pytest
+from realmodel import _native  # noqa: F401  (before SciPy, which may take the room of its libraries)
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from validation import page  # noqa: E402
+from validation import page, programs  # noqa: E402
 
 DATA = page.read()
 TEXT = page.PAGE.read_text(encoding="utf-8")
@@ -21,6 +23,16 @@ CITING = [path for path in page.documents() if "<!-- value " in path.read_text(e
 def test_numbers_are_those_of_the_data(path):
     text = path.read_text(encoding="utf-8")
     assert page.written(text, DATA) == text, "run scripts/validate.sh"
+
+
+@pytest.mark.parametrize("name", ["RealModel", "SciPy RBF"])
+def test_a_history_has_the_share_of_the_data(name):
+    """The programs that the tests have, on one history."""
+    pytest.importorskip("scipy")
+    history = histories.rough(1)
+    beds = programs.Beds(history.data, 0 * history.size, history.size, history.levels)
+    share = history._share(programs.PROGRAMS[name](beds).blocks(history._places()))
+    assert share == pytest.approx(DATA["parts"]["rough"]["programs"][name]["shares"][1], abs=0.001)
 
 
 def test_figures_are_those_of_the_data():
