@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Measures RealModel beside truths and other programs, and writes docs/validation.json, docs/validation.md,
-# its figures, and the values that other documents cite. About an hour on two processors. Needs the real data
-# in ../shared/data. A part that was measured is kept in build/validation: a run that was interrupted goes on.
+# its figures, and the values that other documents cite. Some twenty minutes on a quiet machine, hours on a busy
+# one. Needs the real data in ../shared/data. A part that was measured is kept in build/validation: a run that
+# was interrupted goes on.
 #
 #   scripts/validate.sh               the parts that are missing
 #   scripts/validate.sh PART...       these again: near_flat rough folded folds moureze claudius methods wells
-#                                     exact solvers heights volumes
+#                                     exact solvers calibration
 #   scripts/validate.sh --again       all again
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

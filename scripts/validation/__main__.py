@@ -32,8 +32,7 @@ PARTS = {
     "wells": holes.wells,
     "exact": exact.exact,
     "solvers": solving.solver_results,
-    "heights": calibration.heights,
-    "volumes": calibration.volumes,
+    "calibration": calibration.calibration,
 }
 PACKAGES = {
     "GemPy": "gempy",

@@ -180,12 +180,13 @@ def _exact(data: dict) -> str:
     part = data["parts"]["exact"]
     stacks, booleans = part["stacks"], part["booleans"]
     ours, theirs = (booleans["programs"][name] for name in ("RealModel", "Manifold"))
+    compared = stacks["stacks"] - stacks["joined"]
     rows = [
         [
-            f"volumes of {stacks['blocks']:,} blocks of {stacks['stacks']:,} random stacks",
+            f"volumes of {stacks['blocks']:,} blocks of {compared:,} random stacks",
             "exact rationals",
-            f"{stacks['wrong']} blocks missing or too many; {stacks['beyond']} volumes off by more than the "
-            f"rounding of coordinates; median difference {_scientific(stacks['median'])}",
+            f"{stacks['wrong']} blocks missing or too many; {stacks['beyond']} volumes off by more than a "
+            f"billionth or the rounding of coordinates; median difference {_scientific(stacks['median'])}",
         ],
         [
             f"union + intersection = A + B, {booleans['pairs']} pairs of scanned solids",
@@ -215,6 +216,10 @@ def _off(row: dict) -> float:
     return abs(row["found"] / row["expected"] - 1)
 
 
+def _work(row: dict) -> str:
+    return "hill" if "hill" in row["work"] else row["work"].split()[0]
+
+
 def _solvers(data: dict) -> str:
     rows = [
         [
@@ -231,29 +236,15 @@ def _solvers(data: dict) -> str:
 
 
 def _calibration(data: dict) -> str:
-    part, drawn = data["parts"]["heights"], data["parts"]["volumes"]
     rows = [
-        [f"heights of {row['surface']}", f"{_percent(row['most'], 0)}", f"{_percent(row['half'], 0)}"]
-        for row in part["surfaces"]
+        [row["surface"], _percent(row["most"], 0), _percent(row["half"], 0)]
+        for row in data["parts"]["calibration"]["surfaces"]
     ]
-    rows += [
-        [
-            f"volumes, {row['method'].replace('_', ' ')}, {row['places']} places, {drawn['truths']} truths",
-            _percent(row["most"], 0),
-            "",
-        ]
-        for row in drawn["volumes"]
-    ]
-    return _table(["asked", "within P10-P90 (right: 80 %)", "within P25-P75 (right: 50 %)"], rows)
+    return _table(["surface", "within P10-P90 (right: 80 %)", "within P25-P75 (right: 50 %)"], rows)
 
 
 def _versions(data: dict) -> str:
     return _table(["program", "version"], [[name, version] for name, version in data["versions"].items()])
-
-
-def _minutes(data: dict) -> str:
-    rows = [[name, f"{part['minutes']:.0f}"] for name, part in data["parts"].items()]
-    return _table(["part", "minutes"], rows)
 
 
 TABLES: dict[str, Callable[[dict], str]] = {
@@ -267,7 +258,6 @@ TABLES: dict[str, Callable[[dict], str]] = {
     "solvers": _solvers,
     "calibration": _calibration,
     "versions": _versions,
-    "minutes": _minutes,
 }
 
 
@@ -299,16 +289,11 @@ def values(data: dict) -> dict[str, str]:
         numbers[f"methods {name}"] = _percent(statistics.mean(_made(shares)))
     numbers["exact stacks"] = f"{parts['exact']['stacks']['stacks']:,}"
     numbers["exact joined"] = str(parts["exact"]["stacks"]["joined"])
-    numbers["calibration volumes"] = _percent(
-        statistics.mean(r["most"] for r in parts["volumes"]["volumes"]), 0
-    )
-    shares = [row["most"] for row in parts["heights"]["surfaces"]]
+    shares = [row["most"] for row in parts["calibration"]["surfaces"]]
     numbers["calibration least"], numbers["calibration most"] = (
         _percent(min(shares), 0),
         _percent(max(shares), 0),
     )
-    numbers["calibration truths"] = str(parts["volumes"]["truths"])
-    numbers["minutes"] = f"{sum(part['minutes'] for part in parts.values()):.0f}"
     return numbers
 
 
@@ -416,12 +401,10 @@ def figures(data: dict) -> dict[str, str]:
         for k, horizon in enumerate("DCBA")
     ]
     far = 10 * math.ceil(max(max(row.values()) for _, row in rows) / 10)
-    drawn["claudius.svg"] = _dots(
-        rows, (0, far), range(0, far + 1, max(5, far // 8 // 5 * 5)), "standard deviation of distances, m"
-    )
+    drawn["claudius.svg"] = _dots(rows, (0, far), range(0, far + 1, 10), "standard deviation of distances, m")
     drawn["exact.svg"] = _exact_figure(parts["exact"])
     rows = [
-        (f"{row['work'].split()[0]}, {row['solver']}, {row['elements']}", {"RealModel": _log(_off(row))})
+        (f"{_work(row)}, {row['solver']}, {row['elements']}", {"RealModel": _log(_off(row))})
         for row in parts["solvers"]["rows"]
     ]
     drawn["solvers.svg"] = _dots(
@@ -431,12 +414,7 @@ def figures(data: dict) -> dict[str, str]:
         "difference from the truth, as a share of it",
         lambda power: f"1e{power}",
     )
-    part = parts["heights"]
-    rows = [(row["surface"], {"RealModel": 100 * row["most"]}) for row in part["surfaces"]]
-    rows += [
-        (f"volumes, {row['method'].replace('_', ' ')}, {row['places']}", {"RealModel": 100 * row["most"]})
-        for row in parts["volumes"]["volumes"]
-    ]
+    rows = [(row["surface"], {"RealModel": 100 * row["most"]}) for row in parts["calibration"]["surfaces"]]
     drawn["calibration.svg"] = _dots(
         rows, (40, 100), range(40, 101, 10), "% within P10-P90; the dashed line is right", mark=80
     )
