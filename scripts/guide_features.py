@@ -42,8 +42,9 @@ def boreholes(walk):
     group.view.show_boreholes = group.view.show_hole_names = True
     with viewport(walk):
         bpy.ops.realmodel.section_plane(axis="X")
-    for item in (group.view.plane, group.rocks[0].region):
-        item.hide_set(True)
+    for item in bpy.context.visible_objects:
+        if not item.dimensions.z or item == group.view.plane:
+            item.hide_set(True)  # outlines far below what the holes are in
     yield from settled(walk)
     frame(walk, 1.25, azimuth=math.radians(122.0))  # to the cut, from the east
     yield from keep(walk, "boreholes", panels=["results", "field"])
