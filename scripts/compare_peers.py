@@ -5,12 +5,18 @@ points of the box that have the same unit there.
 
     python -m venv build/peers && build/peers/bin/pip install gempy==2026.0.3 LoopStructural==1.9.0
     PYTHONPATH=addon build/peers/bin/python scripts/compare_peers.py GEMPY_DATA GEMPY LOOP [EXAMPLE ...]
+    PYTHONPATH=addon build/peers/bin/python scripts/compare_peers.py --page
 
 The first three are clones of cgre-aachen/gempy_data, gempy-project/gempy and Loop3D/LoopStructural on GitHub.
+--page runs the code of docs/guide/gempy_loopstructural.md instead, and writes its table and its data, which a
+formula makes.
 """
 
 import contextlib
+import importlib.metadata
 import io
+import os
+import re
 import sys
 import time
 import warnings
@@ -207,6 +213,129 @@ def share(model, places, units):
     return float((names[model.block_at(places)] == units).mean())
 
 
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "guide" / "gempy_loopstructural.md"
+TABLES = ROOT / "docs" / "examples" / "peers"
+_BOX = np.array([[0.0, 0.0, 0.0], [1000.0, 800.0, 600.0]])
+_THROW, _FAULT_X, _THICKNESS = 80.0, 550.0, 120.0
+_BLOCKS = re.compile(r"^```py(?:thon)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_WRITTEN = {
+    name: re.compile(rf"(?<=<!-- {name} -->\n).*?(?=<!-- end -->)", re.DOTALL)
+    for name in ("agreement", "solids")
+}
+
+
+def base_of_shale(x, y):
+    """The truth of the page: an open fold, which a vertical fault lowers in the east."""
+    return 260 + 50 * np.sin(x / 160) + 0.04 * y - np.where(x > _FAULT_X, _THROW, 0)
+
+
+def true_units(places):
+    above = places[:, 2] - base_of_shale(*places[:, :2].T)
+    return np.array(["basement", "shale", "sand"])[np.searchsorted([0, _THICKNESS], above)]
+
+
+def page_tables():
+    """{name: data frame} of the page: points, orientations, and both as LoopStructural has them."""
+    random = np.random.default_rng(7)
+    points = []
+    for name, above in (("shale", 0.0), ("sand", _THICKNESS)):
+        x, y = random.uniform([20, 20], [980, 780], (40, 2)).round(1).T
+        far = abs(x - _FAULT_X) > 40
+        z = (base_of_shale(x, y) + above).round(2)
+        points.append(pd.DataFrame({"X": x, "Y": y, "Z": z, "formation": name})[far])
+    fault = [(_FAULT_X, y, z, "fault") for y in (100, 400, 700) for z in (50, 300, 550)]
+    points = pd.concat([*points, pd.DataFrame(fault, columns=points[0].columns)], ignore_index=True)
+    x, y = np.array([[100, 300, 500, 700, 900], [200, 600, 400, 200, 600]], float)
+    east, north = 50 / 160 * np.cos(x / 160), 0.04
+    orientations = pd.DataFrame({"X": x, "Y": y, "Z": base_of_shale(x, y).round(2)})
+    orientations["azimuth"] = (np.degrees(np.arctan2(-east, -north)) % 360).round(1)
+    orientations["dip"] = np.degrees(np.arctan(np.hypot(east, north))).round(1)
+    orientations = orientations.assign(polarity=1, formation="shale")
+    orientations.loc[len(orientations)] = [_FAULT_X, 400, 300, 90, 90, 1, "fault"]
+    bedding = points[points.formation != "fault"]
+    loop = bedding[["X", "Y", "Z"]].assign(val=np.where(bedding.formation == "sand", _THICKNESS, 0.0))
+    dips = orientations[["X", "Y", "Z"]].copy()
+    dip, azimuth = np.radians(orientations.dip), np.radians(orientations.azimuth)
+    dips["nx"], dips["ny"] = np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth)
+    dips["nz"] = np.cos(dip)
+    names = np.where(orientations.formation == "fault", "fault", "strati")
+    on_fault = points[points.formation == "fault"][["X", "Y", "Z"]].assign(val=0.0)
+    features = [loop.assign(feature_name="strati"), dips.round(4).assign(feature_name=names)]
+    features.append(on_fault.assign(feature_name="fault"))
+    loop = pd.concat(features, ignore_index=True)
+    return {"points": points, "orientations": orientations, "loop": loop.assign(coord=0)}
+
+
+def page_places():
+    return np.random.default_rng(1).uniform(*_BOX, (_POINTS, 3))
+
+
+def run_page(mark, names=None):
+    """What the code of the page with this text leaves behind, run after what left `names`."""
+    (code,) = (code for code in _BLOCKS.findall(PAGE.read_text(encoding="utf-8")) if mark in code)
+    names = {} if names is None else names
+    os.chdir(ROOT)
+    with contextlib.redirect_stdout(io.StringIO()):
+        exec(compile(code, PAGE.name, "exec"), names)
+    return names
+
+
+def our_page_units(mark):
+    """The unit of each place in the model of the code of the page with this text."""
+    model = run_page(mark)["model"]
+    return np.array([block.name for block in model.blocks])[model.block_at(page_places())]
+
+
+def closed_page_solids(mark, names):
+    """What the page prints of the solids that surfaces cut out of a box. mark: the code of the surfaces."""
+    surfaces = run_page(mark, names)["surfaces"]
+    (code,) = (code for code in _BLOCKS.findall(PAGE.read_text(encoding="utf-8")) if "cut_by_surface" in code)
+    begin = code.index("# The box")
+    lines = [line for line in code[:begin].splitlines() if line.startswith(("import", "from"))]
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile("\n".join([*lines, code[begin:]]), PAGE.name, "exec"), {"surfaces": surfaces})
+    return printed.getvalue()
+
+
+def agreement():
+    """The table of the page, and what its code makes of their surfaces."""
+    import gempy
+
+    places = page_places()
+    true = true_units(places)
+    rows = ["| | right | same as RealModel | RealModel right |", "|---|---|---|---|"]
+    of_gempy = run_page("import gempy")
+    solids = [closed_page_solids("scalar_field_matrix", of_gempy)]
+    theirs = of_gempy["geo_model"]
+    theirs.interpolation_options.mesh_extraction = False
+    with contextlib.redirect_stdout(io.StringIO()):
+        numbers = np.rint(gempy.compute_model_at(theirs, places)).astype(int).ravel()
+    names = np.array([element.name for element in theirs.structural_frame.structural_elements])
+    of_loop = run_page("import LoopStructural")
+    solids.append(closed_page_solids("strati.surfaces", of_loop))
+    values = of_loop["strati"].evaluate_value(places)
+    loop = np.array(["basement", "shale", "sand"])[np.searchsorted([0, _THICKNESS], values)]
+    for package, units, mark in (
+        ("gempy", names[numbers - 1], "import build, from_gempy"),
+        ("LoopStructural", loop, "import build, from_loop"),
+    ):
+        ours = our_page_units(mark)
+        name = f"{package.replace('gempy', 'GemPy')} {importlib.metadata.version(package)}"
+        shares = ((units == true).mean(), (units == ours).mean(), (ours == true).mean())
+        rows.append(f"| {name} | " + " | ".join(f"{100 * part:.1f} %" for part in shares) + " |")
+    return "\n".join([*rows, ""]), "```text\n" + "\n".join(solids) + "```\n"
+
+
+def write_page():
+    for name, table in page_tables().items():
+        table.to_csv(TABLES / f"{name}.csv", index=False)
+    table, solids = agreement()
+    text = _WRITTEN["agreement"].sub(lambda _: table, PAGE.read_text(encoding="utf-8"), count=1)
+    PAGE.write_text(_WRITTEN["solids"].sub(lambda _: solids, text, count=1), encoding="utf-8")
+
+
 def main(gempy_data, gempy, loop, *wanted):
     warnings.simplefilter("ignore")
     folders = [Path(gempy_data) / "data/input_data", Path(gempy) / "examples/data/input_data"]
@@ -223,4 +352,8 @@ def main(gempy_data, gempy, loop, *wanted):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1:] == ["--page"]:
+        warnings.simplefilter("ignore")
+        write_page()
+    else:
+        main(*sys.argv[1:])

@@ -15,10 +15,12 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # Blender does not put it there
 import guide_chapters as chapters
+import guide_recording
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "guide"
 WINDOWS = (  # (width, height), scale of the interface so that its letters are sharp in print, chapters
+    (guide_recording.SIZE, 1.35, (guide_recording.carving,)),
     ((1900, 2900), 3.0, chapters.OF_PANELS),
     ((2300, 2200), 2.0, chapters.OF_DIALOGS),
     ((1900, 1400), 1.5, chapters.WITH_MANY_PANELS),
@@ -28,7 +30,12 @@ WINDOWS = (  # (width, height), scale of the interface so that its letters are s
 COLORS = 256  # of a picture in its palette
 BANDS = 1.5  # mean difference that a palette makes, in steps of 255, beyond which shades show bands
 WIDEST = 1200  # pixels
-LIGHT = "studio.sl"  # of the viewport: brighter than the usual one
+# Of the viewport, direction (right, up, to the eye) and brightness: walls and tops have nearly the colors of
+# the legend, and the right side is a little darker.
+AMBIENT = 0.62
+LIGHTS = ((-0.35, 0.0, 0.94), 0.38), ((0.0, 1.0, 0.0), 0.2)
+PATIENCE = 1200.0  # seconds for one step, on a busy machine
+WIDER = 75  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut
 PAPER = (0.9, 0.91, 0.92)  # its background, on which dark layers and letters are seen
 
 
@@ -46,10 +53,18 @@ def run_in_window(number, names):
     """Runs chapters in Blender; returns its exit status."""
     size = WINDOWS[number][0]
     with tempfile.TemporaryDirectory() as folder:
-        command = ["xvfb-run", "-a", "-s", f"-screen 0 {size[0]}x{size[1]}x24 -fbdir {folder}", "blender"]
+        command = [
+            "xvfb-run",
+            "-a",
+            "-s",
+            f"-screen 0 {size[0]}x{size[1]}x24 -nocursor -fbdir {folder}",
+            "blender",
+        ]
         command += ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0"]
         command += [*map(str, size), "-P", __file__, "--", folder, str(number), *names]
         done = subprocess.run(command, cwd=ROOT, check=False)
+        for frames in Path(folder).glob("*/frames.json"):
+            guide_recording.assemble(frames.parent, IMAGES.parent / f"{frames.parent.name}.webp")
         for picture in sorted(Path(folder).glob("*.png")):
             shrink(picture, (IMAGES.parent if picture.stem == "view_modes" else IMAGES) / picture.name)
         return done.returncode
@@ -76,15 +91,18 @@ def begin(folder, number, *names):
     import bpy
 
     sys.path[:0] = [str(ROOT / part) for part in ("addon", "tests/gui", "tests/blender")]
+    import driver
     import guide_window
     import realmodel
-    from driver import Walk
 
+    driver.PATIENCE = PATIENCE
     _, scale, known = WINDOWS[int(number)]
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
     preferences.view.ui_scale = scale
     preferences.system.use_region_overlap = False
+    light_up(preferences.system)
+    preferences.system.viewport_aa = "FXAA"  # cheap: pictures are made smaller anyway
     background = preferences.themes[0].view_3d.space.gradients
     background.background_type = "SINGLE_COLOR"  # a gradient needs many colors of the palette
     background.high_gradient = PAPER
@@ -95,7 +113,18 @@ def begin(folder, number, *names):
         for draw in known
         if draw.__name__ in names
     ]
-    Walk(Path(folder), Path(folder) / "Xvfb_screen0").run(steps, at_end)
+    driver.Walk(Path(folder), Path(folder) / "Xvfb_screen0").run(steps, at_end)
+
+
+def light_up(system):
+    """Sets the studio light of Solid view. system: of the preferences."""
+    system.use_studio_light_edit = True
+    system.light_ambient = 3 * [AMBIENT]
+    for number, light in enumerate(system.solid_lights):
+        light.use = number < len(LIGHTS)
+        if light.use:
+            light.direction, light.diffuse_color = LIGHTS[number][0], 3 * [LIGHTS[number][1]]
+            light.specular_color, light.smooth = 3 * [0.0], 0.0
 
 
 def at_end(walk):
@@ -118,12 +147,14 @@ def chapter(walk, draw):
     space = walk.area.spaces.active
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     space.overlay.show_cursor = space.overlay.show_text = space.show_gizmo = False
-    space.shading.studio_light = LIGHT
+    space.shading.studio_light = "Default"
+    space.shading.show_specular_highlight = False
     # empty where only panels are kept: drawing its objects takes long, and nobody sees them
     space.show_object_viewport_mesh = draw not in chapters.OF_PANELS
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from guide_window.open_tab(walk)
+    yield from guide_window.widen(walk, WIDER * bpy.context.preferences.view.ui_scale)
     if draw in chapters.OF_VIEWPORTS:
         yield from guide_window.show_panels(walk, ["start"])
         space.show_region_ui = False

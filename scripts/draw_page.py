@@ -15,7 +15,7 @@ from realmodel.core import build, load_project
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = 1200, 760
-VIEW = "#s=y,0.55,1&t=light"
+VIEW = "s=y,0.55,1&t=light"
 FLAGS = (
     "--headless=new",
     "--no-sandbox",
@@ -25,22 +25,24 @@ FLAGS = (
 )
 
 
-def draw(folder: Path) -> None:
-    model = build(load_project(ROOT / "blend_samples" / "castle_hill" / "project.toml"))
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as made:
-        page = Path(made) / "castle_hill.html"
-        model.save(page)
+def draw(page: Path, view: str, picture: Path) -> None:
+    """Writes the picture of a page. view: what its address has behind #."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         subprocess.run(
             [
-                *("chromium", *FLAGS, "--hide-scrollbars", f"--user-data-dir={made}/profile"),
+                *("chromium", *FLAGS, "--hide-scrollbars", f"--user-data-dir={profile}"),
                 *(f"--window-size={SIZE[0]},{SIZE[1]}", "--virtual-time-budget=20000"),
-                *(f"--screenshot={folder / 'page.png'}", f"{page.as_uri()}{VIEW}"),
+                *(f"--screenshot={picture}", f"{page.resolve().as_uri()}#{view}"),
             ],
             check=True,
             stderr=subprocess.DEVNULL,
         )
-    shrink(folder / "page.png", folder / "page.png")
+    shrink(picture, picture)
 
 
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "images")
+    images = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "images"
+    model = build(load_project(ROOT / "blend_samples" / "castle_hill" / "project.toml"))
+    with tempfile.TemporaryDirectory() as made:
+        model.save(Path(made) / "castle_hill.html")
+        draw(Path(made) / "castle_hill.html", VIEW, images / "page.png")

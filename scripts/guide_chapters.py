@@ -4,8 +4,10 @@ pictures of it. Needs Blender."""
 
 import math
 
+import guide_features as features
 import guide_scenes
 from guide_window import (
+    blocks,
     build,
     example,
     fill_view,
@@ -36,6 +38,7 @@ def tour(walk):
     import guide_panels
 
     yield from example(walk, guide_panels.EXAMPLE)
+    dismiss(walk)
     guide_panels.choose_rows(bpy.context.scene.realmodel)
     found = {}
     for name in guide_panels.PANELS:
@@ -47,42 +50,34 @@ def tour(walk):
 def window(walk):
     """The window with an example."""
     yield from example(walk, "castle_hill")
+    dismiss(walk)
+    smooth()
     yield from keep(walk, "window")
 
 
 def modes(walk):
-    """The display modes, a stage, moved apart, cut open: docs/images/view_modes.png."""
+    """The display modes, and stages: docs/images/view_modes.png and stages.png."""
     import bpy
 
     yield from example(walk, "castle_hill")
     group = bpy.context.scene.realmodel
     group.view.show_legend = False
     yield from settled(walk)
-    frame(walk, 0.8)
+    frame(walk, 0.9)
     pictures = []
     for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
         group.display = mode
         yield from settled(walk)
+        smooth()
+        yield from settled(walk)
         pictures.append(labeled(viewed(walk), modes_of(group)[mode]))
-    group.display = "BLOCKS"
-    group.stage = 5
-    yield from settled(walk)
-    pictures.append(labeled(viewed(walk), "Blocks at Stage 5"))
-    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.5
-    yield from settled(walk)
-    pictures.append(labeled(viewed(walk), "Explode 0.5"))
-    group.explode = 0.0
-    bpy.ops.realmodel.section_plane(axis="Y")
-    yield from settled(walk)
-    pictures.append(labeled(viewed(walk), "Section"))
-    side_by_side(pictures, walk.folder / "view_modes.png", 3, 2)
-    bpy.ops.realmodel.section_remove()
-    frame(walk, 0.82)  # beneath the texts
+    side_by_side(pictures, walk.folder / "view_modes.png", 2)
+    group.display, pictures = "BLOCKS", []
     for stage in (3, 6, 9, 10):
         group.stage = stage
         yield from settled(walk)
         pictures.append(labeled(viewed(walk), f"Stage {stage}: {group.rocks[0].surfaces[stage].name}"))
-    side_by_side(pictures[-4:], walk.folder / "stages.png", 2, 2)
+    side_by_side(pictures, walk.folder / "stages.png", 2)
 
 
 def modes_of(group):
@@ -126,12 +121,16 @@ def csv(walk):
     for item in bpy.data.objects:
         item.hide_set(item.name.endswith(" points"))
     walk.area.spaces.active.overlay.show_floor = True  # beneath points that would hang in the air
-    fill_view(walk, guide_scenes.visible_meshes(), 0.98, math.radians(48.0))
+    fill_view(walk, guide_scenes.visible_meshes(), 0.98, math.radians(14.0))
     yield from keep(walk, "csv_points", panels=["start", "surfaces"])
     walk.area.spaces.active.overlay.show_floor = False
     guide_scenes.settle_rock()
     yield from build(walk)
-    bpy.context.scene.realmodel.rocks[0].region.hide_set(True)  # a line that lies on the walls
+    group = bpy.context.scene.realmodel
+    group.view.show_contacts = False
+    group.color_by = "BLOCK"  # the names of the legend are those of the list then
+    group.rocks[0].region.hide_set(True)  # a line that lies on the walls
+    smooth()
     frame(walk)
     yield from keep(walk, "csv_built", panels=["build", "results"])
 
@@ -141,10 +140,9 @@ def quality(walk):
     import bpy
     from driver import read_picture
 
-    guide_scenes.import_tables()
-    guide_scenes.settle_rock()
-    yield from build(walk)
-    bpy.context.scene.realmodel.rocks[0].active_surface = 1
+    yield from example(walk, "castle_hill")
+    rock = bpy.context.scene.realmodel.rocks[0]
+    rock.active_surface = rock.surfaces.find("vosgien")
     bpy.ops.realmodel.check_quality()
     charts = []
     for chart in ("VARIOGRAM", "CROSS_VALIDATION"):
@@ -156,11 +154,11 @@ def quality(walk):
 
 
 def sculpt_grids(walk):
-    """Three grids that an artist has made."""
+    """Grids that an artist has made."""
     from driver import save_picture
 
     yield from settled(walk)
-    guide_scenes.three_grids()
+    guide_scenes.grids()
     walk.area.spaces.active.shading.color_type = "OBJECT"
     fill_view(walk, guide_scenes.visible_meshes())
     yield from settled(walk)
@@ -172,7 +170,7 @@ def sculpt_built(walk):
     import bpy
 
     yield from settled(walk)
-    guide_scenes.three_grids()
+    guide_scenes.grids()
     bpy.ops.realmodel.from_selected()
     guide_scenes.paint(bpy.context.scene.realmodel.library, guide_scenes.GRID_COLORS)
     yield from build(walk)
@@ -186,10 +184,14 @@ def section(walk):
     """A model cut open by a plane, the box of the model around it."""
     import bpy
 
-    yield from plain_with_a_box(walk)
-    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from example(walk, "castle_hill")
+    dismiss(walk)
+    guide_scenes.ghost(blocks())
+    with viewport(walk):
+        bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
-    bpy.context.scene.realmodel.view.plane.hide_set(True)  # its long edges would look like part of the model
+    # its long edges would look like part of the model
+    bpy.context.scene.realmodel.view.plane.hide_set(True)
     fill_view(walk, [bpy.data.objects[guide_scenes.BOX]])
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
 
@@ -201,8 +203,7 @@ def fence(walk):
     from driver import save_picture
 
     yield from plain_with_a_box(walk)
-    blocks = [row.object for row in bpy.context.scene.realmodel.results if row.object]
-    corners = np.concatenate([np.array(block.bound_box) for block in blocks])
+    corners = np.concatenate([np.array(block.bound_box) for block in blocks()])
     low, high = corners.min(axis=0)[:2], corners.max(axis=0)[:2]
     shares = ((0.05, 0.2), (0.5, 0.6), (0.95, 0.35))
     curve = guide_scenes.line([low + (high - low) * share for share in shares])
@@ -211,12 +212,12 @@ def fence(walk):
     bpy.ops.realmodel.fence()
     made = bpy.context.active_object
     made.select_set(False)
-    for item in (curve, *blocks):
+    for item in (curve, *blocks()):
         item.hide_set(True)
     yield from settled(walk)
     fill_view(walk, [bpy.data.objects[guide_scenes.BOX]], 0.96)
     yield from settled(walk)
-    label = "The lake: a hole of the region", place_in_view(walk, guide_scenes.gap(made)), (-105, -112)
+    label = "Lake, outside of the region", place_in_view(walk, guide_scenes.gap(made)), (0, 100)
     save_picture(labeled(viewed(walk), "", [label]), walk.folder / "section_fence.png")
 
 
@@ -228,23 +229,8 @@ def plain_with_a_box(walk):
     group = bpy.context.scene.realmodel
     group.view.exaggeration = 8.0
     yield from settled(walk)
-    guide_scenes.ghost([row.object for row in group.results if row.object])
+    guide_scenes.ghost(blocks())
     walk.area.spaces.active.overlay.show_relationship_lines = False
-
-
-def boreholes(walk):
-    """Boreholes as tubes over the channel that they found."""
-    import bpy
-
-    yield from example(walk, "uncertain_valley")
-    group = bpy.context.scene.realmodel
-    group.view.exaggeration = 4.0
-    group.view.show_boreholes = True
-    for row in group.results:
-        row.object.hide_set(row.name in ("Till", "Lake clay"))
-    yield from settled(walk)
-    frame(walk, elevation=math.radians(48.0))  # into the channel
-    yield from keep(walk, "boreholes", panels=["results", "field"])
 
 
 def mapped(walk):
@@ -256,15 +242,16 @@ def mapped(walk):
     view = bpy.context.scene.realmodel.view
     view.show_map = True
     yield from settled(walk)
-    frame(walk, 0.86, math.radians(45.0))
+    frame(walk, 0.95, math.radians(50.0))
     yield from settled(walk)
-    pictures = [labeled(viewed(walk), "The map on its ground")]
+    pictures = [viewed(walk)]
     yield from build(walk)
     view.show_map, view.show_dips = False, True
-    frame(walk, 0.86)
+    frame(walk, 0.95, math.radians(38.0))
+    smooth()
     yield from settled(walk)
-    pictures.append(labeled(viewed(walk), "The model, and the dips"))
-    side_by_side(pictures, walk.folder / "map.png", 2, 2)
+    pictures.append(viewed(walk))
+    side_by_side(pictures, walk.folder / "map.png", 1)
 
 
 def structures(walk):
@@ -281,6 +268,9 @@ def structures(walk):
     group = bpy.context.scene.realmodel
     guide_scenes.paint(group.library, guide_scenes.GRABEN_COLORS)
     group.explode_direction, group.explode = "COMPARTMENT", 0.4
+    for row in group.results:
+        if row.name.startswith("Cover"):  # what is beneath it shall be seen
+            row.object.active_material.diffuse_color[3] = 0.3
     frame(walk, 0.74)  # of the blocks where they belong
     yield from settled(walk)
     save_picture(viewed(walk), walk.folder / "structures.png")
@@ -292,9 +282,35 @@ def structures(walk):
     load_project(projects["recumbent_fold"]).stereonet().save(walk.folder / "stereonet.png")
 
 
+def dismiss(walk):
+    """Closes the messages of a build."""
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.dismiss()
+
+
+def smooth():
+    for item in blocks():
+        guide_scenes.shade_smooth(item)
+
+
 OF_PANELS = (start, tour, csv_panel)  # pictures of the sidebar alone
-OF_DIALOGS = (csv_dialog,)
-WITH_PANELS = (csv, quality, sculpt_built, boreholes)  # of the viewport and the sidebar
-WITH_MANY_PANELS = (window, section)  # the same, with a longer sidebar
-OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures)  # of the viewport alone
+OF_DIALOGS = (csv_dialog, features.filling, features.meshing)
+WITH_PANELS = (  # of the viewport and the sidebar
+    csv,
+    quality,
+    sculpt_built,
+    features.boreholes,
+    features.residuals,
+    features.drawing,
+)
+WITH_MANY_PANELS = (
+    window,
+    section,
+    features.uncertainty,
+    features.fold,
+    features.faults,
+)  # with a longer sidebar
+OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures, features.tiles)  # of the viewport alone
 AS_FOUND = (start, window)  # with panels open or closed as users find them

@@ -7,9 +7,17 @@ from pathlib import Path
 
 SAMPLES = Path(__file__).resolve().parents[1] / "blend_samples"
 BOX = "box of the model"
-GRID_COLORS = ("#6f8296", "#d9b070", "#7d9460")  # in the order of the library, as those below
+GRID_COLORS = ("#6f8296", "#d9b070", "#a4603f", "#e0cfa0", "#8c6d8a", "#7d9460")  # as in the library
 GRABEN_COLORS = ("#c4aeaa", "#e6b069", "#97c0d6", "#f0e4ab", "#a9cc7a", "#d9b8cf")
-_GRIDS = {"clay": (0.0, 2.0), "sand": (2.2, 2.5), "ground": (4.6, 4.0)}  # height, strength of the Displace
+_GRIDS = {  # height, strength of the Displace
+    "basement": (0.0, 1.2),
+    "sandstone": (1.0, 1.2),
+    "shale": (1.7, 1.2),
+    "limestone": (2.7, 1.2),
+    "marl": (3.3, 1.2),
+    "ground": (4.6, 0.5),
+}
+_CLIFF = 3.4  # its height
 _FAULTS = {"West fault": (300.0, 0.22, 0.1), "East fault": (720.0, -0.2, -0.06)}
 _LAYERS = {"Basement": -420.0, "Sandstone": -300.0, "Marl": -200.0, "Limestone": -110.0}
 
@@ -37,7 +45,7 @@ def grid(name, height, size, strength, seed):
     """A grid with a Displace modifier, as an artist makes it."""
     import bpy
 
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=60, y_subdivisions=60, size=size, location=(0, 0, height))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=90, y_subdivisions=90, size=size, location=(0, 0, height))
     item = bpy.context.active_object
     item.name = name
     texture = bpy.data.textures.new(name, "CLOUDS")
@@ -47,15 +55,21 @@ def grid(name, height, size, strength, seed):
     return item
 
 
-def three_grids():
-    """The surfaces of three layers as grids, selected, with colors of their own."""
+def grids():
+    """The surfaces of layers as grids, selected, with colors of their own; the ground has a cliff."""
     import bpy
+    from mathutils import Color
 
-    for number, (name, (height, strength)) in enumerate(_GRIDS.items()):
-        grid(name, height, 12.0, strength, number)
-    for item, color in zip(bpy.data.objects, GRID_COLORS, strict=True):
+    for name, (height, strength) in _GRIDS.items():
+        grid(name, height, 12.0, strength, 7 if name == "ground" else 1)
+    for vertex in bpy.data.objects["ground"].data.vertices:
+        x, y, _ = vertex.co
+        across = y + 0.22 * x + 0.9 * math.sin(0.8 * x) + 0.35 * math.sin(2.1 * x)
+        vertex.co.z = _CLIFF * (0.5 * math.tanh(across / 0.45) - 0.5) + 0.05 * across
+    for name, color in zip(_GRIDS, GRID_COLORS, strict=True):
+        item = bpy.data.objects[name]
         item.select_set(True)
-        item.color = (*rgb(color), 1.0)
+        item.color = (*Color(rgb(color)).from_srgb_to_scene_linear(), 1.0)
         shade_smooth(item)
 
 
@@ -194,3 +208,83 @@ def graben():
     bpy.ops.realmodel.fault_body_from_selected()
     for row in scene.realmodel.faults:
         row.youngest = "Limestone"
+
+
+def logs(folder, sample):
+    """Tables of the holes of a sample as a driller logs them: collars, and the blocks that its model has
+    there. Returns their paths."""
+    import csv
+
+    from realmodel.core import build, load_project
+
+    path = SAMPLES / sample / "project.toml"
+    model = build(load_project(path))
+    with (path.parent / "collars.csv").open(encoding="utf-8") as file:
+        holes = list(csv.DictReader(file))
+    collars, intervals = ["hole,x,y,z,end"], ["hole,from,to,block"]
+    for hole in holes:
+        name, x, y = (hole[key] for key in ("hole", "x", "y"))
+        met = model.borehole(float(x), float(y))
+        end = met[-1].top - 15.0  # it ends in the bedrock
+        collars.append(f"{name},{x},{y},{met[0].top:.2f},{met[0].top - end:.2f}")
+        for part in met:
+            depths = met[0].top - part.top, met[0].top - max(part.bottom, end)
+            intervals.append(f"{name},{depths[0]:.2f},{depths[1]:.2f},{model.blocks[part.block].name}")
+    paths = []
+    for name, lines in (("collars", collars), ("intervals", intervals)):
+        paths.append(folder / f"{name}.csv")
+        paths[-1].write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return paths
+
+
+def in_tiles(folder, sample):
+    """Builds a sample in tiles, with the command line; returns the path of their table."""
+    import subprocess
+
+    root = SAMPLES.parent
+    command = [root / "build" / "venv" / "bin" / "python", root / "build_model.py"]
+    command += [SAMPLES / sample / "project.toml", "--tiles", "600,400", "--out", folder / "tiles"]
+    subprocess.run(list(map(str, command)), check=True, cwd=root)
+    return folder / "tiles" / "tiles.toml"
+
+
+def boulder():
+    """A bumpy ball, the active object."""
+    import bpy
+
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6, radius=2.0)
+    item = bpy.context.active_object
+    item.name = "Boulder"
+    for name, size, strength in (("large", 1.6, 0.9), ("small", 0.5, 0.15)):
+        texture = bpy.data.textures.new(name, "CLOUDS")
+        texture.noise_scale = size
+        modifier = item.modifiers.new(name, "DISPLACE")
+        modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
+    bpy.ops.object.modifier_apply(modifier="large")
+    bpy.ops.object.modifier_apply(modifier="small")
+    shade_smooth(item)
+    return item
+
+
+def scan(path, sample, y):
+    """Saves a section of a sample along x as a scanner reads it of an old print: yellowed, with inked
+    contacts. Returns x and the heights of its corners."""
+    import numpy as np
+    from driver import save_picture
+    from realmodel.core import build, load_project
+
+    model = build(load_project(SAMPLES / sample / "project.toml"))
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    width = 900
+    height = int(width * (high[2] - low[2]) / (high[0] - low[0]))
+    random = np.random.default_rng(1)
+    paper = np.array((0.93, 0.89, 0.78)) - random.uniform(0.0, 0.05, (height, width, 1))
+    for column in range(width):
+        x = low[0] + (column + 0.5) / width * (high[0] - low[0])
+        for part in model.borehole(x, y):
+            top, bottom = (int((z - low[2]) / (high[2] - low[2]) * height) for z in (part.top, part.bottom))
+            dots = (np.arange(bottom, top) + 3 * column) % (5 + 4 * part.block) == 0
+            paper[bottom:top, column] -= 0.25 * dots[:, None]
+            paper[max(top - 3, 0) : top, column] = (0.2, 0.16, 0.14)
+    save_picture(np.clip(paper, 0.0, 1.0), path)
+    return (low[0], high[0]), (low[2], high[2])

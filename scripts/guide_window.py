@@ -6,6 +6,7 @@ import math
 
 TAB = {}  # the panels of the tab in their order, and their options
 ELEVATION = math.radians(27.0)  # of the eye above the horizon, as in the add-on
+BLUE = (0.278, 0.447, 0.702)  # of what is switched on, and of sliders as far as they are filled
 MARGIN = 14  # pixels around a viewport, where Blender has a border and arrows that open regions
 
 
@@ -60,6 +61,39 @@ def show_panels(walk, names=()):
         if not names or cls.__name__.removeprefix("REALMODEL_PT_") in names:
             bpy.utils.register_class(cls)
     yield walk.redrawn(3)
+
+
+def widen(walk, pixels):
+    """Makes the sidebar wider, as a mouse does at its border."""
+    region = walk.region("UI")
+    before, x, y = region.width, region.x, region.y + region.height // 3
+    for step in (40, 0):
+        walk.move(x - step, y)
+        yield walk.redrawn()
+    walk.window.event_simulate(type="LEFTMOUSE", value="PRESS", x=x, y=y)
+    yield walk.redrawn()
+    for share in (0.2, 0.5, 1.0, 1.0):
+        walk.move(x - share * pixels, y)
+        yield walk.redrawn()
+    walk.window.event_simulate(type="LEFTMOUSE", value="RELEASE", x=int(x - pixels), y=y)
+    walk.over_viewport()
+    yield walk.redrawn(2)
+    if walk.region("UI").width < before + 0.5 * pixels:
+        raise AssertionError("the sidebar stays as wide as it is")
+
+
+def slider(walk, number):
+    """(left, right, height) in the window of the blue field of this number from the top, in the sidebar."""
+    import numpy as np
+
+    region = walk.region("UI")
+    picture = seen(walk, region)
+    is_blue = (abs(picture - np.array(BLUE)) < 0.03).all(axis=2)
+    rows = np.flatnonzero(is_blue.sum(axis=1) > 20)[::-1]
+    fields = np.split(rows, np.flatnonzero(np.diff(rows) < -2) + 1)
+    row = int(np.median(fields[number]))
+    columns = np.flatnonzero(is_blue[row])
+    return region.x + columns[0], region.x + columns[-1], region.y + row
 
 
 def keep(walk, name, region=None, panels=()):
@@ -152,17 +186,26 @@ def example(walk, name):
     yield walk.redrawn(3)
 
 
-def frame(walk, share=0.92, elevation=ELEVATION):
-    """Turns the viewport to the blocks, or else to what the scene has. elevation: of the eye, radians."""
+def frame(walk, share=0.92, elevation=ELEVATION, **more):
+    """Turns the viewport to the blocks, or else to what the scene has. elevation: of the eye, radians; more:
+    its azimuth."""
     import bpy
 
-    rows = [row.object for row in bpy.context.scene.realmodel.results if row.object is not None]
     for item in bpy.context.selected_objects:
         item.select_set(False)
-    fill_view(walk, rows or [item for item in bpy.data.objects if item.type == "MESH"], share, elevation)
+    fill_view(
+        walk, blocks() or [item for item in bpy.data.objects if item.type == "MESH"], share, elevation, **more
+    )
 
 
-def fill_view(walk, items, share=0.92, elevation=ELEVATION):
+def blocks():
+    """The objects of the blocks."""
+    import bpy
+
+    return [row.object for row in bpy.context.scene.realmodel.results if row.object is not None]
+
+
+def fill_view(walk, items, share=0.92, elevation=ELEVATION, **more):
     """Turns the viewport to objects, which then fill a share of it."""
     import bpy
     import numpy as np
@@ -173,7 +216,7 @@ def fill_view(walk, items, share=0.92, elevation=ELEVATION):
     bpy.context.view_layer.update()
     corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
     view = walk.area.spaces.active.region_3d
-    rotation = viewports.view_rotation(elevation=elevation)
+    rotation = viewports.view_rotation(elevation=elevation, **more)
     view.view_perspective, view.view_rotation = "PERSP", rotation.to_quaternion()
     view.update()
     tangents = share / np.array([view.window_matrix[0][0], view.window_matrix[1][1]])

@@ -19,15 +19,16 @@ include_patterns = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
     "docs/*.md",
-    "docs/dev/**/*.md",
+    "docs/dev/**.md",
     "docs/examples/*.md",
     "docs/guide/*.md",
-    "docs/real_case/*.md",
     "docs/notebooks/*.ipynb",
+    "docs/real_case/*.md",
     "docs/reference/*.md",
     "blend_samples/**README.md",
     "native/src/exact/README.md",
 ]
 nb_execution_mode = "off"  # the tests run them, and their results are in them
+myst_enable_extensions = ["html_image"]  # pictures with a width
 myst_heading_anchors = 4  # as code hosts make them
 myst_fence_as_directive = ["mermaid"]

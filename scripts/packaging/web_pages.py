@@ -22,6 +22,7 @@ PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
 LARGE, WIDTH = 8_000, 800  # bytes of a picture that is made smaller; pixels, a little more than a page has
 QUALITY = 65  # of a picture as WebP, which takes half of what JPEG does
+_SOURCE = re.compile(r'<img[^>]* src="([^"]+)"')
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>{title}</title><style>
@@ -86,6 +87,13 @@ def _page(name, names):
             text = "".join(part.content for part in tokens[number + 1].children)
             token.attrSet("id", slug(text))
             title = text if token.tag == "h1" else title
+        if (
+            token.type == "html_block"
+        ):  # a picture with a width
+            for address in _SOURCE.findall(token.content):
+                picture = normpath(f"{folder}/{address}")
+                pictures.add(picture)
+                token.content = token.content.replace(address, relpath(_in_zip(picture)[0], folder))
         if token.type == "inline":
             token.children = _with_links(token.children, folder, names)
             for part in token.children:

@@ -119,7 +119,7 @@ class Proposals(PanelCase):
         maps.write_text(json.dumps({"type": "FeatureCollection", "features": shapes}))
         places = [f"{x},{y},{100 - 0.1 * x}" for x in range(0, 301, 20) for y in range(0, 201, 20)]
         (self.folder / "ground.csv").write_text("\n".join(["x,y,z", *places]) + "\n")
-        self.refused(ops.propose_project, "no heights", filepath=str(maps), map_block="unit")
+        self.refused(ops.propose_project, "no elevations", filepath=str(maps), map_block="unit")
         self.assertFalse(self.model.exists)
         ops.propose_project(filepath=str(maps), map_block="unit", map_ground="ground.csv")
         self.assertEqual(sorted(self.blocks()), ["Clay", "Marl", "Sand"])

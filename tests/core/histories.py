@@ -8,6 +8,7 @@ import numpy as np
 from folded.case import Fold
 from realmodel.core.base.work import run
 from realmodel.core.fields import Lattice, LevelSetData, solve_field
+from stacks.places import REAL_DATA
 
 PLACES = 5000
 
@@ -161,6 +162,29 @@ def folded(seed):
     at = random.uniform(0.3, size - 0.3, (random.integers(10, 70), 3))
     normals = fold.normals(at) + tilt * random.normal(size=at.shape)
     return _history(contacts, np.array(surfaces, np.int32), at, normals, fold, levels, size)
+
+
+def moureze(seed):
+    """Some points and dips of the real surface of Moureze as a history without truth, places beside its other
+    dips, and which of them are above it."""
+    folder, random = REAL_DATA / "folds" / "moureze", np.random.default_rng([9, seed])
+    contacts = np.loadtxt(folder / "s0.csv", delimiter=",", skiprows=1)
+    rows = np.loadtxt(folder / "dips.csv", delimiter=",", skiprows=1)
+    low = np.minimum(contacts.min(axis=0), rows[:, :3].min(axis=0)) - 20
+    size = np.maximum(contacts.max(axis=0), rows[:, :3].max(axis=0)) + 20 - low
+    dip, azimuth = np.radians(rows[:, 3:5]).T
+    normals = np.column_stack([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
+    at, normals = rows[:, :3] - low, normals * rows[:, 5:6]
+    count, dips = random.integers(5, 40), random.integers(3, 16)
+    seen = contacts[random.choice(len(contacts), count, replace=False)] - low
+    known = random.choice(len(at), dips, replace=False)
+    surfaces = np.zeros(count, np.int32)
+    history = History(LevelSetData("A", seen, surfaces, at[known], normals[known]), None, np.zeros(1), size)
+    beside = random.choice([5.0, 10.0, 20.0, 40.0], len(at)) * random.choice([-1, 1], len(at))
+    asked = at + beside[:, None] * normals
+    counts = np.all((asked > 0) & (asked < size), axis=1)
+    counts[known] = False
+    return history, asked[counts], beside[counts] > 0
 
 
 def _history(contacts, surfaces, dips, normals, truth, levels, size):

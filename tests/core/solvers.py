@@ -10,6 +10,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from realmodel.core.exporters import save_mesh
+from realmodel.core.simulation.elements import ElementFaces
 
 # Debian's folder of OpenFOAM's settings, which its programs do not find alone
 _FOAM_SETTINGS = Path("/usr/share/openfoam")
@@ -126,6 +128,92 @@ def run_ogs(folder, mesh_file, media, base, top):
     text = result[0].read_text()
     values = re.search(r'<DataArray[^>]*Name="pressure"[^>]*>([^<]*)<', text).group(1)
     return np.array(values.split(), float)
+
+
+def foam_heat(mesh, folder, media):
+    """The heat that flows in on top of a mesh, by laplacianFoam, from 0 at the base to 1 on top. media: the
+    diffusivity of each block."""
+    case = folder / "case.foam"
+    save_mesh(mesh, case)
+    cells = ElementFaces(mesh).polyhedral()
+    write_foam_fields(case, np.asarray(media)[cells.cell_block])
+    settings = case / "system" / "fvSolution"
+    settings.write_text(settings.read_text().replace("Correctors 5", "Correctors 20"))
+    control = case / "system" / "controlDict"
+    control.write_text(control.read_text().replace("binary", "ascii"))
+    output = run_foam("laplacianFoam", case)
+    last = [line for line in output.splitlines() if "Solving for T" in line][-1]
+    assert float(last.split("Initial residual = ")[1].split(",")[0]) < 1e-8, last
+    times = [path for path in case.iterdir() if path.name[0].isdigit() and path.name != "0"]
+    temperature = scalar_field(max(times, key=lambda path: float(path.name)) / "T")
+    # what flows from the centers of the cells to the faces on top, across them
+    areas, centers = face_geometry(cells)
+    middles = cell_centers(cells, areas, centers)
+    cell = cells.face_cells[:, 0]
+    top = (cells.face_cells[:, 1] < 0) & (cells.face_surface != -1) & (areas[:, 2] > 0)
+    cell, size = cell[top], np.linalg.norm(areas[top], axis=1)
+    way = ((centers[top] - middles[cell]) * areas[top]).sum(axis=1) / size
+    diffusivity = np.asarray(media)[cells.cell_block[cell]]
+    return float((diffusivity * (1 - temperature[cell]) * size / way).sum())
+
+
+def face_geometry(cells):
+    """(F, 3) the area vector of each face, away from its first cell, and (F, 3) its center."""
+    areas, centers = np.empty((2, len(cells.face_cells), 3))
+    for face in range(len(areas)):
+        corners = cells.points[cells.face_vertices[cells.face_offsets[face] : cells.face_offsets[face + 1]]]
+        parts = np.cross(corners[1:-1] - corners[0], corners[2:] - corners[0]) / 2
+        weights = np.linalg.norm(parts, axis=1)
+        middles = (corners[0] + corners[1:-1] + corners[2:]) / 3
+        areas[face], centers[face] = parts.sum(axis=0), weights @ middles / weights.sum()
+    return areas, centers
+
+
+def cell_centers(cells, areas, centers):
+    """(C, 3) the centers of the volumes of cells, from the pyramids over their faces."""
+    volumes, moments, counts = np.zeros(cells.cells), np.zeros((cells.cells, 3)), np.zeros(cells.cells)
+    inner = cells.face_cells[:, 1] >= 0
+    sides = [(cells.face_cells[:, 0], areas, centers)]
+    sides.append((cells.face_cells[inner, 1], -areas[inner], centers[inner]))
+    rough = np.zeros((cells.cells, 3))
+    for cell, _, center in sides:
+        np.add.at(rough, cell, center)
+        np.add.at(counts, cell, 1)
+    rough /= counts[:, None]
+    for cell, area, center in sides:
+        pyramid = ((center - rough[cell]) * area).sum(axis=1) / 3
+        np.add.at(volumes, cell, pyramid)
+        np.add.at(moments, cell, pyramid[:, None] * (0.75 * center + 0.25 * rough[cell]))
+    return moments / volumes[:, None]
+
+
+def ogs_heat(mesh, folder, media):
+    """The same by OpenGeoSys on tetrahedra: what linear elements dissipate at a difference of 1."""
+    save_mesh(mesh, folder / "mesh.vtu")
+    triangles, surface = mesh.faces["triangle"], mesh.face_surface["triangle"]
+    corners = mesh.points[triangles]
+    up = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
+    once = outside_triangles(mesh)
+    flat = once & (surface != -1)
+    write_ogs_nodes(folder / "top.vtu", mesh.points, triangles[flat & (up > 0)])
+    write_ogs_nodes(folder / "base.vtu", mesh.points, triangles[flat & (up < 0)])
+    pressure = run_ogs(folder, "mesh", media, "base", "top")
+    elements = mesh.elements["tetrahedron"]
+    points, values = mesh.points[elements], pressure[elements]
+    edges = points[:, 1:] - points[:, :1]
+    gradient = np.linalg.solve(edges, (values[:, 1:] - values[:, :1])[..., None])[..., 0]
+    volume = np.linalg.det(edges) / 6
+    diffusion = np.asarray(media)[mesh.element_block["tetrahedron"]]
+    return float((diffusion * volume * (gradient**2).sum(axis=1)).sum())
+
+
+def outside_triangles(mesh):
+    """(F,) bool: which given triangles belong to one element only."""
+    elements = mesh.elements["tetrahedron"]
+    faces = np.sort(elements[:, [[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]].reshape(-1, 3), axis=1)
+    kinds, counts = np.unique(faces, axis=0, return_counts=True)
+    single = {tuple(row) for row in kinds[counts == 1].tolist()}
+    return np.array([tuple(sorted(row)) in single for row in mesh.faces["triangle"].tolist()])
 
 
 def write_ogs_nodes(path, points, triangles):

@@ -102,7 +102,7 @@ def test_any_logs_make_a_closed_body_or_none(seed, count):
     try:
         _, _, volume, _ = body_of(ends, without, rng.choice([None, 40.0]))
     except InputRefused as error:
-        assert "how far it goes" in str(error) or "different heights" in str(error)
+        assert "how far it goes" in str(error) or "different elevations" in str(error)
         return
     assert volume > 0
 

@@ -203,7 +203,7 @@ def test_holes_are_found_however_they_are_written(write):
     np.testing.assert_allclose(met.points["clay"], [[4, 0, 10], CLAY[1], CLAY[2]], atol=1e-12)
     assert set(met.holes) == {"DH-1", "DH 2", "B3", "B4"}
     assert any(
-        "are taken for those with collars: 'dh 1' for 'DH-1' and 'b3' for 'B3'" in t for t in met.warnings
+        "are matched with those with collars: 'dh 1' for 'DH-1' and 'b3' for 'B3'" in t for t in met.warnings
     )
     # 'DH_2' may be 'DH 2' or 'dh_2', at another place
     met = read_picks(Boreholes(write("p.csv", picks.replace("DH 2,", "DH_2,")), write("c.csv", collars)))

@@ -240,7 +240,7 @@ def never_done():
 def test_a_client_that_is_closed_meanwhile(client):
     starting = Future()
     starting.set_result(client)
-    with pytest.raises(UsageError, match="the scheduler or its workers went away; start again"):
+    with pytest.raises(UsageError, match="the scheduler or its workers were lost; start again"):
         list(Workers(starting).in_any_order(print, None, [1, 2]))
 
 

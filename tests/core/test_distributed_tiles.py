@@ -197,7 +197,7 @@ def test_a_scheduler_that_goes_away(tmp_path):
     done = subprocess.run(
         command, capture_output=True, text=True, check=False, timeout=60, env=os.environ | paths
     )
-    said = "the scheduler or its workers went away; start again: what is done stays"
+    said = "the scheduler or its workers were lost; start again: finished steps are kept"
     assert done.stdout.splitlines() == [said, said], done.stderr
 
 

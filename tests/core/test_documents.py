@@ -61,6 +61,16 @@ def test_the_table_of_haut_barr_is_what_the_demo_prints():
     assert [line[4:].rstrip() for line in shown.splitlines()] == printed
 
 
+OUTSIDE = re.compile(r"\[([^\]]+)\]\((https?://[^)]*)\)([^\n]{0,60}(?:\n[^\n]{0,60})?)")
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_outside_links_have_a_title_and_a_version(document):
+    for title, address, after in OUTSIDE.findall(document.read_text(encoding="utf-8")):
+        assert "://" not in title, address
+        assert re.search(r"\d", title + after), f"{document.name}: {address} has no version or year"
+
+
 def test_there_are_examples():
     assert len(EXAMPLES) >= 3
 
@@ -75,7 +85,10 @@ def anchors(document):
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_links_lead_somewhere(document):
-    for path, anchor in LINK.findall(document.read_text(encoding="utf-8")):
+    text = document.read_text(encoding="utf-8")
+    for picture in re.findall(r'<img src="([^"]*)"', text):
+        assert (document.parent / picture).exists(), f"{document.name} shows {picture}"
+    for path, anchor in LINK.findall(text):
         if "://" in path:
             continue
         target = document.parent / path if path else document

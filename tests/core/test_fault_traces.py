@@ -387,7 +387,9 @@ def test_attributes_of_a_file(write):
         of("F2")
     with pytest.raises(InputRefused, match="no dip direction; set dip_direction = 90 or 270"):
         of("F2", dip=60)
-    with pytest.raises(InputRefused, match=r"faults.geojson: fault 'F': the lines of its trace do not go on"):
+    with pytest.raises(
+        InputRefused, match=r"faults.geojson: fault 'F': the lines of its trace are not connected"
+    ):
         fault_of(Fault("F", trace=file))
     file.write_text(faults_geojson(Dip=95))
     with pytest.raises(
@@ -566,11 +568,11 @@ def test_a_project_file(written, tmp_path):
         ("trace = [[0, 0], [1, 0], [0.5, 0]]\ndip = 90", "its surface crosses itself"),
         (
             "trace = [[[0, 0], [1, 0]], [[0, 0.2], [1, 0.2]]]\ndip = 90",
-            "the lines of its trace do not go on from one another",
+            "the lines of its trace are not connected",
         ),
         (
             "trace = [[[0, 0], [1, 0]], [[9, 0], [10, 0]]]\ndip = 90",
-            "the lines of its trace do not go on from one another",
+            "the lines of its trace are not connected",
         ),
         (
             "trace = [[0, 0, 0], [0.1, 0, -0.1]]\ndip = 45\ndip_direction = 90",

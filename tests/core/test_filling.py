@@ -333,7 +333,7 @@ def test_refusals_name_the_place_and_what_to_do():
         ),
         (
             {"fold_amplitude": 1, "fold_wavelength": 1, "axial_dip": 40, "pegs": 1, "peg_size": 1, "gap": 1},
-            "pegs must be 0 where axial_dip is below 90",
+            "pegs must be 0 if axial_dip is below 90",
         ),
         ({"fold_wavelength": -1}, "fold_wavelength must be at least 0"),
     ],

@@ -118,7 +118,7 @@ def test_a_compartment_without_contacts_is_reached_by_the_throws_of_its_faults()
         ("F", "S0"): pytest.approx(175, rel=0.01),
         ("G", "S0"): pytest.approx(40, rel=0.01),
     }
-    assert any("by throws that these show, " in text for text in texts(model))
+    assert any("by the throws that these show, " in text for text in texts(model))
 
 
 def test_turned_blocks_have_their_own_points():

@@ -18,7 +18,7 @@ def test_a_site_becomes_closed_strata(tmp_path, seed, write_ags):
     (tmp_path / "site.ags").write_text(write_ags(site), encoding="utf-8")
     project = propose_project(boreholes=tmp_path / "site.ags")
     assert project.proposal.order[0] == "LC"
-    assert any("'LC' is taken for a unit" in text for text in project.proposal.warnings)
+    assert any("'LC' is treated as a unit" in text for text in project.proposal.warnings)
     model = build(project)
     assert model.observed().share == 1.0
     ifcopenshell = pytest.importorskip("ifcopenshell", reason="not installed: scripts/test.sh installs it")

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from histories import History, folded, lattice_of, near_flat, rough
+from histories import folded, lattice_of, moureze, near_flat, rough
 from realmodel.core import Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.fields import Lattice, LevelSetData, solve_field
@@ -47,26 +47,9 @@ def test_folded_histories_are_no_worse_than_planes(first):
 @pytest.mark.parametrize("seed", [4, 5, 7])
 def test_few_data_of_a_rough_surface_are_not_taken_for_parallel_planes(seed):
     """Fields were chosen that turn back in planes: 0.51 to 0.53 of places beside other dips were right."""
-    folder, random = places.REAL_DATA / "folds" / "moureze", np.random.default_rng([9, seed])
-    contacts = np.loadtxt(folder / "s0.csv", delimiter=",", skiprows=1)
-    rows = np.loadtxt(folder / "dips.csv", delimiter=",", skiprows=1)
-    low = np.minimum(contacts.min(axis=0), rows[:, :3].min(axis=0)) - 20
-    size = np.maximum(contacts.max(axis=0), rows[:, :3].max(axis=0)) + 20 - low
-    dip, azimuth = np.radians(rows[:, 3:5]).T
-    normals = np.column_stack([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
-    at, normals = rows[:, :3] - low, normals * rows[:, 5:6]
-    count, dips = random.integers(5, 40), random.integers(3, 16)
-    seen = contacts[random.choice(len(contacts), count, replace=False)] - low
-    known = random.choice(len(at), dips, replace=False)
-    surfaces = np.zeros(count, np.int32)
-    history = History(LevelSetData("A", seen, surfaces, at[known], normals[known]), None, np.zeros(1), size)
+    history, asked, is_above = moureze(seed)
     field = run(lambda work: solve_field(lattice_of(history, 50_000), history.data, work))
-    beside = random.choice([5.0, 10.0, 20.0, 40.0], len(at)) * random.choice([-1, 1], len(at))
-    asked = at + beside[:, None] * normals
-    counts = np.all((asked > 0) & (asked < size), axis=1)
-    counts[known] = False
-    is_above = field.at(asked[counts]) > field.levels[0]
-    assert np.mean(is_above == (beside[counts] > 0)) > 0.55
+    assert np.mean((field.at(asked) > field.levels[0]) == is_above) > 0.55
 
 
 def test_two_flat_beds_with_ten_dips_stay_flat():

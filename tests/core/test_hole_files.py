@@ -88,6 +88,13 @@ def test_ags(write, content):
     assert len(found.picks) == len(found.survey) == len(found.problems) == len(found.warnings) == 0
 
 
+def test_spaces_count_where_a_text_of_ags_goes_on(write):
+    """Texts are cut at a width, also behind a space: 'completely ' and 'decomposed' are two words."""
+    cut = ags3().replace('"Soft CL"', '" Soft "').replace('"AY"', '"CLAY "')
+    found = read_boreholes(write("site.ags", cut), columns={"block": "GEOL_DESC"})
+    assert set(found.intervals["block"]) == {"Soft CLAY"}
+
+
 def test_units_of_ags_are_obeyed(write):
     found = read_boreholes(write("site.ags", ags4("ft", 1 / 0.3048)))
     np.testing.assert_allclose(found.collars["end"], 40)
@@ -164,7 +171,7 @@ def test_places_in_degrees_are_refused(write):
 
 
 def test_a_file_that_holds_no_boreholes(write):
-    with pytest.raises(InputRefused, match="it does not hold all tables of boreholes"):
+    with pytest.raises(InputRefused, match="it does not contain all tables of boreholes"):
         read_boreholes(write("a.csv", "hole,from,to,block\nA,0,1,x\n"))
 
 

@@ -91,7 +91,7 @@ def _steps_of_document(heading):
 
 
 def test_each_step_imports_from_steps_above_it_in_the_document():
-    steps = _steps_of_document("The way of a build")
+    steps = _steps_of_document("The steps of a build")
     imports = _imports_of_steps(CORE, 1)
     assert {step for step in imports if not step.endswith(".py")} == set(steps)
     for n, step in enumerate(steps):

@@ -264,7 +264,9 @@ def test_mis_ties_are_averaged_with_a_warning(basin, write):
     # The diagonal of middle.off runs through nodes of the mesh, up to rounding: a warning, too.
     (warning,) = (w for w in model.warnings if w.kind != "joined")
     assert (warning.kind, warning.rock, warning.surface) == ("points", "basin", "top")
-    assert "1 position has several heights, up to 0.06 apart (at (0, 0)): their mean is used" in str(warning)
+    assert "1 position has several elevations, up to 0.06 apart (at (0, 0)): their mean is used" in str(
+        warning
+    )
     vertices, _ = model.surface(2)
     corner = (vertices[:, :2] == 0).all(axis=1)
     assert vertices[corner, 2] == pytest.approx([1.03])
@@ -301,7 +303,7 @@ def test_a_surface_ends_with_its_points_where_no_extrapolation_is_wanted(basin, 
     inside &= nodes[:, 1] <= 3 + (nodes[:, 0] - 2) / 3 + 1e-12
     assert share == pytest.approx(1 - inside.mean())
     write("top.csv", "20,20,3\n28,20,3\n24,25,3.5\n")
-    with pytest.raises(InputRefused, match="no triangle of the region's mesh has heights"):
+    with pytest.raises(InputRefused, match="no triangle of the region's mesh has elevations"):
         build(load_project(path))
 
 

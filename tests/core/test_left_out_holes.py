@@ -98,7 +98,7 @@ def test_picks_are_left_out_with_their_hole(tmp_path):
     report = tmp_path / "report.json"
     done = run(tmp_path / "p.toml", "--cross-validate", "5", "--report", report)
     assert done.returncode == 0, done.stderr
-    assert "cross-validation: 5 holes left out in 5 groups; heights of 5 contacts" in done.stdout
+    assert "cross-validation: 5 holes left out in 5 groups; elevations of 5 contacts" in done.stdout
     holes = json.loads(report.read_text())["left_out_holes"]
     assert [hole["hole"] for hole in holes] == [f"B{n}" for n in range(5)]
     # heights fall by 1 from hole to hole, along a plane

@@ -187,7 +187,7 @@ def test_errors_of_observations(tmp_path):
     again = load_project(tmp_path / "again.toml")
     assert read_field_data(*_of(again)).rock.observations.errors.tolist() == [2, 2, 0]
     (tmp_path / "seen.csv").write_text("x,y,z,block,height_error\n0,0,10,old,-2\n")
-    with pytest.raises(InputRefused, match=r"seen.csv:2.*the error of the height, -2, is negative"):
+    with pytest.raises(InputRefused, match=r"seen.csv:2.*the error of the elevation, -2, is negative"):
         read_field_data(*_of(project))
 
 

@@ -248,7 +248,7 @@ def test_lines_beside_the_polygons_are_faults(project_of, tmp_path):
     file.write_text(json.dumps(found))
     assert contacts_of(project)[:, 1].min() > 30.2
     assert any(
-        "1 line beside its polygons: taken for faults" in text for text in field_of(project).map_warnings
+        "1 line beside its polygons: treated as faults" in text for text in field_of(project).map_warnings
     )
 
 

@@ -64,7 +64,7 @@ def test_heights_of_positions(write, tmp_path):
         assert len(warnings) == count
         assert not count or "left out: 1 point without a value" in warnings[0]
     measures = write("m.wkt", "LINESTRING M (1 2 7, 3 4 8)")
-    with pytest.raises(InputRefused, match=r"no height.*height = "):
+    with pytest.raises(InputRefused, match=r"no elevation.*height = "):
         read_point_file(PointFile(measures))
 
 
@@ -105,8 +105,8 @@ def test_heights_by_an_attribute(write, tmp_path):
         ("a.geojson", features(({"a": 1}, point([1, 2]))), {"height": "b"}, "no attribute 'b'; it has a"),
         ("a.geojson", features(({"a": "high"}, point([1, 2]))), {"height": "a"}, "not a number: 'high'"),
         ("a.geojson", features(({"a": True}, point([1, 2]))), {"height": "a"}, "not a number"),
-        ("a.geojson", features(({"a": None}, point([1, 2]))), {"height": "a"}, "'a' has no heights"),
-        ("a.geojson", features(({"ELEV": 7, "b": 1}, point([1, 2]))), {}, "no height; .*it has ELEV, b$"),
+        ("a.geojson", features(({"a": None}, point([1, 2]))), {"height": "a"}, "'a' has no elevations"),
+        ("a.geojson", features(({"ELEV": 7, "b": 1}, point([1, 2]))), {}, "no elevation; .*it has ELEV, b$"),
         ("a.geojson", features(), {}, "no points in it"),
         ("a.geojson", features(({}, point([1, 2, 3]))), {"columns": ["x", "y", "z"]}, "'columns' has no"),
         ("a.geojson", features(({}, point([1, 2, 3]))), {"layer": "a"}, "not a GeoPackage"),

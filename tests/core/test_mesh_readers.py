@@ -283,7 +283,10 @@ def test_msh_of_leapfrog(write, end):
 @pytest.mark.parametrize(
     ("content", "match"),
     [
-        (leapfrog(b"Tri Integer 3 1;\nLocation Double 3 3;\n", bytes(80)), "other sizes than its index says"),
+        (
+            leapfrog(b"Tri Integer 3 1;\nLocation Double 3 3;\n", bytes(80)),
+            "sizes of its arrays differ from its index",
+        ),
         (leapfrog(b"Tri Integer 3 1;\n", bytes(12)), "missing: 'Location'"),
         (leapfrog(b"Tri Integer 2 1;\nLocation Double 3 3;\n", bytes(80)), "not three numbers"),
         (leapfrog(b"Tri Text 3 1;\nLocation Double 3 3;\n", bytes(84)), "unknown or missing: 'Text'"),

@@ -227,7 +227,7 @@ def test_grids_refused():
         ("plane", {"dip": -1}, "'dip' must be at least 0"),
         ("parallel", {"thickness": 3}, "'to' is missing"),
         ("parallel", {"to": "S0", "thickness": 3}, "'to' names surface 'S0', which does not exist"),
-        ("parallel", {"to": [1.0, 2], "thickness": 3}, "'to' has 2 heights for 300 nodes"),
+        ("parallel", {"to": [1.0, 2], "thickness": 3}, "'to' has 2 elevations for 300 nodes"),
         ("parallel", {"to": (np.zeros((3, 2)), TRIANGLES), "thickness": 3}, "'to' must be vertices (V, 3)"),
         ("parallel", {"to": 0, "thickness_method": "dsi"}, "'thickness_method' cannot be 'dsi'"),
         ("tin", {"neighbours": 4}, "'neighbours' belongs to kriging, not to tin"),

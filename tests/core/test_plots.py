@@ -129,7 +129,7 @@ def test_quality_of_the_surfaces_of_a_model():
     assert found[1].cross_validation.rmse < 1 and found[1].mean_deviation is None
     assert found[2].cross_validation.method == model.interpolations[2].method
     assert [quality.missing for quality in found[3:]] == [
-        "its heights follow another surface (to)",
+        "its elevations follow another surface (to)",
         "it takes two points or more",
         "its shape is a mesh: nothing was interpolated",
     ]

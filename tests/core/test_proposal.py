@@ -73,7 +73,7 @@ def test_two_orders_that_the_data_allow_are_both_offered(tmp_path):
         ["rock", "clay", "sand", "soil"],
         ["rock", "sand", "clay", "soil"],
     ]
-    assert any("heights" in reason for reason in other.reasons)
+    assert any("elevations" in reason for reason in other.reasons)
     assert any("'clay'" in text and "'sand'" in text for text in proposal.warnings)
 
 
@@ -100,6 +100,7 @@ def test_a_unit_within_another_becomes_a_body_as_thick_as_it_was_seen(tmp_path):
     lens = [("Soil", 2), ("Clay", 6), ("Sand", 4), ("Clay", 8), ("Rock", 20)]
     project = proposed(tmp_path, [*[plain] * 4, lens, *[plain] * 4])
     assert project.proposal.order == ["Rock", "Clay", "Soil"]
+    assert any("hole 'H4', depth 8 to 12" in text for text in project.proposal.warnings)
     assert [(body.name, body.has_shape) for body in project.bodies] == [("Sand", False)]
     model = build(project)
     assert model.observed().share == 1.0

@@ -85,11 +85,11 @@ def test_surfer_and_zmap_grids_with_nan(write):
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        (HEAD + "1 2 3\n4 x 6\n", 7, "not a height: 'x'"),
-        (HEAD + "1 2 3\nnan x 6\n", 7, "not a height: 'x'"),
-        (HEAD + "1 2 3\n4 5\n", None, "6 heights; there are 5"),
-        (HEAD + "1 2 3\n4 5 6 7\n", None, "6 heights; there are 7"),
-        (HEAD + "NODATA_value 1\n1 1 1\n1 1 1\n", None, "no cell of the raster has a height"),
+        (HEAD + "1 2 3\n4 x 6\n", 7, "not an elevation: 'x'"),
+        (HEAD + "1 2 3\nnan x 6\n", 7, "not an elevation: 'x'"),
+        (HEAD + "1 2 3\n4 5\n", None, "6 elevations; there are 5"),
+        (HEAD + "1 2 3\n4 5 6 7\n", None, "6 elevations; there are 7"),
+        (HEAD + "NODATA_value 1\n1 1 1\n1 1 1\n", None, "no cell of the raster has an elevation"),
         ("ncols 3\nnrows 2.5\nxllcorner 1\n", 2, "nrows must be a whole number"),
         ("ncols 3\nrows 2\n", 2, "unknown key 'rows'"),
         ("ncols 3\nnrows\n", 2, "nrows needs one number"),

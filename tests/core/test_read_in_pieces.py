@@ -401,5 +401,5 @@ def test_what_is_wrong_late_in_a_file_has_its_line(tmp_path):
     file = tmp_path / "g.asc"
     heights = "1 2 3\n" * 200_000 + "1 x 3\n" + "1 2 3\n" * 199_999
     file.write_text("ncols 3\nnrows 400000\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + heights)
-    with pytest.raises(InputRefused, match=r"g\.asc:200006: not a height: 'x'"):
+    with pytest.raises(InputRefused, match=r"g\.asc:200006: not an elevation: 'x'"):
         read_point_file(PointFile(file))

@@ -73,7 +73,7 @@ def test_the_method_by_which_a_mesh_is_continued():
 @pytest.mark.parametrize(
     ("method", "options", "says"),
     [
-        (None, {"extrapolate": "none"}, "gives no heights where the mesh is continued"),
+        (None, {"extrapolate": "none"}, "gives no elevations where the mesh is continued"),
         ("parallel", {"to": "S"}, "'to' names a surface; a mesh is continued from its own vertices"),
         ("dsi", {"above": "S"}, "'above' names a surface"),
         (None, {"neighbours": 4}, "'neighbours' belongs to kriging, not to natural_neighbour"),

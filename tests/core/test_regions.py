@@ -176,7 +176,7 @@ def test_shapefiles(tmp_path):
             read_region(MapLayer(path, where=where))
     (tmp_path / "a.dbf").unlink()
     assert len(read_region(path)[0]) == 3
-    with pytest.raises(InputRefused, match=r"no \.dbf beside it"):
+    with pytest.raises(InputRefused, match=r"its \.dbf file, .* is missing"):
         read_region(MapLayer(path, where={"NAME": "Hill"}))
     lines = write_shapefile(
         tmp_path / "l.shp", [[[(0, 0), (1, 1)], [(2, 2), (3, 3), (4, 4)]]], ["river"], kind=3

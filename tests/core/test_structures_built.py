@@ -246,7 +246,9 @@ def torn(z):
 def test_a_fault_that_dies_out_in_torn_surfaces_is_refused_for_them():
     given = [Surface(f"S{k}", *torn(k)) for k in range(3)]
     fault = Fault("F", *plane_fault(y=(-5.0, 6.0)), dies_out=True)
-    with pytest.raises(InputRefused, match=r"surface 'S0': it has two heights beyond the tip of fault 'F'"):
+    with pytest.raises(
+        InputRefused, match=r"surface 'S0': it has two elevations beyond the tip of fault 'F'"
+    ):
         build(Project("p", [rock(given)], faults=[fault]))
 
 

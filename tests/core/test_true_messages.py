@@ -136,7 +136,7 @@ def test_a_map_alone_is_said_to_be_a_skin():
             "p", [Rock("r", rows, region=_SQUARE, edge_length=200.0, observations=seen, **options)]
         )
         (entry,) = run(lambda work: read_rocks(work, project))
-        return [w.text for w in entry.warnings if "no more than a skin" in w.text]
+        return [w.text for w in entry.warnings if "blocks may be very thin" in w.text]
 
     assert len(said()) == 1 and "where 'A' and 'B' are," in said()[0]
     assert "where 'B' is," in said(Surface("A", points=_plane(_PLAN, 300.0, (0, 0))))[0]

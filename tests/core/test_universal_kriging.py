@@ -105,7 +105,7 @@ def test_fits_that_mean_nothing_warn(method):
     warnings = interpolate(noise, NODES[:1], method).warnings
     assert any("pure nugget" in w for w in warnings), warnings
     few = interpolate(noise[:4], NODES[:1], method).warnings
-    assert any("pairs of points, so heights far from them" in w for w in few)
+    assert any("pairs of points, so elevations far from them" in w for w in few)
     x = np.linspace(0, 100, 60)
     trend = np.column_stack([x, own.random(60) * 100, 3 * x + own.normal(0, 1, 60)])
     assert any("far exceeds the extent" in w for w in interpolate(trend, NODES[:1]).warnings)

@@ -12,7 +12,7 @@ table          the table of volumes
 check_data     the problems in the data of a project
 terminal       the progress bar
 
-`command`, `options` and this module import nothing of NumPy: `command` says itself what is missing.
+`command`, `options` and this module import nothing of NumPy: `command` reports what is missing.
 """
 
 import sys

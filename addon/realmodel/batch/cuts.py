@@ -96,7 +96,7 @@ class SectionRequest(_Request):
 @dataclass
 class SheetRequest(_Request):
     """Sheets to print, and their file. size, scale: as of draw_sheets. sections: what they show beside the
-    map; the first says how they are drawn."""
+    map; the first has the settings of the drawing."""
 
     file: Path
     size: str

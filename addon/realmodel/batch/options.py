@@ -121,7 +121,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class Option(NamedTuple):
-    """An option of the command line. help: with names of `_Parser` in the place of endings.
+    """An option of the command line. help: with names of `_Parser` instead of endings.
 
     value: how the help shows its value, or the values to choose from; "" where it has none. default: [] where
     it may be given several times. needs: it goes with one of these options only. ending: of its file.

@@ -170,10 +170,7 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
     print(forecast.table(), flush=True)
     limit = forecast.available if options.memory is None else options.memory
     if forecast.memory > limit:
-        print(
-            "a build would be refused: it needs more memory than available (see --cells, --memory)",
-            flush=True,
-        )
+        print("a build would be refused: it needs more memory (see --cells, --memory)", flush=True)
 
 
 @contextlib.contextmanager
@@ -416,7 +413,7 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 
 @contextlib.contextmanager
 def _named(path, target: Path):
-    """Names the user's path in errors of writing, in the place of the temporary one."""
+    """Names the user's path in errors of writing, instead of the temporary one."""
     try:
         yield
     except OutputFailed as error:

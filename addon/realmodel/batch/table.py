@@ -33,9 +33,9 @@ _NUMBERS_FROM = 3
 def volume_table(model, erosion: Erosion | None = None) -> str:
     """A line for each block, youngest first as in the field, and the sum; plain text with aligned columns.
 
-    `largest` is the share of a block's largest connected part, if it has several. With an erosion the table
-    has the volume eroded of each block, the volume of all older blocks that the surface above it eroded, and
-    the volume of the block that bodies took.
+    `largest` is the share of a block's largest connected component, if it has several. With an erosion the
+    table has the eroded volume of each block, the volume of all older blocks that the surface above it
+    eroded, and the volume of the block that bodies replaced.
     """
     headings = _HEADINGS if erosion is None else (*_HEADINGS, *_HEADINGS_OF_EROSION)
     with_bodies = erosion is not None and len(erosion.taken) > 0

@@ -118,7 +118,9 @@ def cross_validation_lines(result: CrossValidation, unit: str = "") -> list[str]
         f"mean error {result.mean_error:.3g}{end}, correlation {result.correlation:.4f}",
     ]
     if result.within_two_deviations is not None:
-        lines.append(f"{100 * result.within_two_deviations:.1f} % within two standard deviations, the rest in red")
+        lines.append(
+            f"{100 * result.within_two_deviations:.1f} % within two standard deviations, the rest in red"
+        )
     return lines
 
 
@@ -159,7 +161,7 @@ def _axes(
     page: tuple[float, float],
     words: bool,
 ) -> Axes:
-    """Axes on a page of their own, with lines of text above if requested."""
+    """Axes on a separate page, with lines of text above if requested."""
     above = LINE * _SIZE * len(lines) if words else 0.0
     drawing = Drawing(page[0], page[1] + above)
     height = page[1] - _BELOW - _SIZE

@@ -42,10 +42,10 @@ def ensemble(
     """As core.ensembles.ensemble, by workers of Dask, with the result in a folder: `ensemble.json`,
     `volumes.csv` and `ensemble.npz` (docs/reference/output_files.md).
 
-    client: of distributed; None: a LocalCluster with a process for each processor. A run that was stopped
-    goes on where it was when it is started again with the same project, seed, correlation and places; the
-    number of realizations may be larger. The result is the same for any number of workers. also(found,
-    outputs) writes more files, which appear with the others.
+    client: of distributed; None: a LocalCluster with a process for each processor. Starting an interrupted
+    run again with the same project, seed, correlation and places continues it; the number of realizations may
+    be larger. The result is the same for any number of workers. also(found, outputs) writes more files, which
+    appear with the others.
 
     Raises as core.ensembles.ensemble; UsageError where Dask is missing or the folder holds another ensemble;
     OutputFailed.

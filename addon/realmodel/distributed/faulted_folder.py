@@ -52,7 +52,7 @@ def build_windows(
 
 
 def _build(shared: Shared, task: tuple[Name, int | None]) -> None:
-    """On a worker: builds a tile, proves it, and writes it, and what its neighbors have to have, too. Dask
+    """On a worker: builds a tile, validates it, and writes it with the data for its neighbors. Dask
     repeats a task whose worker is lost, also if it was done."""
     store, frame, (name, farther) = shared.store, shared.frame, task
     if store.has("joined", name):
@@ -79,9 +79,9 @@ def _build(shared: Shared, task: tuple[Name, int | None]) -> None:
 
 
 def _farther(store: Store, names: list[Name]) -> dict[Name, str]:
-    """The tiles that have to see more around them, with what is wrong as they are."""
+    """The tiles that need larger windows, with the reason."""
     asked = {
-        name: f"cells of tile {name[0]}, {name[1]} reach too far beyond it; make tiles larger"
+        name: f"cells of tile {name[0]}, {name[1]} extend too far beyond it; use larger tiles"
         for name in names
         if not store.read_record("joined", name)["is_within"]
     }

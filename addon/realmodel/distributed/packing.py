@@ -17,7 +17,7 @@ _LARGE = 1 << 16  # bytes of an array that goes as a file
 
 
 def packed(value: object, arrays: MappedArrays) -> bytes:
-    """A value with the files of large arrays in the place of these. Raises OutputFailed."""
+    """A value with the files of large arrays instead of these. Raises OutputFailed."""
     content = io.BytesIO()
     _Packer(content, arrays).dump(value)
     return content.getvalue()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder of a model in tiles while it is built, and what the table says of the tiles in it."""
+"""The folder of a model in tiles while it is built, and the table of its tiles."""
 
 from __future__ import annotations
 
@@ -196,7 +196,7 @@ def places_of(frame: Frame, box: Box) -> int:
 
 
 class Parts:
-    """The connected parts of blocks over all tiles, by sets that are joined."""
+    """The connected components of blocks over all tiles, by sets that are joined."""
 
     def __init__(self) -> None:
         self._parent: dict[tuple, tuple] = {}
@@ -220,7 +220,7 @@ class Parts:
 
 
 def blocks_of(frame: Frame, records: list[dict], parts: Parts, whole_cells: Parts) -> list[Block]:
-    """The blocks of the whole. records: of tiles; parts: the connected parts; whole_cells: the cells
+    """The blocks of the whole. records: of tiles; parts: the connected components; whole_cells: the cells
     of whole blocks."""
     if not records:
         return []

@@ -209,7 +209,7 @@ def _build(shared: Shared, name: Name) -> None:
 
 
 def _join(shared: Shared, name: Name) -> None:
-    """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
+    """On a worker: gives a tile its neighbors' vertices, validates it, and writes it."""
     store, frame, names = shared.store, shared.frame, shared.names
     model = model_of(frame.project, read_mapped(store.file("built", name)))
     around, box = _around(name, names), frame.grid.box(*name)

@@ -41,8 +41,8 @@ _LOST = 4  # workers at the same task, before Dask gives it up (distributed.sche
 
 
 def connected(address: str) -> Any:
-    """The client of a running scheduler, for a program that says in one line that it went away: from now on
-    Dask logs nothing in this process. Raises UsageError."""
+    """The client of a running scheduler, for a program with a one-line message if the connection is lost:
+    from now on Dask logs nothing in this process. Raises UsageError."""
     distributed = _distributed()
     for name in _LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -146,7 +146,7 @@ def _on_workers(
             latest = time.monotonic()
             with _connection(client):
                 if not client.nthreads():
-                    raise UsageError("Dask has no workers left; start again: what is done stays")
+                    raise UsageError("Dask has no workers left; start again: finished steps are kept")
         one_is_done.wait(_POLL_SECONDS)
         one_is_done.clear()
         return [future for future in waiting if future.done()]
@@ -188,7 +188,7 @@ def no_workers() -> contextlib.AbstractContextManager[Workers]:
 @contextlib.contextmanager
 def workers_of(client: Any, count: int | None = None) -> Iterator[Workers]:
     """The workers of a client, or None: so many processes of this machine (None: one for each processor),
-    which end with it. They start while the caller goes on.
+    which end with it. They start while the caller continues.
 
     They listen on free ports of this machine alone, so that several of them run beside each other."""
     starting: concurrent.futures.Future = concurrent.futures.Future()
@@ -209,7 +209,7 @@ def workers_of(client: Any, count: int | None = None) -> Iterator[Workers]:
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=_ANY_PORT,
-                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask mends
+                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask repairs
                 )
             ends.enter_context(cluster)
             client = distributed.Client(cluster)
@@ -273,7 +273,7 @@ def _result(distributed: Any, future: Any) -> Any:
 
 
 def _gone() -> UsageError:
-    return UsageError("the scheduler or its workers went away; start again: what is done stays")
+    return UsageError("the scheduler or its workers were lost; start again: finished steps are kept")
 
 
 def _distributed() -> Any:

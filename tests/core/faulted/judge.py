@@ -68,7 +68,7 @@ def _falls_beyond(case, text):
 def _is_torn(case, error):
     """Whether a mesh has two heights at the place of a refusal, and no fault passes between them: its
     triangles reach beyond the tip of a fault that displaces it."""
-    found = re.search(r"surface '(.*?)': it has two heights beyond the tip of fault", str(error))
+    found = re.search(r"surface '(.*?)': it has two elevations beyond the tip of fault", str(error))
     if found is None:
         return False
     place = np.array([error.place])

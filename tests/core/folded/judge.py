@@ -84,7 +84,7 @@ def failures_of(case):
 def _may_be_refused(case, drawn, text):
     """Where data say too little, or noise contradicts itself."""
     few = [name for name, points in drawn.contacts.items() if len(points) < 4]
-    nothing = ("it has no contacts", "it has no points", "nothing says in which direction")
+    nothing = ("it has no contacts", "it has no points", "the direction to younger rock")
     if any(each in text for each in nothing):
         return bool(few) or case.dips == 0
     order = ("older side of surface", "gets younger the other way", "contradicts contacts", "level")

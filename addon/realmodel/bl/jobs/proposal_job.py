@@ -40,7 +40,7 @@ class ProposalJob(ThreadJob):
             advice = "choose them too, or switch off Propose Project"
             raise InputRefused("a project is proposed from boreholes or a map", advice=advice)
         if tables.boreholes is None and not tables.maps[0].ground:
-            raise InputRefused("a map alone has no heights", advice="choose a Ground beside it")
+            raise InputRefused("a map alone has no elevations", advice="choose a Ground beside it")
         ground = tables.maps[0].ground if tables.maps else None
         self._given = {
             "boreholes": tables.boreholes,

@@ -2,7 +2,7 @@
 """Output files that appear whole or not at all, all those of a run together, at its end.
 
 Until then each is written in a hidden folder beside its target, so that one `os.replace` publishes it, on
-every system, and Blender sees the file name that it was asked for.
+every system, and Blender sees the requested file name.
 """
 
 from __future__ import annotations
@@ -53,14 +53,14 @@ class Outputs:
 
     @contextmanager
     def file(self, target: str | Path) -> Iterator[BinaryIO]:
-        """A binary file to write, seekable. Raises OutputFailed in the place of OSError."""
+        """A binary file to write, seekable. Raises OutputFailed instead of OSError."""
         with self.path(target) as path, path.open("w+b") as file:
             yield file
 
     @contextmanager
     def path(self, target: str | Path) -> Iterator[Path]:
         """A path of the same name for software that writes files by name (Blender). Raises OutputFailed
-        in the place of OSError, and where nothing was written."""
+        instead of OSError, and where nothing was written."""
         target = writable_target(target)
         if target in self._inputs:
             raise OutputFailed(f"{target}: this is a file that is read; choose another name")
@@ -80,7 +80,7 @@ class Outputs:
         """A folder to write into. `renewed` is a folder in it: if an earlier run left the target, only that
         is replaced, and missing files are added, so that files changed by the user stay.
 
-        Raises OutputFailed in the place of OSError, and where the target is a folder without `renewed`.
+        Raises OutputFailed instead of OSError, and where the target is a folder without `renewed`.
         """
         target = writable_folder(target, renewed)
         with explained(target):
@@ -189,7 +189,7 @@ def _require_writable(target: str | Path, folder: Path) -> None:
 
 @contextmanager
 def explained(target: str | Path) -> Iterator[None]:
-    """Raises OutputFailed, which names the target, in the place of OSError."""
+    """Raises OutputFailed, which names the target, instead of OSError."""
     try:
         yield
     except OutputFailed:

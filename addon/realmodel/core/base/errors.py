@@ -28,7 +28,7 @@ class RealModelError(Exception):
 class InputRefused(RealModelError, ValueError):
     """The input is invalid.
 
-    what: what is wrong. file, line: the place (lines count from 1). item: the object, such as "rock 'base',
+    what: the problem. file, line: the place (lines count from 1). item: the object, such as "rock 'base',
     surface 'S1'". advice: what to do about it. triangles: numbers of the wrong triangles, from 0 in the order
     of the input. place: (x, y, z) or (x, y) in model units.
     """
@@ -63,7 +63,7 @@ class InputRefused(RealModelError, ValueError):
         return _one_line(f"{text}; {self.advice}" if self.advice else text)
 
     def within(self, item: str, *, file: str | Path | None = None, line: int | None = None) -> InputRefused:
-        """The same error with the name of `item`; a file and line already known are kept."""
+        """The same error with the name of `item`; an existing file and line are kept."""
         has_file = self.file is not None
         return type(self)(
             self.what,
@@ -146,8 +146,8 @@ def place_text(place: Iterable[float]) -> str:
 class BuildWarning:
     """Something that was left out, changed, or is probably a mistake.
 
-    text: what, in words. kind: a word for programs, "" where there is none. rock, surface: names of the rock
-    mass and the surface that it is about, None for none. items: numbers of triangles, from 0.
+    text: the warning. kind: a word for programs, "" for none. rock, surface: names of the rock mass and the
+    surface that it concerns, or None. items: numbers of triangles, from 0.
     """
 
     text: str

@@ -18,7 +18,7 @@ class Format:
     takes: what it writes, such as "model" or "parts". label, tip: of menus. write(content, file, step,
     **options) writes it to an open binary file; step(share) is called now and then, last with 1. options: the
     settings that have an effect on its files. folder: what is renewed where the format is a folder, which
-    write takes in the place of the file. has_files: write takes (content, path, outputs, step, **options),
+    write takes instead of the file. has_files: write takes (content, path, outputs, step, **options),
     and may write several files. has_each: `{block}` in the name of a file means a file for each part. needs:
     the library that writes it and the extra that has this, if it is one.
     """

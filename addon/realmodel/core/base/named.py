@@ -17,7 +17,7 @@ R = TypeVar("R")
 
 
 def number_of(key: int | str, names: Sequence[str], noun: str) -> int:
-    """The number, from 0, of the entry that `key`, a name or a number, says. noun: what the entries are.
+    """The number, from 0, of the entry with `key`, its name or number. noun: what the entries are.
 
     Raises UsageError for an unknown one, and for a name of several.
     """
@@ -63,7 +63,7 @@ def keyword_only(function: Callable[P, R]) -> Callable[P, R]:
     def call(*args: Any, **kwargs: Any) -> Any:
         old = dict(zip(by_name, args[count:], strict=False))
         if count < len(args) <= count + len(by_name) and not old.keys() & kwargs.keys():
-            text = f"{function.__name__}: give {', '.join(old)} by name; the next release asks for that"
+            text = f"{function.__name__}: pass {', '.join(old)} by name; the next release requires it"
             warnings.warn(text, DeprecationWarning, stacklevel=2)
             args, kwargs = args[:count], old | kwargs
         return function(*args, **kwargs)

@@ -108,7 +108,7 @@ def omf_library(purpose: str) -> Any:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Within it Python says nothing of what it will no longer have, which old packages use."""
+    """Silences Python's deprecation warnings about old packages."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield
@@ -122,7 +122,7 @@ def require_extra(module: str, name: str, purpose: str) -> None:
 
 
 def missing(package: str, purpose: str, name: str, cause: str = "which cannot be imported") -> UsageError:
-    """The error that says which extra has a package, whose versions may be with it. cause: what is wrong."""
+    """The error with the extra of a missing package, whose versions may be with it. cause: what is wrong."""
     text = f"{purpose} needs {package}, {cause}"
     if "bpy" in sys.modules:  # the add-on: it was not installed by pip
         asked = package if package.isidentifier() else f'"{package}"'

@@ -41,7 +41,7 @@ class NamedArrays(dict[str, np.ndarray]):
         return name
 
     def _alike_of(self, array: np.ndarray) -> list[tuple[str, np.ndarray]]:
-        """Those that may be equal: of thousands of holes each has arrays of its own."""
+        """Those that may be equal: of thousands of holes each has its own arrays."""
         return self._alike.setdefault((array.dtype.str, array.shape, bytes(_bytes(array)[:_HEAD])), [])
 
 
@@ -61,7 +61,7 @@ class StoredClasses:
         """The table of a value of these classes, lists, tuples, dicts, paths, arrays, numbers and texts.
 
         What is one object in several places is one again when it is read; so are equal arrays. stored: what
-        is stored in the place of a path or an object.
+        is stored instead of a path or an object.
         """
         table: list[list] = []  # each entry after those that it names
         numbers: dict[Any, int] = {}  # by the id of an object, or the name of an array

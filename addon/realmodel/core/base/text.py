@@ -90,7 +90,7 @@ _BYTES_TO_FIND = 1 << 12  # mostly the end of a line
 
 @contextmanager
 def reading(file: Path) -> Iterator[None]:
-    """Raises InputRefused in the place of OSError."""
+    """Raises InputRefused instead of OSError."""
     try:
         yield
     except OSError as error:
@@ -135,7 +135,7 @@ def text_lines(file: Path) -> Iterator[tuple[int, list[str], float]]:
     encoding, number = encoding_of(content), 1
     begin = len(BOM) if encoding == "utf-8" and content[: len(BOM)] == BOM else 0
     decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder(encoding)(), translate=True)
-    rest: list[str] = []  # of a line that goes on
+    rest: list[str] = []  # of a line that continues
     for at in range(begin, len(content), BYTES_AT_ONCE):
         end = min(at + BYTES_AT_ONCE, len(content))
         whole, newline, more = decoder.decode(content[at:end], final=end == len(content)).rpartition("\n")

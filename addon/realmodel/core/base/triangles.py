@@ -273,10 +273,10 @@ class NoTwoSidesError(Exception):
 
 
 def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """The triangles (T, 3) int32, each turned so that it goes on from its neighbors.
+    """The triangles (T, 3) int32, each turned so that it continues from its neighbors.
 
-    The first triangle of each connected part stays as it is, unless most of the part then faces the other way
-    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSidesError.
+    The first triangle of each component is unchanged, unless most of the component then faces the opposite
+    way to the first one. Edges that more than two triangles have connect none. Raises NoTwoSidesError.
     """
     same = welded(vertices)[triangles]
     edges = edges_of(same)

@@ -135,7 +135,7 @@ def stated_units(
     unsaid = [f"'{name}'" for (name, *_), unit in zip(coordinates, units, strict=True) if unit is None]
     if unsaid and any(unit is None for _, unit in names):
         warnings.append(
-            f"{file}: it does not say the unit of {number_list(unsaid)}, read as {model_unit}: set units"
+            f"{file}: it does not state the unit of {number_list(unsaid)}, read as {model_unit}: set units"
         )
     for (said, unit), listed in names.items():
         used = f"converted to {model_unit}" if unit is None else f"but the unit is {unit} by 'units'"

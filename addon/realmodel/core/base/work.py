@@ -74,7 +74,7 @@ class Work:
     @contextmanager
     def phase(self, start: float, end: float, text: str, has_steps: bool = False) -> Iterator[None]:
         """A phase of work: the progress goes from `start` to `end`, both between 0 and 1. has_steps: its
-        native call says itself what it is doing."""
+        native call reports its own text."""
         self.check()
         with self._lock:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
@@ -85,7 +85,7 @@ class Work:
     @contextmanager
     def part(self, start: float, end: float) -> Iterator[None]:
         """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job, or a
-        step that has phases of its own, as a part of another."""
+        step that has its own phases, as a part of another."""
         before = self._part
         low, high = before
         with self._lock:
@@ -213,7 +213,7 @@ class Work:
 
 
 class Job:
-    """A task in a thread of its own, under way. Only the thread that started it looks after it."""
+    """A task in a separate thread, under way. Only the thread that started it looks after it."""
 
     def __init__(self, task: Callable[[Work], Result], threads: int = 0):
         self._work = Work(threads)
@@ -245,7 +245,7 @@ class Job:
 
     def cancel(self) -> None:
         """Asks the task to stop. result() waits for it only briefly: freeing the memory of a large model may
-        take seconds. The thread goes on alone, and later jobs wait for it."""
+        take seconds. The thread continues alone, and later jobs wait for it."""
         if self._leaves_at is None:
             self._leaves_at = time.monotonic() + _SECONDS_TO_LEAVE
             _leaving.append(self._thread)
@@ -316,14 +316,14 @@ def run(
     cancel: Cancel | None = None,
     threads: int = 0,
 ) -> Result:
-    """Runs task(work) in a thread of its own and returns what it returns. threads: of native calls.
+    """Runs task(work) in a separate thread and returns what it returns. threads: of native calls.
 
     progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
     KeyboardInterrupt included, stops the work and passes on. progress=True shows a bar of tqdm. Raises
     Cancelled where cancel() returned True before the work was done, UsageError where tqdm is missing.
 
     Within a job, and without these two, the task is done at once as a part of that job, with its threads
-    unless `threads` says how many.
+    unless `threads` is given.
     """
     if progress is True:
         with progress_bar() as bar:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Block:
     """One layer's block, with its `name`. `rock` is the index of its rock mass, `surface` the global index of
     the surface that it was deposited beneath (block 0: of the oldest surface), `property` the library id (0:
-    none). volume is in model units cubed; cells counts its cells, components its connected parts."""
+    none). volume is in model units cubed; cells counts its cells, components its connected components."""
 
     name: str
     rock: int

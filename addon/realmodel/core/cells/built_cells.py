@@ -14,7 +14,7 @@ from .model_data import ModelData
 
 
 class NativeWarning(NamedTuple):
-    """surface: its global index, below 0 where there is none. items: of that surface, as `kind` says."""
+    """surface: its global index, below 0 where there is none. items: of that surface, by `kind`."""
 
     kind: str
     surface: int

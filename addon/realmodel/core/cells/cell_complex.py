@@ -63,7 +63,7 @@ class CellComplex:
 
     @cached_property
     def cell_component(self) -> np.ndarray:
-        """(C,) int32: the least cell of the connected part of a block that each cell belongs to."""
+        """(C,) int32: the least cell of the connected component of a block that each cell belongs to."""
         return native_module().cell_components(self.face_cells, self.cell_block)
 
     def find_components(self, work: Work) -> None:
@@ -73,7 +73,7 @@ class CellComplex:
         )
 
     def count_blocks(self, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-        """(B,) the cells and the connected parts of each block. blocks: how many there are."""
+        """(B,) the cells and the connected components of each block. blocks: how many there are."""
         cells = np.bincount(self.cell_block, minlength=blocks)
         roots = self.cell_component == np.arange(len(self.cell_block))
         return cells, np.bincount(self.cell_block[roots], minlength=blocks)
@@ -105,7 +105,7 @@ class CellComplex:
         return offsets, self.face_vertices[at]
 
     def block_boundary(self, block: int) -> BlockBoundary:
-        """The closed boundary of one block, all its connected parts together."""
+        """The closed boundary of one block, all its connected components together."""
         first, second = self.face_blocks[:, 0] == block, self.face_blocks[:, 1] == block
         faces = np.flatnonzero(first != second)
         offsets, corners = self.face_corners(faces, second[faces])

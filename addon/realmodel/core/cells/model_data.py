@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a built model holds: its cells, blocks and surfaces, and what it was built from."""
+"""What a built model holds: its cells, blocks and surfaces, and its input."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ class ModelData:
     what the stack builder took, by rock mass. `timings` are seconds by phase. `is_cut`: it is a half of
     another model (docs/dev/geometry.md, "Cutting"). `warnings`: what was left out or changed, or is probably
     a mistake. `threads`: how many it was built with. `surface_kind` (S,) int32: 0 an interface, 1 a fault, 2
-    a body. `cell_compartment` (C,) int32: of each cell, an index of `compartment_names`;
-    `compartment_sides`: on which side of each fault the compartments are. `structures`: faults and bodies as
-    they were built. `lacks_project`: the file of RealModel 0.1, or of a tile, that it was read from, which
-    says nothing of the project but names, properties and shapes.
+    a body. `cell_compartment` (C,) int32: of each cell, an index of `compartment_names`; `compartment_sides`:
+    on which side of each fault the compartments are. `structures`: faults and bodies as they were built.
+    `lacks_project`: the file of RealModel 0.1, or of a tile, that it was read from, which has only names,
+    properties and shapes of the project.
     """
 
     complex: CellComplex = field(repr=False)
@@ -178,7 +178,7 @@ class ModelData:
 
     @property
     def cell_component(self) -> np.ndarray:
-        """(C,) int32: the least cell of the connected part of a block that each cell belongs to."""
+        """(C,) int32: the least cell of the connected component of a block that each cell belongs to."""
         return self.complex.cell_component
 
     @cached_property
@@ -195,15 +195,14 @@ class ModelData:
         return self.complex.cell_volumes(self.threads)
 
     def block_boundary(self, block: int | str) -> BlockBoundary:
-        """The closed boundary of one block, all its connected parts together. block: its name, or its number
-        from 0; that of a block of which nothing is left has no faces.
+        """The closed boundary of one block, all its connected components together. block: its name, or its
+        number from 0; the boundary of an absent block has no faces.
 
-        Raises UsageError for an unknown one, and for a name of several blocks or of one of which nothing is
-        left.
+        Raises UsageError for an unknown one, and for a name of several blocks or of an absent one.
         """
         number = number_of(block, self.blocks.names, "block")
         if isinstance(block, str) and not self.blocks[number].cells:
-            raise UsageError(f"block '{block}' is absent: nothing of it is left in the model")
+            raise UsageError(f"block '{block}' is absent: the model contains none of it")
         return self.complex.block_boundary(number)
 
     def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -212,7 +211,7 @@ class ModelData:
 
     @cached_property
     def component_volumes(self) -> list[np.ndarray]:
-        """For each block the volumes of its connected parts, largest first."""
+        """For each block the volumes of its connected components, largest first."""
         volume = np.bincount(self.cell_component, self.cell_volumes, len(self.cell_block))
         roots = np.flatnonzero(self.cell_component == np.arange(len(self.cell_block)))
         order = roots[np.lexsort((roots, -volume[roots], self.cell_block[roots]))]

@@ -47,8 +47,8 @@ _FIELDS = ("project", "rock_inputs", "structures", "warnings", "compartment_side
 
 
 def record_arrays(model: ModelData) -> dict[str, np.ndarray]:
-    """The record of a model as arrays of its file. It says nothing of where and when the model was built, and
-    of files only the names in the folder of the project."""
+    """The record of a model as arrays of its file. It contains neither place nor time of the build, and of
+    files only the names in the folder of the project."""
     model.require_project("an .npz file")
     arrays = NamedArrays(_shapes(model.surface_arrays), f"{RECORD}_")
     values = {name: getattr(model, name) for name in _FIELDS}

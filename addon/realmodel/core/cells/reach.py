@@ -22,7 +22,7 @@ _BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have poi
 class PartExtents:
     """Answers where some part may be, and which triangles may lie over or under it.
 
-    The box of all rock is divided into cells. A cell that a fault may pass, or go on through beyond its
+    The box of all rock is divided into cells. A cell that a fault may pass, or continue through beyond its
     border, has points on both sides of it; what hangs together without passing such a cell is on one side. So
     a cell is never left out that a part has a point in.
     """
@@ -196,7 +196,7 @@ def _hanging_together(cells: np.ndarray) -> np.ndarray:
     while True:
         before = number.copy()
         for axis, turn in itertools.product(range(3), (1, -1)):
-            # along a line of cells the least number so far goes on, until a cell that is none
+            # along a line of cells the least number so far continues, until a cell that is none
             view = np.moveaxis(number, axis, 0)[::turn]
             for k in range(1, len(view)):
                 view[k] = np.where(view[k] < nothing, np.minimum(view[k], view[k - 1]), nothing)

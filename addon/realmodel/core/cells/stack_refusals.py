@@ -10,7 +10,7 @@ from ..base.work import NativeError
 from ..project.project import surface_item
 from ..surfaces.rock_input import RockInput
 
-_ONE_HEIGHT = "a surface may have only one height at each place"
+_ONE_HEIGHT = "a surface may have only one elevation at each place"
 
 
 def refused_stack(error: NativeError, inputs: list[RockInput]) -> InputRefused | BuildFailed:

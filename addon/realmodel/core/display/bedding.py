@@ -100,12 +100,12 @@ _NO_LAYER = -1
 
 @dataclass(frozen=True, eq=False)
 class Bedding:
-    """height, thickness, depth: (C,) float32 of each corner: where it lies in its layer as it was deposited,
-    from 0 at the base to 1 at the top, whatever was eroded later; the thickness of the layer there, as it was
-    deposited; how deep it lies below the youngest top there, as the sheets of its compartment have it. Model
-    units. is_top: (F,) bool, the polygons on which nothing lies, but for the floors of voids. age: (F,)
-    float32, the number of the surface in its rock mass that the block was deposited beneath; of a body half a
-    step more than that which it came after.
+    """height, thickness, depth: (C,) float32 of each corner: its position in its layer at the time of
+    deposition, from 0 at the base to 1 at the top, independent of later erosion; the thickness of the layer
+    there, as it was deposited; how deep it lies below the youngest top there, as the sheets of its
+    compartment have it. Model units. is_top: (F,) bool, the polygons on which nothing lies, but for the
+    floors of voids. age: (F,) float32, the number of the surface in its rock mass that the block was
+    deposited beneath; of a body half a step more than that which it came after.
 
     In a body height and thickness are those of its mesh, from its lowest point to its highest."""
 

@@ -209,7 +209,7 @@ def _cut_off(places: np.ndarray, inside: Callable[[np.ndarray], np.ndarray]) -> 
 
 
 def _are_inside(places: np.ndarray, inside: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """(T, 3) bool: which corners of triangles (T, 3, 3) lie inside; each position is asked for once."""
+    """(T, 3) bool: which corners of triangles (T, 3, 3) lie inside; each position is requested once."""
     corners, number = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
     is_inside = inside(corners) if len(corners) else np.zeros(0, bool)
     return is_inside[number.ravel()].reshape(-1, 3)

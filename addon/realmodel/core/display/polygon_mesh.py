@@ -118,9 +118,9 @@ def of_cells(
     cancel: Cancel | None = None,
     compartments: Sequence[str] | None = None,
 ) -> list[PolygonMesh | None]:
-    """For each block of a model all its cells, each by itself with vertices of its own that are drawn towards
+    """For each block of a model all its cells, each separately with its own vertices that are drawn toward
     their mean by the factor `shrink`; where that is None the parts of the block in each compartment, each
-    closed by itself. Otherwise as `of_blocks`."""
+    closed. Otherwise as `of_blocks`."""
     numbers = _numbers(model, compartments)
     if numbers is None:
         shapes = _shells(model, origin, shrink, threads, cancel, model.cell_block, len(model.blocks))

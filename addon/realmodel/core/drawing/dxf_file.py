@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DXF files (AutoCAD's Drawing Exchange Format, release 12, ASCII), which every CAD program reads.
 
-Coordinates of drawings are those of what is drawn, not of the page. A polygon becomes closed polylines in its
-color, as this release has no hatching; layers are those of the drawing, their names as this release asks for.
+Coordinates are those of the drawn objects, not of the page. A polygon becomes closed polylines in its color,
+as this release has no hatching; layers are those of the drawing, their names as this release asks for.
 """
 
 from __future__ import annotations

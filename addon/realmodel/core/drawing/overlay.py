@@ -50,7 +50,7 @@ class Eye:
     """How a picture looks at the world.
 
     projection: (4, 4) float64, from the world to x, y, z from -1 to 1 in the picture (after division by the
-    fourth). back: (4,) float64: towards the eye, (x, y, z, 0), or where it is, (x, y, z, 1). right, up: (3,).
+    fourth). back: (4,) float64: toward the eye, (x, y, z, 0), or where it is, (x, y, z, 1). right, up: (3,).
     size: of the picture, in points.
     """
 

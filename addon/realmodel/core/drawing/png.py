@@ -122,8 +122,8 @@ def _fill(pixels: np.ndarray, rings: list[np.ndarray], color: np.ndarray) -> Non
     """Blends a color in where the rings, in pixels from the upper left, wind around.
 
     Along each of a few lines in a row of pixels the rings are crossed at exact positions. A crossing adds its
-    direction to all pixels to the right, and to its own the part to the right of it; a running sum then says
-    how much of each pixel lies within.
+    direction to all pixels to the right, and to its own the part to the right of it; a running sum then gives
+    the share of each pixel inside.
     """
     if not rings:
         return

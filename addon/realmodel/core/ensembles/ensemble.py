@@ -98,7 +98,8 @@ class Ensemble:
 
     @classmethod
     def of(cls, realizer: Realizer, sums: Sums, places: np.ndarray) -> Ensemble:
-        """The ensemble of the sums over its realizations. places: (P, 3), where probabilities are asked."""
+        """The ensemble of the sums over its realizations. places: (P, 3), where probabilities are
+        computed."""
         count = len(sums.volumes)
         means: list[np.ndarray | None] = []
         deviations: list[np.ndarray | None] = []
@@ -171,9 +172,9 @@ class Ensemble:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> PlannedHole:
-        """What Model.planned_hole says of the model, with the probability of each block along the hole, and
-        the standard deviation of the depth of each contact in the realizations that have it. Their surfaces
-        are drawn again for it, but not built.
+        """The result of Model.planned_hole, with the probability of each block along the hole, and the
+        standard deviation of the depth of each contact in the realizations that have it. Their surfaces are
+        drawn again for it, but not built.
 
         Raises as Model.planned_hole, Cancelled.
         """
@@ -203,10 +204,9 @@ def ensemble(
     """Builds a project, and realizations of it: models whose interpolated heights and fields are drawn at
     random, as the data and each surface's variogram allow. The result depends on the seed alone.
 
-    correlation: of the errors of each surface with those of the next older one, -1 to 1, for surfaces that
-    have none of their own. places: (N, 3) points of which the probability of each block is wanted, or a
-    function that gives them for the built model. Other arguments as `build`.
-    Raises as `build`; UsageError.
+    correlation: of the errors of each surface with those of the next older one, -1 to 1, for surfaces without
+    a correlation. places: (N, 3) points of which the probability of each block is wanted, or a function that
+    gives them for the built model. Other arguments as `build`. Raises as `build`; UsageError.
 
     >>> points = [[0, 0, 1], [4, 0, 2], [4, 4, 2], [0, 4, 1], [2, 2, 3]]
     >>> ground = Surface("ground", points=points, method="kriging", block="soil")
@@ -251,7 +251,7 @@ def realized(
 
 
 def places_of(model: Model, places: Places | None) -> np.ndarray:
-    """(N, 3) float64: those that are given, or that a function of the model says."""
+    """(N, 3) float64: the given ones, or the result of a function of the model."""
     points = places(model) if callable(places) else places
     return np.zeros((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
 

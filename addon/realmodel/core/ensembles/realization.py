@@ -34,8 +34,8 @@ class Realizer:
     """Makes the realizations of a built model, each from the seed and its number alone.
 
     model: as `build` gives it. seed: from 0. correlation: of the errors of each surface with those of the
-    next older one of its rock mass, from -1 to 1, where the surface has none of its own; exact where both
-    have the same variogram.
+    next older one of its rock mass, from -1 to 1, for surfaces without a correlation; exact where both have
+    the same variogram.
     """
 
     model: Model

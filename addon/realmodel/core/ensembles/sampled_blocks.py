@@ -94,8 +94,8 @@ def borehole_samples(model: ModelData, x: float, y: float, height: float | None 
 
 
 def hole_samples(model: ModelData, axis: HoleAxis, step: float | None = None) -> HoleSamples:
-    """Samples along a planned hole of a model. axis: where it goes. step: the length of cells; None: a
-    hundredth of the hole. Raises UsageError."""
+    """Samples along a planned hole of a model. axis: the hole. step: the length of cells; None: a hundredth
+    of the hole. Raises UsageError."""
     bounds = _bounds(0.0, axis.length, step or axis.length / _ROWS)
     _check(model, len(bounds) - 1)
     depths = (bounds[1:] + bounds[:-1]) / 2

@@ -222,7 +222,7 @@ def save_mesh(
     .inp, .cdb, .exo, ...). It appears whole or not at all.
 
     step(share) is called now and then, last with 1. unit: of its lengths, for formats that name one. Raises
-    UsageError for an ending that is not known, OutputFailed where it cannot be written.
+    UsageError for an unknown extension, OutputFailed if it cannot be written.
     """
     exporter = POLYHEDRA if isinstance(mesh, PolyhedralMesh) else MESH
     exporter.save(mesh, path, step, unit=unit)

@@ -85,9 +85,9 @@ def model_report(
 ) -> Report:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
-    validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
-    found; mesh: a SimulationMesh of it; cells: its CleanedCells; grid: its CornerPointGrid; without them the
-    report says nothing of that.
+    validation: what Model.validate found; it is run now if none is given. erosion: what Model.eroded found;
+    mesh: a SimulationMesh of it; cells: its CleanedCells; grid: its CornerPointGrid; without them the report
+    has none.
     """
     model.require_project("the report")
     validation = validation or validate(model, PLACES_OF_REPORT, threads=model.threads)
@@ -255,7 +255,7 @@ def fault_entry(fault: Fault) -> dict:
 
 
 def _dips(model: ModelData) -> list[dict]:
-    """The numbers of the stereonets of all dips but those of faults, of null, and of whatever some are of."""
+    """The numbers of the stereonets: of all dips but those of faults (`of` is null), and of each group."""
     sets = dip_sets(model.project)
     has_beds = any(entry.dips.in_use.any() for entry in sets if not entry.of_fault)
     names = [*([None] if has_beds else []), *dip_names(sets)]

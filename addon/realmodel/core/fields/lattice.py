@@ -108,7 +108,7 @@ class ScalarField:
 
     values: (nodes,) float64. levels: (surfaces,) float64, rising: f on each surface, oldest first. points:
     (P, 3) float64, corners of tetrahedra beside the nodes: each divides those that it lies in. point_values:
-    (P,) float64, f there. critical_points: (C, 3) where f has critical points inside, if it was asked.
+    (P,) float64, f there. critical_points: (C, 3) the inner critical points of f, if requested.
     """
 
     lattice: Lattice

@@ -23,8 +23,8 @@ _BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss 
 
 @dataclass(frozen=True, eq=False)
 class HeldData:
-    """What goes on to hold: a field rises at dips (D, 3) along normals (D, 3), and at bounds (B, 3) it is, as
-    signs (B,) say, at least levels (B,) or, where -1, at most."""
+    """What continues to hold: a field rises at dips (D, 3) along normals (D, 3), and at bounds (B, 3) it is,
+    as signs (B,) say, at least levels (B,) or, where -1, at most."""
 
     dips: np.ndarray
     normals: np.ndarray

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The field of a series from what is known of it, and fields drawn at random as their data allow, for the
-realizations of a series in an ensemble."""
+"""The field of a series from its data, and random fields that honor the data, for the realizations of a
+series in an ensemble."""
 
 from __future__ import annotations
 
@@ -119,9 +119,9 @@ class FieldDraw:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedField(ScalarField):
-    """A field with what its solution says: the anisotropy; the order of the derivatives that are least, 3, or
-    2 where surfaces are rough, or 5: all up to it, where the data are smooth; how many contacts carry the
-    field; the largest distance of a contact from its surface, nearly; rows of the dips and bounds that
+    """A field with the results of its solution: the anisotropy; the order of the derivatives that are least,
+    3, or 2 where surfaces are rough, or 5: all up to it, where the data are smooth; how many contacts carry
+    the field; the largest distance of a contact from its surface, nearly; rows of the dips and bounds that
     contradict other data and do not hold; the fields on the other combinations of sides of slits; the kind of
     random function, of which the native module draws others; of each of the missed bounds what it
     contradicts: "contact", "dip" or "bound", and the row; and the share of the lattice that each block, from
@@ -203,7 +203,7 @@ def _refusal(error: NativeError, data: LevelSetData) -> InputRefused:
     """The native error with the names of surfaces and data."""
     if error.kind == "no_direction":
         return InputRefused(
-            "nothing says in which direction the rock gets younger",
+            "the direction to younger rock is not known",
             advice="give dips, or contacts of a second surface",
         )
     if error.kind == "no_contacts":

@@ -51,7 +51,7 @@ def closed_mesh(vertices: ArrayLike, triangles: ArrayLike, base: float | None = 
         raise InputRefused(
             f"it is open, for example near {place_text(place)}, and has not one height at each position",
             item=ITEM,
-            advice="close it, or take overhangs and vertical faces away",
+            advice="close it, or remove overhangs and vertical faces",
             place=place,
         )
     if turns[0] < 0:
@@ -134,10 +134,10 @@ def fill_with_strata(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Model:
-    """Fills a closed mesh with strata, or an open one of one height everywhere down to a base.
+    """Fills a closed mesh with strata, or an open one with a single height at each position down to a base.
 
     vertices (V, 3), triangles (T, 3). Returns a model whose blocks are the beds, oldest first, `Bed 1` and so
-    on: closed, with common faces, and together the mesh. Vertices of the mesh stay as they are. Beds that are
+    on: closed, with common faces, and together the mesh. Vertices of the mesh are not changed. Beds that are
     nowhere in the mesh are blocks without cells. With a gap, what is between beds is blocks, too, without a
     property: `Gap 1` and so on, each with the number of the bed beneath, and `Gap at Faults`.
 

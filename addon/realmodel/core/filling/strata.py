@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What says how beds lie in a solid."""
+"""The settings of beds in a solid."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Strata:
     beds: how many. thickness: of a bed on average, at right angles to the bedding before it is folded; 0: so
     thick that they fill the solid. Otherwise they lie in its middle, and the lowest and the highest bed take
     the rest. variation: how much beds differ, from 0, not at all, to 1.
-    dip: up to 85, towards the azimuth dip_direction. fold_amplitude: at right angles to the bedding, of folds
+    dip: up to 85, toward the azimuth dip_direction. fold_amplitude: at right angles to the bedding, of folds
     with this fold_wavelength and the azimuth fold_axis; one of both 0: none. axial_dip: of the axial planes
     of folds, from 90, upright, to 10, recumbent. They dip to the left of the azimuth fold_axis, so folds lean
     to its right, and their limbs are overturned where the folds are steep enough.
@@ -169,12 +169,12 @@ class Strata:
     def _check_lean(self) -> None:
         """What is vertical in the space in which folds stand upright would lean with them."""
         if self.pegs:
-            raise UsageError("pegs must be 0 where axial_dip is below 90: they would lean as the folds do")
+            raise UsageError("pegs must be 0 if axial_dip is below 90: they would be inclined like the folds")
         off = (self.fault_strike - self.fold_axis) % 180.0 - 90.0
         if self.faults and abs(off) > _RIGHT_ANGLE:
             raise UsageError(
                 f"fault_strike must be at right angles to fold_axis where axial_dip is below 90, such as "
-                f"{(self.fold_axis + 90.0) % 180.0:g}: other faults would lean as the folds do"
+                f"{(self.fold_axis + 90.0) % 180.0:g}: other faults would be inclined like the folds"
             )
 
 

@@ -174,7 +174,7 @@ def contradiction_warnings(bounds: Bounds, left_out: np.ndarray) -> list[str]:
     place = place_text(bounds.places[first].tolist())
     return [
         f"{len(left_out)} of {len(bounds)} bounds contradict a point or others at the same position and are "
-        f"left out: one says that the surface lies at or {side} {place}"
+        f"left out: one requires that the surface lies at or {side} {place}"
     ]
 
 
@@ -184,12 +184,12 @@ def active_bounds(work: Work, points: np.ndarray, bounds: Consistent, give: Meth
     In rounds: bounds beyond which the surface lies become points, the worst of each cell of a grid twice as
     wide as the data are apart. Once there are none, those points are dropped that the others keep within
     their bounds, and it begins again. A round adds at least one or drops at least one, and each bound is
-    dropped a few times at most: the rounds end, with no bound missed. After each round only bounds near what
-    it changed are looked at, until these hold; then all.
+    dropped a few times at most: the rounds end, with no bound missed. After each round only bounds near its
+    changes are tested, until these hold; then all.
     """
     count = len(bounds.positions)
     active, drops, value = np.zeros(count, bool), np.zeros(count, np.int64), np.zeros(count)
-    near = ~active  # that what changed last may concern; the others are looked at when these hold
+    near = ~active  # that what changed last may concern; the others are examined when these hold
     while True:
         work.check()
         data = np.vstack([points, np.column_stack([bounds.positions[active], value[active]])])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that say something of one another: those of which heights vary alike, and among these the sheets
-of a series, which are kriged together.
+"""Surfaces that are correlated: those of which heights vary alike, and among these the sheets of a series,
+which are kriged together.
 
 The height of a sheet is a field that all of them share plus the thicknesses between it and the oldest one
 (a linear model of coregionalization: Chiles and Delfiner 2012, "Geostatistics", section 5.6.4). What sheets
@@ -91,7 +91,7 @@ class SheetModel:
 
 @dataclass(frozen=True)
 class JointData:
-    """Data of all sheets around their offsets, those of the sheet that is asked for first."""
+    """Data of all sheets around their offsets, those of the sheet that is requested first."""
 
     points: np.ndarray
     sheets: np.ndarray

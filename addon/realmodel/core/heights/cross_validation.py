@@ -90,7 +90,7 @@ class CrossValidation(ShortRepr):
 
     @property
     def within_two_deviations(self) -> float | None:
-        """The share of errors below twice their deviation: about 0.95 where variances are honest."""
+        """The share of errors below twice their deviation: about 0.95 where variances are realistic."""
         if self.standardized is None:
             return None
         finite = np.isfinite(self.standardized)
@@ -115,7 +115,7 @@ def cross_validate(
 
     points: (P, 3), at least 2 positions in plan; points at one position count once. Kriging and inverse
     distance leave the points out one by one, with the variogram fitted to all of them (where all points are
-    neighbours, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
+    neighbors, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
     methods are run `folds` times, each time without every folds-th point. Where points are clustered, as in
     twin holes and along survey lines, all methods are run, for places and not for points (places_of): of
     kriging and inverse distance up to 60 times. mesh: (nodes (N, 2), triangles (T,

@@ -167,7 +167,7 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 
 @dataclass(frozen=True)
 class KrigingStructure:
-    """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
+    """The variogram of kriging, its number of neighbors, how dips count, and warnings. sheets: of surfaces
     that are kriged together. plane: around which heights are kriged; None: around their mean. missing: why no
     variance follows from the variogram, or None."""
 
@@ -302,7 +302,7 @@ def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndar
 
 
 def _from_neighbours(task: Task, kriging: KrigingStructure, axis: np.ndarray) -> np.ndarray:
-    """(N,) how far nodes, or points left out, lie along an axis from where their neighbours put them: so much
+    """(N,) how far nodes, or points left out, lie along an axis from where their neighbors put them: so much
     of an error of the slope is theirs."""
     steps = RegionalPlane(axis, np.zeros((2, 2)), task.points[0, :2])
     data = np.column_stack([task.points[:, :2], steps.at(task.points[:, :2])])
@@ -422,7 +422,7 @@ def mean_offsets(
     task: Task, known: KrigingStructure, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
 ) -> np.ndarray:
     """(S,) what each sheet lies above that with the most points: by how much it differs from what the others
-    let expect at its points, on average; those with the smaller variance count more."""
+    predict at its points, on average; those with the smaller variance count more."""
     assert known.sheets is not None
     offsets, base = known.sheets.offsets.copy(), int(np.argmax([len(part) for part in points]))
     for number, sheet_points in enumerate(points):
@@ -475,7 +475,7 @@ def _of_surface(task: Task, variance: np.ndarray, kriging: KrigingStructure) -> 
 
 
 def _free_nodes(task: Task) -> np.ndarray:
-    """(N, 2) the nodes at which heights are asked for: where the surface is tied afterwards, or does not pass
+    """(N, 2) the nodes at which heights are requested: where the surface is tied afterwards, or does not pass
     through its points as these have errors, those at points lie beside them, as a nugget would make spikes at
     them, and none at other points."""
     nodes, plan = task.nodes, task.points[:, :2]

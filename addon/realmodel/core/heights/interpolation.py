@@ -111,7 +111,7 @@ def sheet_of(task: Task, reference: Reference, option: str) -> Sheet | None:
 def _of_nodes(task: Task, heights: np.ndarray, option: str) -> np.ndarray:
     if len(heights) != len(task.nodes):
         raise OptionRefused(
-            f"'{option}' has {len(heights)} heights for {len(task.nodes)} nodes", option=option
+            f"'{option}' has {len(heights)} elevations for {len(task.nodes)} nodes", option=option
         )
     return heights
 

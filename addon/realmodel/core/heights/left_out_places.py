@@ -15,7 +15,7 @@ _SIDE = 1.5  # of a square that is one place, in median distances of nodes
 
 def places_of(work: Work, plan: np.ndarray) -> np.ndarray | None:
     """(N,) the numbers of the places of data at plan (N, 2), where they are clustered, as twin holes and the
-    points of a survey line are; None where they are not, and each is a place of its own.
+    points of a survey line are; None where they are not, and each is a separate place.
 
     The error at a datum that is left out is the model's where other data are as near as they are elsewhere.
     So the distances from data to the nearest other one are compared, rank by rank, with those from the nodes

@@ -30,7 +30,7 @@ def without_mis_ties(points: np.ndarray) -> tuple[np.ndarray, str | None]:
     count = int(tolerated.sum())
     places = "1 position has" if count == 1 else f"{count} positions have"
     most_apart = f"up to {apart[worst]:.6g} apart (at {place_text(points[first[worst], :2])})"
-    return merged[keeps], f"{places} several heights, {most_apart}: their mean is used"
+    return merged[keeps], f"{places} several elevations, {most_apart}: their mean is used"
 
 
 def shuffled(places: np.ndarray) -> np.ndarray:

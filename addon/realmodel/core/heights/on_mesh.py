@@ -114,8 +114,8 @@ def _smoothest(task: Task) -> Result:
         )
     if not output["converged"]:
         warnings.append(
-            "the solver stopped before the heights were as smooth as possible: triangles of the mesh differ "
-            "much in size or shape; a more even mesh helps"
+            "the solver stopped before the elevations were as smooth as possible: triangles of the mesh "
+            "differ much in size or shape; a more even mesh helps"
         )
     return Result(output["z"], warnings=warnings)
 
@@ -129,7 +129,7 @@ def within_bounds(task: Task, z: np.ndarray, at_border: np.ndarray) -> np.ndarra
             bound = heights_of(task, settings[option], task.nodes, option)
             z = np.where(np.isnan(z), z, limit(z, bound))
     if settings.get("border") is not None:
-        assert task.triangles is not None  # heights for a border are asked for on a mesh
+        assert task.triangles is not None  # heights for a border are requested on a mesh
         z = np.where(border_nodes(task.triangles, len(task.nodes)), at_border, z)
     return z
 
@@ -138,7 +138,7 @@ def _called(reference: Reference) -> str:
     """The surface or height that an option names, as messages write it."""
     if isinstance(reference, str):
         return f"'{reference}'"
-    return f"{reference:g}" if isinstance(reference, float) else "the given heights"
+    return f"{reference:g}" if isinstance(reference, float) else "the given elevations"
 
 
 def _refuse_crossed(task: Task, limits: dict, lower: str, upper: str) -> None:

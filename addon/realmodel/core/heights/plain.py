@@ -161,8 +161,8 @@ def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) 
 
 def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     """The surface `to` and a thickness above it: `thickness`, or where it is not given what the points show,
-    spread by `thickness_method`, which run_method runs; upward, or perpendicular to that surface where the
-    task says so."""
+    spread by `thickness_method`, which run_method runs; upward, or perpendicular to that surface, by the
+    task."""
     below = heights_of(task, task.settings["to"], task.nodes, "to")
     thickness = task.settings["thickness"]
     if thickness is not None:
@@ -171,7 +171,7 @@ def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     finite = np.isfinite(under)
     if not finite.any():
         raise InputRefused(
-            "none of its points lies where the surface that it is parallel to has a height", item="points"
+            "none of its points lies where the surface that it is parallel to has an elevation", item="points"
         )
     points = measured(task, task.points[finite], under[finite])
     method = task.settings["thickness_method"]
@@ -180,8 +180,8 @@ def parallel(task: Task, run_method: Callable[[str, Task], Result]) -> Result:
     if not finite.all():
         left_out = int((~finite).sum())
         warnings.append(
-            f"{left_out} of {len(finite)} points lie where the surface that it is parallel to has no height: "
-            "they are left out"
+            f"{left_out} of {len(finite)} points lie where the surface that it is parallel to has no "
+            "elevation: they are left out"
         )
     z, variance = lifted(task, below, shown.z), shown.variance
     if task.true_thickness and variance is not None:

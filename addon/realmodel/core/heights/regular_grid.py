@@ -22,9 +22,9 @@ from .interpolation import Result, Task
 _OFF_GRID = 0.02
 _CELL = 0.5  # of a cell: so far each node of a raster reaches, where it says all that is known
 _ON_LINE = 1e-9  # of a cell: nearer points lie on a line of the grid, up to rounding
-_SAMPLE = 200  # points whose neighbours show the grid's directions
+_SAMPLE = 200  # points whose neighbors show the grid's directions
 _MOST_EMPTY = 100  # nodes of the grid for each point
-_NEAR = 16  # points, in the mean, in a cell where neighbours are looked for
+_NEAR = 16  # points, in the mean, in a cell where neighbors are looked for
 _SURE = 0.99  # of a cell's side: points so far are in the cells around, but for rounding
 _ONE_ROW = "the points lie in one row; a grid needs two"
 
@@ -85,7 +85,7 @@ def _heights(points: np.ndarray, grid: RegularGrid) -> np.ndarray:
         differs = z[tuple(grid.nodes(piece).T)] != piece[:, 2]
         for bad in piece[differs][:1]:
             raise InputRefused(
-                f"two points with different heights lie at one node of the grid, {place_text(bad)}",
+                f"two points with different elevations lie at one node of the grid, {place_text(bad)}",
                 item="points",
                 place=tuple(bad),
             )
@@ -186,7 +186,7 @@ def _axes(points: np.ndarray) -> np.ndarray:
     steps = [step for number in numbers.tolist() if (step := pairs[number]) is not None]
     if not steps:
         raise InputRefused(_ONE_ROW, item="points")
-    # The commonest, by the lengths of both: cells with a missing neighbour show longer steps.
+    # The commonest, by the lengths of both: cells with a missing neighbor show longer steps.
     lengths = np.array([[hypot(*a), hypot(*b)] for a, b in steps])
     best = np.lexsort((lengths[:, 0], np.round(lengths.sum(axis=1) / lengths.min(), 6)))[0]
     return np.array(steps[best])

@@ -121,7 +121,7 @@ def _rise(task: Task) -> float:
 
 def runs_away(points: np.ndarray, z: np.ndarray, method: str, rise: float = 0.0) -> list[str]:
     """A warning if heights go far beyond those of the points, by more than twice their range and the rise
-    that dips let expect. Points that differ by rounding alone are level, and have none."""
+    that dips predict. Points that differ by rounding alone are level, and have none."""
     tamed_by = METHODS[method].tamed_by
     if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []
@@ -131,7 +131,7 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str, rise: float = 0.0)
     if not max(low - lowest, highest - high) > 2 * (high - low) + rise or not 2 * (high - low) > rounding:
         return []
     return [
-        f"its heights, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
+        f"its elevations, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
         f"{high:.6g}; {tamed_by}"
     ]
 

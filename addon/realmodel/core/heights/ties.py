@@ -88,7 +88,7 @@ def corrected(
 def correction(
     work: Work, nodes: np.ndarray, triangles: np.ndarray, sheets: tuple, data: TieData, of_sheet: np.ndarray
 ) -> tuple[Terms, np.ndarray]:
-    """The correction of sheets, as native ties takes them, whose heights are asked for only at the corners of
+    """The correction of sheets, as native ties takes them, whose heights are requested only at the corners of
     triangles with data; and how far the sheet of each of the data lies below it then, (C,), NaN where it has
     no triangle. of_sheet: (C,) int32, to which sheet each of the data counts."""
     # of contacts near one another the first ones count more: they must not lie on one side

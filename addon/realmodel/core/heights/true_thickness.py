@@ -17,15 +17,15 @@ from ..base.triangles import Sheet, border_loops, welded
 from ..base.work import Work, native_module
 from .interpolation import Task, sheet_of
 
-_BEYOND = 1.1  # of the thickness: so far a surface goes on beyond its border, also across corners
+_BEYOND = 1.1  # of the thickness: so far a surface continues beyond its border, also across corners
 _HALVINGS = 5  # of that, where the surface itself is beyond its border
 _ALONG, _ACROSS = (0.1, 0.5, 0.9), (0.25, 0.5, 0.75, 1.0)  # where it is asked whether it is
 _STRAIGHT = 1e-9  # the sine of turns of the border that are none
 
 
 class Base:
-    """A surface above or below which thicknesses are measured; beyond its border it goes on with the slopes
-    that it has there, as far as `reach`, the greatest thickness, asks."""
+    """A surface above or below which thicknesses are measured; beyond its border it continues with its slopes
+    there, as far as `reach`, the greatest thickness."""
 
     def __init__(self, work: Work, sheet: Sheet, reach: float):
         self.work = work
@@ -51,8 +51,8 @@ class Base:
 
 
 def lifted(task: Task, below: np.ndarray, thickness: np.ndarray | float) -> np.ndarray:
-    """(N,) heights at the nodes so far from the surface `to` of a task, whose heights there are `below`: as
-    the task says, upward or perpendicular to it."""
+    """(N,) heights at the nodes so far from the surface `to` of a task, whose heights there are `below`:
+    upward or perpendicular to it, by the task."""
     sheet = _base_sheet(task)
     if sheet is None:
         return below + thickness
@@ -62,7 +62,7 @@ def lifted(task: Task, below: np.ndarray, thickness: np.ndarray | float) -> np.n
 
 
 def measured(task: Task, points: np.ndarray, under: np.ndarray) -> np.ndarray:
-    """(P, 3) points with their thicknesses above the surface `to` of a task in the place of z. under: (P,)
+    """(P, 3) points with their thicknesses above the surface `to` of a task instead of z. under: (P,)
     its heights there."""
     measured_points = points.copy()
     measured_points[:, 2] -= under
@@ -128,7 +128,7 @@ def _slopes(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 def _sectors(plan: np.ndarray, loop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of a loop with its sheet on the left what lies outside, in sectors: (K, 2) the vertices at which each
-    begins, and (K, 2, 2) the directions in which it goes on from them. Along edges the vertices differ,
+    begins, and (K, 2, 2) the directions in which it continues from them. Along edges the vertices differ,
     around corners that stick out the directions."""
     edge = plan[np.roll(loop, -1)] - plan[loop]
     way = np.column_stack([edge[:, 1], -edge[:, 0]]) / norm(edge)[:, None]

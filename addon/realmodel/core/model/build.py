@@ -43,12 +43,11 @@ def build(
     """Builds the model of a project.
 
     cells: "columns", each under one facet of the surface above it, or "blocks", one for each connected
-    part of a block. threads: 0 for all that there are; the result is the same for any number.
-    stage: build only up to this surface (from 0) of each rock mass.
-    memory: bytes that building may take; None: what is free. What is expected to take more (estimate) is
-    refused before it begins.
-    progress(fraction, text) and cancel() are called from this thread every 40 ms while another works;
-    the fraction never falls. cancel() returning True ends it with Cancelled.
+    component of a block. threads: 0 for all; the result is the same for any number. stage: build only up to
+    this surface (from 0) of each rock mass. memory: limit of the build in bytes; None: the free memory. A
+    build that is expected to need more (estimate) is refused before it begins. progress(fraction, text) and
+    cancel() are called from this thread every 40 ms while another works; the fraction never falls. cancel()
+    returning True ends it with Cancelled.
 
     Raises InputRefused (what, where, what to do), NotEnoughMemory, BuildFailed, UsageError, Cancelled.
 

@@ -41,11 +41,11 @@ class Section(SectionData):
         hole_width: float = 0.0,
         hole_column: str | None = None,
     ) -> None:
-        """Writes the polygons, with block and property, to a file in the format of its ending, or a drawing
-        of them to a .svg, .pdf, .dxf or .png. exaggeration: of heights in drawings. hole_width: drawings
-        have the boreholes within this distance of the section, model units. hole_column: beside these as a
-        curve, a column of `hole_values`; its unit may be left out. The file appears whole or not at all.
-        Raises UsageError, OutputFailed."""
+        """Writes the polygons, with block and property, to a file in the format of its extension, or a
+        drawing of them to a .svg, .pdf, .dxf or .png. exaggeration: of heights in drawings. hole_width:
+        drawings have the boreholes within this distance of the section, model units. hole_column: beside
+        these as a curve, a column of `hole_values`; its unit may be left out. The file appears whole or not
+        at all. Raises UsageError, OutputFailed."""
         of_holes: dict[str, Any] = {"hole_width": hole_width, "hole_column": hole_column}
         SECTION.save(self, path, exaggeration=exaggeration, **of_holes)
 
@@ -375,8 +375,8 @@ def fence_through_holes(
 ) -> Fence:
     """Vertical sections through boreholes of the project, in the order of their names.
 
-    holes: names. extend: how far the line goes on at both ends, model units; None: a twentieth of its length.
-    Raises InputRefused for a hole that is not there, or where all are at one place, UsageError, BuildFailed,
+    holes: names. extend: how far the line continues at both ends, model units; None: a twentieth of its
+    length. Raises InputRefused for an unknown hole, or if all are at one place, UsageError, BuildFailed,
     Cancelled.
     """
     line = line_through(hole_places(model.project), holes, extend)

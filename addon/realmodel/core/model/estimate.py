@@ -49,7 +49,7 @@ _SECONDS_PER_VALUE = 2e-9  # of a datum at a node
 
 @dataclass(frozen=True)
 class Estimate:
-    """What building a project will take.
+    """The memory and time that building a project will take.
 
     cell_kind, threads: as given. triangles: of all surfaces; of level sets of fields in order of magnitude.
     lattice_nodes: of the lattices of all fields. memory: an upper bound, in bytes, of the memory
@@ -67,7 +67,7 @@ class Estimate:
 
     @property
     def fits(self) -> bool:
-        """Whether building takes no more memory than there is."""
+        """Whether the build fits in memory."""
         return self.memory <= self.available
 
     def rows(self) -> list[tuple[str, str]]:
@@ -177,7 +177,7 @@ def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
     """The fields of the series of a rock mass. structures: the number of faults and bodies, each of which may
     part a field in two."""
     sizes = []
-    # as many as lines part a plane in; where there are more, each compartment has a field of its own
+    # as many as lines part a plane in; where there are more, each compartment has a separate field
     combinations = min(1 + structures * (structures + 1) // 2, MOST_TOGETHER) if structures else 0
     of_sides = combinations * (_BYTES_OF_SIDES + _BYTES_OF_FAULT * structures)
     for data, lattice in lattices(entry):

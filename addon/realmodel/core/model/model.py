@@ -56,8 +56,8 @@ class Model(ModelData):
         same bytes; only its timings are empty.
 
         A file of RealModel 0.1 has no project: what needs that (stage, eroded, validate with places, the
-        report, .npz) raises InputRefused then. threads: 0 for all that there are, for what is made of it.
-        Raises InputRefused where the file is no model, or damaged, Cancelled.
+        report, .npz) raises InputRefused then. threads: 0 for all, for later calls. Raises InputRefused where
+        the file is no model, or damaged, Cancelled.
         """
         threads = check_threads(threads)
         return cls.of(run(lambda work: read_model(work, Path(path)), progress, cancel, threads=threads))
@@ -106,7 +106,7 @@ class Model(ModelData):
         """Writes the surfaces, faults and bodies as they were used, by the file's ending (.obj, .ply, .stl,
         .glb, .dxf, .ts with a part for each, .npz, .vtu). It appears whole or not at all.
 
-        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        Raises UsageError for an unknown extension, OutputFailed if it cannot be written.
         """
         SURFACES.save(self, path)
 
@@ -183,12 +183,11 @@ class Model(ModelData):
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> ValidationReport:
-        """Tests the model as docs/dev/geometry.md says: every cell, face and vertex of it; and whether at
-        about `places` plan positions it is what the closed form says. 0 places, or a half: only the first.
+        """Validates the model (docs/dev/geometry.md): every cell, face and vertex of it; and whether it
+        agrees with the closed form at about `places` plan positions. 0 places, or a half: only the first.
 
-        seed draws the places. threads: 0 for all that there are; the findings are the same for any number.
-        A model that fails is no error here: the report says what is wrong and where.
-        Raises UsageError, Cancelled.
+        seed draws the places. threads: 0 for all; the findings are the same for any number. A model that
+        fails is no error here: the report has the failures and their positions. Raises UsageError, Cancelled.
 
         >>> model.validate().passed
         True
@@ -202,11 +201,11 @@ class Model(ModelData):
         mesh: SimulationMesh | None = None,
         cells: CleanedCells | None = None,
     ) -> Report:
-        """What report.json says of the model (docs/reference/output_files.md): a dict, whose lists are tables
-        of pandas, too (Report.table). Volumes are in model units cubed, times in seconds, memory in bytes.
+        """The content of report.json (docs/reference/output_files.md): a dict, whose lists are tables of
+        pandas, too (Report.table). Volumes are in model units cubed, times in seconds, memory in bytes.
 
-        validation: what `validate` found; None: it is asked now. erosion: what `eroded` found, mesh: a mesh
-        of the model, cells: its cleaned cells; without them the report says nothing of that.
+        validation: what `validate` found; None: it is run now. erosion: what `eroded` found, mesh: a mesh of
+        the model, cells: its cleaned cells; without them the report has none.
 
         >>> report = model.report()
         >>> report["volume"], report["validation"]["passed"]

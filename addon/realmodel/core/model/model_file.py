@@ -127,7 +127,7 @@ def _check(arrays: Mapping[str, np.ndarray]) -> None:
     counts = np.repeat(sizes, np.diff(arrays["surface_triangle_offsets"]))
     triangles = arrays["surface_triangles"]
     if (triangles < 0).any() or (triangles.max(axis=1, initial=-1) >= counts).any():
-        raise ValueError("surface_triangles name vertices that are not there")
+        raise ValueError("surface_triangles name vertices that do not exist")
     for name, least, of in (
         ("face_vertices", 0, "vertices"),
         ("face_cells", -1, "cell_block"),

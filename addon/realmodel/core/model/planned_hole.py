@@ -37,8 +37,8 @@ def planned_hole(
 ) -> PlannedHole:
     """What a straight hole would meet: the blocks by depth along it, and the contacts with the surfaces that
     they lie on. Where the heights of a surface have a variance (kriging), its contacts have a standard
-    deviation, and where its data show no variogram `remarks` say what is missing; Ensemble.planned_hole says
-    more.
+    deviation, and where its data show no variogram `remarks` say what is missing; See also
+    Ensemble.planned_hole.
 
     collar: (x, y, z), model units, also beside or above the model. azimuth: degrees clockwise from north
     (+y). dip: degrees below the horizontal, 90 straight down. Raises UsageError, BuildFailed.

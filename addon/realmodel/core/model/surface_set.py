@@ -33,11 +33,11 @@ _READ, _MESHED = 0.2, 0.4  # shares of the time
 
 @dataclass(eq=False, repr=False)
 class SurfaceSet(ShortRepr):
-    """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
-    they are, unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and
-    all numbers go through the rock masses in order, oldest first, then through the faults and the bodies.
-    `project` holds the arrays in the place of files. `surface_kind` is that of a Model. `warnings`: of what
-    was read and interpolated. `rock_inputs`, `structures`: what a build goes on with.
+    """Surfaces as input of the model: interpolated ones on the mesh of their region, ready meshes unchanged
+    and unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and all
+    numbers go through the rock masses in order, oldest first, then through the faults and the bodies.
+    `project` holds the arrays instead of files. `surface_kind` is that of a Model. `warnings`: of reading and
+    interpolation. `rock_inputs`, `structures`: the input of the later steps of a build.
     """
 
     project: Project
@@ -82,7 +82,7 @@ class SurfaceSet(ShortRepr):
         """Writes the surfaces to a file, by its ending (.obj, .ply, .stl, .glb, .dxf, .ts with a
         part for each, .npz, .vtu). It appears whole or not at all.
 
-        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        Raises UsageError for an unknown extension, OutputFailed if it cannot be written.
         """
         SURFACES.save(self, path)
 

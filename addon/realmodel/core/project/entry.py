@@ -100,7 +100,7 @@ def errors_located(refuse: Refuse, key: str | None = None, before: str = "") -> 
 
 
 def named_once(entries: Sequence, kind: str) -> Iterator:
-    """The entries, each with a name of its own."""
+    """The entries, each with a unique name."""
     seen: set[str] = set()
     for entry in entries:
         if not is_name(entry.name):

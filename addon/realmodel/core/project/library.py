@@ -61,7 +61,7 @@ class Property:
     rock, age, structure, description: texts. color: "#rrggbb" (sRGB). density: in the user's units. For
     simulators: porosity, above 0 and at most 1; permeability, millidarcies. For pictures: `look` one of
     LOOK_NAMES, the size `look_scale` of its texture (1 suits the model) and its seed `look_seed`; `hardness`,
-    above 0 and at most 1, says how well the rock withstands weathering.
+    above 0 and at most 1, is the resistance of the rock to weathering.
     """
 
     id: int = declared(kind="integer", check=_checked_id, is_needed=True)
@@ -143,7 +143,7 @@ class Property:
 
 @dataclass
 class Library:
-    """The `properties`, each with an id of its own. `path` is the file that they were read from, if any."""
+    """The `properties`, each with a unique id. `path` is the file that they were read from, if any."""
 
     properties: list[Property] = field(default_factory=list)
     path: Path | None = None

@@ -170,7 +170,7 @@ def refused_rings(error: NativeError, names: Sequence[str], counts: Sequence[int
         return InputRefused(what, item=names[ring], place=place, advice=advice)
     if error.kind == "hole_outside":
         what = f"this hole does not lie inside its outline{at}"
-        advice = "move the hole into the outline, or make it an outline of its own"
+        advice = "move the hole into the outline, or make it a separate outline"
         return InputRefused(what, item=names[items[0]], place=place, advice=advice)
     if error.kind == "outline_degenerate":
         what = f"all corners of an outline lie on one line{at}"

@@ -60,23 +60,21 @@ def _checked_unit(key: str, unit: Any) -> Any:
 class Surface(Shaped):
     """One bounding surface of the layers.
 
-    Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
-    (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
-    PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
-    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. `left_out` (Q, 3)
-    are points that are not used: those of its file, or its array, at these places, model units. With
-    `minimum_thickness` an interpolated surface stays so far above the
-    older one; with `true_thickness` this, and the thickness of the method "parallel", is perpendicular to the
-    other surface; unless `tie` is false, it passes through its points and keeps its bounds also
-    within triangles; if it is `observed`, no younger surface cuts below its points, as below picks and the
-    points of a series; `correlation` is that of the errors of its heights with those of the older one, in
-    ensembles.
-    `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
-    and is a level set of that field (Rock.is_level_set).
-    `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
-    the block deposited beneath it (0: none), `block` that block's name.
-    `shape_file` is the file that the arrays were read from, if any: messages name it. Points that are read
-    are in the order of their coordinates; what follows from them and from field data is in RockInput.data.
+    Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles` (T, 3) of
+    vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a PointFile, which
+    are interpolated on the planar mesh of the rock's region by `method` with its `options`. Some methods do
+    without points; some also use its `dips`, a file, a DipFile or arrays. `left_out` (Q, 3) are points that
+    are not used: those of its file, or its array, at these places, model units. With `minimum_thickness` an
+    interpolated surface stays at least this far above the older one; with `true_thickness` this, and the
+    thickness of the method "parallel", is perpendicular to the other surface; unless `tie` is false, it
+    passes through its points and keeps its bounds also within triangles; if it is `observed`, no younger
+    surface cuts below its points, as below picks and the points of a series; `correlation` is that of the
+    errors of its heights with those of the older one, in ensembles. `series` is the name of the series that
+    it belongs to; in one whose kind is "field" it has `points` alone, and is a level set of that field
+    (Rock.is_level_set). `rule`: its effect on older rock (docs/reference/project_file.md). `property` is the
+    library id of the block deposited beneath it (0: none), `block` that block's name. `shape_file` is the
+    file that the arrays were read from, if any: messages name it. Points that are read are in the order of
+    their coordinates; what follows from them and from field data is in RockInput.data.
     """
 
     kind = "surface"
@@ -216,25 +214,23 @@ class Rock(Entry):
 
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
-    `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
-    blocks; `hole_picks` is what each of them met once they are read (Picks.holes), and `hole_ends` where it
-    ends (Picks.ends), `hole_values` the curves of their logs (Picks.logs): for display, no input.
-    `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
-    they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are
-    those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it.
-    `names` says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface
-    or body, or "" for nothing.
-    `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
-    "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
-    instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
-    `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
-    as of a region; `size` may be at what is in such files too.
-    `terrain` is the boundary above all surfaces: the name of one of them, or a Surface, a file of heights (a
-    raster, points or a mesh), a PointFile, a MeshFile, or points (P, 3). It becomes the youngest surface of
-    the model; faults and bodies end at it unless they name it.
-    With `base_elevation` there is a block between this height and the oldest surface.
-    `series` are runs of surfaces that share their structure.
-    `shape_file` is the file that the rings were read from, if any: messages name it.
+    `boreholes` give points to every surface that is not a ready mesh, in addition to its own, and
+    observations of blocks. Once they are read, `hole_picks` are the picks of each (Picks.holes), and
+    `hole_ends` where it ends (Picks.ends), `hole_values` the curves of their logs (Picks.logs): for display
+    only. `observations` are further places in a block: a file, an ObservationFile or Observations; once they
+    are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are those
+    of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it. `names`
+    gives the meaning of names in all of these: {"SST": "Sandstone"}, the name of a block, surface or body, or
+    "" for none. `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
+    "auto": half the spacing of the points of the surfaces; `triangles` is the number of triangles instead.
+    `mesher` and `size` (where edges are shorter) are as mesh_region takes them. `constraints` must be
+    contained in the planar mesh: lines (N, 2), points [x, y], and files of them as of a region; `size` may be
+    at what is in such files too. `terrain` is the boundary above all surfaces: the name of one of them, or a
+    Surface, a file of heights (a raster, points or a mesh), a PointFile, a MeshFile, or points (P, 3). It
+    becomes the youngest surface of the model; faults and bodies end at it unless they name it. With
+    `base_elevation` there is a block between this elevation and the oldest surface. `series` are runs of
+    surfaces that share their structure. `shape_file` is the file that the rings were read from, if any:
+    messages name it.
     """
 
     kind = "rock"
@@ -377,7 +373,7 @@ class Rock(Entry):
     @property
     def youngest_in_rock(self) -> int:
         """The number of its youngest surface below the terrain, up to which faults displace it, and after
-        which bodies came, where they do not say so."""
+        which bodies came by default."""
         last = len(self.surfaces) - 1
         return last - 1 if last > 0 and self.terrain_number == last else last
 

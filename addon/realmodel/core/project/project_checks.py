@@ -98,7 +98,7 @@ def _check_map(rock: Rock, map_file: MapFile) -> None:
     number = rock.ground_number
     if rock.ground_file is None and number is not None and rock.is_level_set(rock.surfaces[number]):
         what = f"the ground of the map cannot be '{rock.surfaces[number].name}': it is a level set"
-        raise refuse(what, "map", 'give its heights: ground = "dem.tif", or a sheet as youngest surface')
+        raise refuse(what, "map", 'give its elevations: ground = "dem.tif", or a sheet as youngest surface')
     for file in rock.map_files:
         check_file(file, "map", refuse)
 
@@ -224,7 +224,7 @@ def _check_fault(project: Project, fault: Fault) -> None:
 
 
 def _check_trace(project: Project, fault: Fault, refuse: Refuse) -> None:
-    """Refuses a trace without a dip, and one on a surface that is not there."""
+    """Refuses a trace without a dip, and one on a surface that does not exist."""
     if fault.trace is not None and fault.trace_file is None and fault.dip is None:
         raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
     if isinstance(fault.elevation, str):
@@ -468,7 +468,7 @@ def _check_continuation(surface: Surface, refuse: Refuse) -> None:
             what = f"'{option}' names a surface; a mesh is continued from its own vertices"
             raise refuse(what, option, "choose another method, or a number")
     if surface.options.get("extrapolate") == "none":
-        what = 'extrapolate = "none" gives no heights where the mesh is continued to the faults'
+        what = 'extrapolate = "none" gives no elevations where the mesh is continued to the faults'
         raise refuse(what, "extrapolate", 'use "nearest" or "method"')
 
 

@@ -185,7 +185,7 @@ def _as_written(entry: Any) -> Any:
     if isinstance(entry, Fault):
         entry = replace(entry, points=None, dips=None, stick=None, extend=0.0)
     if isinstance(entry, (Surface, Fault, Body)):
-        return replace(entry, mesh=entry.triangulation())  # type: ignore[arg-type]  # in the place of a file
+        return replace(entry, mesh=entry.triangulation())  # type: ignore[arg-type]  # instead of a file
     return entry
 
 

@@ -105,17 +105,16 @@ class Fault(Shaped):
     single point is enough. `extend`: how far the mesh is continued beyond its border, or the fitted surface
     beyond its points, model units.
 
-    Or its shape is a `trace`, the line in which it cuts the ground, with a `dip` in degrees below the
-    horizontal: points (N, 2) or (N, 3), several such lines, well-known text, or a file or PointFile of lines.
-    `dip_direction`: degrees clockwise from north (+y), or "N", "NE", ... for the side of the trace; not
-    needed where it is vertical. Files may have both as attributes. `elevation` of the line: a number, or the
-    name of the surface that it is on; None: z of the line (NaN: none), else it is on the youngest surface.
-    The fault goes on straight at both ends, through the rock; with `extend`, or where it dies out, only so
-    far.
+    Or its shape is a `trace`, its line on the ground, with a `dip` in degrees below the horizontal: points
+    (N, 2) or (N, 3), several such lines, well-known text, or a file or PointFile of lines. `dip_direction`:
+    degrees clockwise from north (+y), or "N", "NE", ... for the side of the trace; not needed where it is
+    vertical. Files may have both as attributes. `elevation` of the line: a number, or the name of the surface
+    that it is on; None: z of the line (NaN: none), else it is on the youngest surface. The fault continues
+    straight at both ends, through the rock; with `extend`, or where it dies out, only so far.
 
     youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at
     which it ends; the smaller part of it beyond is dropped. dies_out: it ends inside the rock, where its
-    displacement vanishes. rocks: names of the rock masses that it displaces; none: all that have `youngest`.
+    displacement is 0. rocks: names of the rock masses that it displaces; none: all that have `youngest`.
     """
 
     kind = "fault"
@@ -222,11 +221,10 @@ class Body(Shaped):
     """A body: a closed triangulated surface of any shape, within which there is another rock, or none.
 
     Its shape is `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh`. Without
-    one it is made of the intervals of boreholes that bear its name, and goes `reach` beyond them (None: half
-    the distance of neighboring holes).
-    after: name of the surface that was the youngest when the body came; None: the youngest. property: library
-    id of its rock (0: none). void: it takes rock away and leaves nothing. rock: name of the rock mass that it
-    is in; None: all that have `after`.
+    one it is made from the intervals of boreholes with its name, and extends `reach` beyond them (None: half
+    the distance of neighboring holes). after: name of the surface that was the youngest when the body came;
+    None: the youngest. property: library id of its rock (0: none). void: it removes rock and leaves nothing.
+    rock: name of the rock mass that it is in; None: all that have `after`.
     """
 
     kind = "body"

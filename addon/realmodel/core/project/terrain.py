@@ -44,7 +44,7 @@ def _with_terrain(rock: Rock) -> Rock:
 
 def _surface(rock: Rock) -> tuple[Surface, list[Surface]]:
     """The surface of a terrain that is none yet, and those below it. The youngest surface is the terrain, if
-    nothing else says where it is."""
+    it has no other data."""
     given = rock.terrain
     if isinstance(given, Surface):
         return given, rock.surfaces

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The block at a point of a model, from the sheets of its rock masses alone, without building.
 
-For the proof of a model: it shares with the builder only on which side of a fault or body a point lies. A
+For the validation of a model: it shares with the builder only the sides of points at faults and bodies. A
 rock mass without faults is one compartment.
 """
 
@@ -192,8 +192,8 @@ def block_at(model: ModelData, points: ArrayLike, *, threads: int = 0) -> np.nda
 
     By the closed form of docs/dev/geometry.md, not by the cells: many points are fast. Heights of a surface
     are rounded as its triangles give them: a point that lies on it within a rounding may get either side.
-    threads: 0 for all that there are. Raises UsageError where points are no (N, 3) of finite numbers, and
-    for a half: ask the whole model.
+    threads: 0 for all. Raises UsageError where points are no (N, 3) of finite numbers, and for a half: ask
+    the whole model.
 
     >>> model.block_at([(3.5, 1.0, 1.0), (3.5, 1.0, 4.0), (3.5, 1.0, 9.0)])
     array([ 0,  2, -1], dtype=int32)
@@ -220,9 +220,9 @@ def checked_places(points: ArrayLike) -> np.ndarray:
 @keyword_only
 def grid(model: ModelData, shape: Sequence[int], *, threads: int = 0) -> np.ndarray:
     """(nx, ny, nz) int32 the number of the block at the center of each cell of a regular grid of the model's
-    box, as `block_at` says; -1 where there is none. The first cell is the lowest in x, y and z.
+    box, as of `block_at`; -1 where there is none. The first cell is the lowest in x, y and z.
 
-    shape: how many cells along x, y and z. threads: 0 for all that there are. Raises UsageError.
+    shape: how many cells along x, y and z. threads: 0 for all. Raises UsageError.
 
     >>> model.grid((2, 1, 3))[:, 0].tolist()
     [[0, -1, -1], [0, 1, -1]]
@@ -263,8 +263,8 @@ def history(
     bodies: Sequence[BodyOfRock] = (),
     insides: Sequence[np.ndarray] = (),
 ) -> np.ndarray:
-    """(N,) the block at points, by the events oldest first; AIR for none. Base elevation and region are not
-    looked at.
+    """(N,) the block at points, by the events oldest first; AIR for none. Base elevation and region are
+    ignored.
 
     z: (N,) of the points. heights: of each surface there (N,), NaN where it does not exist. rules, blocks: of
     each surface, as ClosedForm. insides: of each body (N,) bool.

@@ -112,7 +112,7 @@ def _areas(corners: np.ndarray, base: float) -> tuple[float, float]:
 
 _KEPT = "it is a ready mesh, or other data of it lie below them"
 _NOT_KEPT = "to keep them: observed = true"
-_OF_TERRAIN = "the terrain is not moved to them: check their heights, and those of the collars of holes"
+_OF_TERRAIN = "the terrain is not moved to them: check their elevations, and those of the collars of holes"
 
 
 def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedForm]) -> None:

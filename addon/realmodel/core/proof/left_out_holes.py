@@ -40,8 +40,8 @@ class LeftOutContact:
 @dataclass(frozen=True)
 class LeftOutHole:
     """A hole of a rock mass that was left out. length: of its logged intervals, model units; share: of it in
-    the right block, None where it has none; intervals of bodies are not looked at. contacts: where it met
-    surfaces. refused: why no surfaces can be made without it, "" where they can."""
+    the right block, None where it has none; intervals of bodies are ignored. contacts: where it met surfaces.
+    refused: why no surfaces can be made without it, "" where they can."""
 
     rock: str
     hole: str
@@ -58,8 +58,8 @@ class LeftOutHole:
 
 @dataclass(frozen=True)
 class HoleValidation:
-    """What models say of each hole without knowing it. holes: as the rock masses have them. groups: in how
-    many groups they were left out."""
+    """Cross-validation by holes: how well models without each hole predict it. holes: as the rock masses have
+    them. groups: the number of groups in which they were left out."""
 
     holes: list[LeftOutHole] = field(default_factory=list)
     groups: int = 0
@@ -85,7 +85,7 @@ class HoleValidation:
             worst = float(np.abs(errors).max())
             rmse, middle = float(np.sqrt((errors**2).mean())), float(np.median(np.abs(errors)))
             heights = (
-                f"; heights of {len(errors)} contacts: root mean square error {rmse:.4g}, median "
+                f"; elevations of {len(errors)} contacts: root mean square error {rmse:.4g}, median "
                 f"{middle:.4g}, largest {worst:.4g}"
             )
         refused = sum(bool(hole.refused) for hole in self.holes)
@@ -103,10 +103,10 @@ def cross_validate_holes(
     cancel: Cancel | None = None,
 ) -> HoleValidation:
     """Makes the surfaces of a `model` again without each hole: without its contacts, its intervals and the
-    bounds that follow, all at once. Of each hole it says which share of its length the others have in the
-    right block, and how far off they have its contacts.
+    bounds that follow, all at once. For each hole it computes the share of its length in the right block, and
+    the errors of its contacts, in models of the other holes.
 
-    folds: the number of groups in which holes are left out; None: each hole by itself, but in at most 20
+    folds: the number of groups in which holes are left out; None: each hole separately, but in at most 20
     groups. Holes that are clustered, as twins are, are left out together (places_of). Outcrops, dips and
     points that no hole met stay. Variograms are fitted anew each time, and "auto" stays what it chose.
 

@@ -17,7 +17,7 @@ from ..surfaces.observed.derived import BlockNumbers
 from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm, closed_forms
 
-PLACES = 16  # at which an interval is looked at
+PLACES = 16  # at which an interval is examined
 _OFF_GROUND = 0.1  # of an edge length
 NEAR = 1e-9  # of the range of heights: a place so near to a block lies in it, a bound so near is kept
 
@@ -86,7 +86,7 @@ def _most(owner: np.ndarray, blocks: np.ndarray, otherwise: np.ndarray) -> np.nd
 
 
 def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray) -> np.ndarray:
-    """(N,) heights at which places (N, 3) are looked at: those a little above the youngest surface on it, as
+    """(N,) heights at which places (N, 3) are examined: those a little above the youngest surface on it, as
     the ground between the nodes of the planar mesh is not just where it was seen."""
     if entry.region is None:
         return places[:, 2]
@@ -108,10 +108,9 @@ def places_along(given: Observations, ends: np.ndarray) -> np.ndarray:
 def _samples(
     observed: Observations, used: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Places at which observations are looked at (N, 3), of which observation each is (N,), the first and the
+    """Places at which observations are tested (N, 3), of which observation each is (N,), the first and the
     last row of each observation (O, 2), and (N,) bool whether a place may be seen on the ground, as it is in
-    no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its
-    rows."""
+    no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its rows."""
     follows = in_one_interval(observed, used)
     ends = np.flatnonzero(follows)
     along = places_along(observed, ends)
@@ -133,8 +132,8 @@ def _samples(
 class ObservedBlock:
     """One block of a rock mass. observations: of it, places and intervals, as far as they are used and lie
     over the region. outside: how many more lie beside it. share: of the observations that lie in the block,
-    from 0 to 1; of an interval the part that does. A place of no hole up to a tenth of an edge length
-    above the youngest surface is looked at on that. None where there are none."""
+    from 0 to 1; of an interval the part that does. A place without a hole, up to a tenth of an edge length
+    above the youngest surface, is tested on that surface. None where there are none."""
 
     rock: str
     block: str

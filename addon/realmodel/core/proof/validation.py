@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The proof of a model: the tests of docs/dev/geometry.md, as a report for its reviewer."""
+"""The validation of a model: the tests of docs/dev/geometry.md, with a report."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _SAYS = {
     "outside": (3, "faces with one cell are the outer boundary"),
     "volumes": (4, "every cell has positive volume"),
     "block volumes": (4, "the volume of each block is the sum of its cells"),
-    "places": (5, "on vertical lines the model has the blocks of the closed form, at their heights"),
+    "places": (5, "on vertical lines the model has the blocks of the closed form, at their elevations"),
     "surfaces": (5, "faces lie on the surfaces that they name"),
     "walls": (5, "each side of a wall is the block that the wall names, or the outside"),
 }
@@ -256,7 +256,7 @@ def _wrong_arrays(model: ModelData) -> list[str]:
     triangles = model.surface_triangles
     limit = np.repeat(counts, np.diff(model.surface_triangle_offsets))
     if len(limit) != len(triangles) or (triangles < 0).any() or (triangles >= limit[:, None]).any():
-        wrong.append("surface_triangles name vertices that are not there")
+        wrong.append("surface_triangles name vertices that do not exist")
     return wrong
 
 

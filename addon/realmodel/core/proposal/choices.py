@@ -12,7 +12,7 @@ from .rules import RuleChoice
 
 @dataclass
 class Proposal:
-    """Why a project is as it is.
+    """The reasons of the choices of a project.
 
     order: names of units, oldest first. alternatives: pairs of units whose order the data do not decide, and
     the other order. conflicts: units in the wrong order, by hole and depth. lenses: units that became bodies.

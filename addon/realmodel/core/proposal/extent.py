@@ -103,6 +103,6 @@ def base_below(heights: np.ndarray, width: float, is_map: bool) -> tuple[float, 
         depth, why = _DEEP * width, "a quarter of the width of the map below the lowest ground"
     else:
         depth = max(_BELOW * (highest - lowest), 1e-3 * width)
-        why = f"a tenth of the range of heights below the deepest datum, {lowest:.6g}"
+        why = f"a tenth of the range of elevations below the deepest datum, {lowest:.6g}"
     step = 10.0 ** math.floor(math.log10(depth))
     return round(math.floor((lowest - depth) / step) * step, 9), why

@@ -43,7 +43,7 @@ def save_folder(project: Project, proposal: Proposal, folder: str | Path) -> Pat
 
 
 def require_new(folder: Path) -> None:
-    """Raises OutputFailed where something stands in the place of a new folder."""
+    """Raises OutputFailed if the path of a new folder exists."""
     if folder.exists():
         raise OutputFailed(f"{folder}: it exists; choose a new folder")
 
@@ -97,7 +97,7 @@ def _project_lines(project: Project, proposal: Proposal, files: _Files) -> list[
         *([f"units = {toml_value(project.units)}"] if project.units != MODEL_UNIT else []),
         *_comment(f"The coordinate system: {proposal.reasons['crs']}"),
         *([f"crs = {toml_value(project.crs)}"] if project.crs is not None else []),
-        "# A color for each unit, by the rock that its name says",
+        "# A color for each unit, by the rock in its name",
         f'library = "{_LIBRARY}"',
         "",
         "[[rock]]",

@@ -189,7 +189,7 @@ def spacing(plan: np.ndarray) -> float:
 
 
 def _named(lenses: list[Lens], data: HoleLogs, logs: list[Log]) -> list[Lens]:
-    """Each with a name of its own: that of its unit where this is nothing else."""
+    """Each with a unique name: that of its unit where this is nothing else."""
     taken = {part.unit.casefold() for log in logs for part in log.parts}
     taken |= {unit.casefold() for unit in data.units}
     named = []

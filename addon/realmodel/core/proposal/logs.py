@@ -56,9 +56,9 @@ class Log:
 
 @dataclass
 class HoleLogs:
-    """logs: by name of the hole. boreholes: what they were read from, with the choices that were made. picks:
-    of each surface that picks name (N, 3). system: the coordinate system, as of HoleTables. is_in_its_unit:
-    whether their places are in the unit of the file. warnings: sentences.
+    """logs: by name of the hole. boreholes: their source, with the choices made. picks: of each surface that
+    picks name (N, 3). system: the coordinate system, as of HoleTables. is_in_its_unit: whether their places
+    are in the unit of the file. warnings: sentences.
     """
 
     logs: list[Log]
@@ -136,7 +136,7 @@ def _short_codes(intervals: Iterable[Row]) -> tuple[set[str], list[str]]:
         else:
             how = f"lost core in {counted(len(within), 'hole')}"
             advice = "if it is a unit, give it a surface with a block of this name"
-        warnings.append(f"'{code}' is taken for {how}; {advice}")
+        warnings.append(f"'{code}' is treated as {how}; {advice}")
     return units, warnings
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a geological map says of the ages of its units: columns of ages, dips, and heights on the ground."""
+"""The ages of the units of a geological map: columns of ages, dips, and heights on the ground."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _AGES = (  # oldest first; what a name begins with
 class MapUnits:
     """evidence: of the ages of its units. touches: (U, U) the share of the border of the unit of the row that
     is with that of the column, in the order of the evidence. box: (2, 2) corners in plan. ground: heights.
-    has_ages: whether the map says how old units are. warnings: sentences."""
+    has_ages: whether the map has the ages of units. warnings: sentences."""
 
     polygons: list[UnitPolygon]
     evidence: Evidence
@@ -93,7 +93,7 @@ def read_map_units(
     heights: Callable[[np.ndarray], np.ndarray] | None,
     units: str,
 ) -> MapUnits:
-    """The units of a map and what says which is older. heights: of the ground at places (N, 2)."""
+    """The units of a map and the evidence of their order. heights: of the ground at places (N, 2)."""
     polygons, _, warnings = read_unit_polygons(map_file, units)
     polygons = [polygon for polygon in polygons if not UnitNames().says_nothing(polygon.unit)]
     if not polygons:
@@ -194,7 +194,7 @@ def _add_dips(found: MapUnits, dips: DipFile, polygons: Sequence[UnitPolygon], u
 
 
 def _add_heights(found: MapUnits, units: np.ndarray, ground: np.ndarray) -> None:
-    """What lies higher is younger, where nothing else says more."""
+    """Higher units are younger, if there is no other evidence."""
     evidence = found.evidence
     for a in range(len(evidence.names)):
         for b in range(len(evidence.names)):

@@ -26,11 +26,11 @@ def with_methods(project: Project, holes: int) -> tuple[list[Rock], str]:
     right unit, and why."""
     rock = project.rocks[0]
     sheets = _with_sheets(rock)
-    plain = "each surface by itself, by kriging (the default method)"
+    plain = "each surface separately, by kriging (the default method)"
     if 0 < holes < _FEW:
         surfaces = [s if s.method or not s.has_points else replace(s, method="auto") for s in rock.surfaces]
         rock = replace(rock, surfaces=surfaces)
-        plain = "each surface by itself, by the method that predicts left-out points best: few are known"
+        plain = "each surface separately, by the method that predicts left-out points best (few points)"
     if not sheets.series:
         return [rock], f"{plain}: no two that follow one another are conformable"
     if not 3 <= holes <= _MOST_HOLES:

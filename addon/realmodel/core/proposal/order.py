@@ -33,7 +33,7 @@ class Evidence:
     adjacent: np.ndarray
 
     def plus(self, upper: str, lower: str, weight: float) -> None:
-        """Adds something else that says that a unit is younger than another."""
+        """Adds evidence that a unit is younger than another."""
         self.over[self.names.index(upper), self.names.index(lower)] += weight
 
 
@@ -80,9 +80,9 @@ def evidence_of(names: Sequence[str], columns: Iterable[Sequence[tuple[str, floa
 
 
 def find_order(evidence: Evidence, logs: Sequence[Log] = (), near: np.ndarray | None = None) -> UnitOrder:
-    """The order that contradicts the evidence least; where it says nothing, heights decide. near: (U, U) how
-    much of their borders on a map units share: such units are neighbors in the order, too, as far as the
-    evidence allows."""
+    """The order that contradicts the evidence least; without it, elevations decide. near: (U, U) how much of
+    their borders on a map units share: such units are neighbors in the order, too, as far as the evidence
+    allows."""
     names, over = evidence.names, evidence.over
     hints = _Hints(names, logs)
     decides = over > over.T
@@ -161,7 +161,7 @@ def _circle(weights: np.ndarray, group: list[int]) -> list[int]:
 
 
 def _exact(weights: np.ndarray) -> list[int]:
-    """The order from above with the least weight that says otherwise."""
+    """The order from the top with the least weight of contrary evidence."""
     count = len(weights)
     cost = np.full(1 << count, np.inf)
     last = np.zeros(1 << count, int)
@@ -277,11 +277,11 @@ class _Hints:
     def reasons(self, upper: int, lower: int) -> list[str]:
         names, rises = self._names, self._rises(upper, lower)
         if not len(rises):
-            return ["no heights speak for either order"]
+            return ["elevations support neither order"]
         by = float(rises.mean())
         said = []
         if abs(by) <= 1e-6 * (1.0 + np.abs(rises).max()):
-            said.append("both lie equally high: heights speak for neither")
+            said.append("both lie equally high: elevations support neither order")
         else:
             higher, other = (names[upper], names[lower]) if by > 0 else (names[lower], names[upper])
             said.append(f"'{higher}' lies {abs(by):.3g} higher than '{other}', over what nearby holes share")

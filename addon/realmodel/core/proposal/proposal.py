@@ -101,8 +101,8 @@ def propose_project(
     if data.boreholes is None and data.map is None:
         raise UsageError("propose_project needs boreholes or a map")
     if data.map is not None and data.ground is None and data.boreholes is None:
-        advice = "give the heights of the ground as well: ground = a raster, points or a mesh (--ground)"
-        raise UsageError(f"a map alone has no heights: {advice}")
+        advice = "give the elevations of the ground as well: ground = a raster, points or a mesh (--ground)"
+        raise UsageError(f"a map alone has no elevations: {advice}")
     if data.boreholes is not None:
         data.holes = read_logs(data.boreholes, units)
         data.boreholes = data.holes.boreholes
@@ -231,7 +231,7 @@ def _rules(data: _Data, out: Sorted, order: UnitOrder) -> list[RuleChoice]:
 
 
 class _Maker:
-    """Makes the project of a proposal, and says why in it."""
+    """Makes the project of a proposal, with the reasons."""
 
     def __init__(self, data: _Data, out: Sorted, proposal: Proposal, units: str):
         self._data, self._out, self._proposal, self._units = data, out, proposal, units
@@ -281,7 +281,7 @@ class _Maker:
             parts.append(data.mapped.ground)
         heights = np.concatenate(parts)
         if not len(heights):
-            raise InputRefused("no height is known", advice="give the ground, or boreholes")
+            raise InputRefused("no elevation is known", advice="give the ground, or boreholes")
         return heights[np.isfinite(heights)]
 
     def _region(self, region: Any) -> tuple[list[np.ndarray], Any]:
@@ -346,7 +346,7 @@ class _Maker:
             self._why["ground"] = "the mesh that is given"
             return {"mesh": ground}
         if ground is not None:
-            self._why["ground"] = "the heights that are given"
+            self._why["ground"] = "the elevations that are given"
             is_raster = format_of(ground.file, RASTER) is not None
             return {"points": ground, "method": "grid" if is_raster else None}
         tops = np.array([self._top(log) for log in self._data.logs])
@@ -414,8 +414,11 @@ def _warn(proposal: Proposal, data: _Data) -> None:
             f"'{conflict.lower}', against the order of all holes; it is not used"
         )
     for lens in proposal.lenses:
+        hole, part = lens.parts[0]
+        one = f"hole '{hole}', depth {part.depth:.9g} to {part.end:.9g} (or a code is wrong there)"
         found.append(
-            f"'{lens.unit}' is a lens in '{lens.host}' in {counted(len(lens.parts), 'hole')}: the body "
+            f"'{lens.unit}' is a lens in '{lens.host}' in "
+            f"{one if len(lens.parts) == 1 else counted(len(lens.parts), 'hole')}: the body "
             f"'{lens.name}'; where it ends between holes is a guess"
         )
     for repeat in proposal.repeats:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which surfaces cut older rock, and which end against it, by what each says of holes that are left out.
+"""Which surfaces cut older rock, and which end against it, by the prediction of left-out holes.
 
 Where a unit is absent between two others its rock was eroded, or it was never deposited there. The rules
 decide which surface then passes through the contact (docs/reference/project_file.md), so surfaces that are
@@ -53,7 +53,7 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
     holes = _holes(logs, order)
     gaps = _gaps(holes, len(units))
     if not any(gaps):
-        reason = "no hole lacks a unit between two others: nothing says that it cuts older rock"
+        reason = "no hole lacks a unit between two others: there is no sign that it cuts older rock"
         return [RuleChoice(unit, ENDS, reason) for unit in units[:-1]]
     share: dict[tuple[bool, ...], float] = {}
 
@@ -80,7 +80,7 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
     for number, unit in enumerate(units[:-1]):
         cuts = best[number] and bool(gaps[number])
         if not gaps[number]:
-            reason = "no hole lacks a unit beside it: nothing says that it cuts older rock"
+            reason = "no hole lacks a unit next to it: there is no sign that it cuts older rock"
         else:
             other = right((*best[:number], not best[number], *best[number + 1 :]))
             reason = _reason([units[unit] for unit in gaps[number]], cuts, right(best), other)

@@ -54,8 +54,8 @@ def read_boreholes(
     """Boreholes as a project reads them, repaired.
 
     file: of a format that holds all tables; else keys say which there are: collars, survey, intervals, picks,
-    and the other keys of Boreholes. units: of the model; file_units: of the files where they do not say it.
-    Raises InputRefused naming file and line, UsageError for an unknown unit or key.
+    and the other keys of Boreholes. units: of the model; file_units: of files that do not state one. Raises
+    InputRefused naming file and line, UsageError for an unknown unit or key.
 
     >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
     """

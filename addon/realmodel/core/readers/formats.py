@@ -68,10 +68,10 @@ class FileFormat:
 
     holds: what is in them. begins(head, size): whether a file of so many bytes that begins with these is one.
     read: the arguments follow from `holds`; it raises InputRefused, which names the file and where in it.
-    by_ending: a file whose beginning tells nothing is one, too, if its name ends so. layers(file): the
-    names among which `layer` chooses, of layers of shapes or sheets; None: a file has only one. What names
-    objects holds OBJECTS. downward_dip: of boreholes, which dips go down where
-    the format says it.
+    by_ending: a file that is not recognized by its beginning is one, too, if its name has this extension.
+    layers(file): the names among which `layer` chooses, of layers of shapes or sheets; None: a file has only
+    one. What names objects holds OBJECTS. downward_dip: of boreholes, the sign of downward dips if the format
+    defines it.
     """
 
     label: str
@@ -179,7 +179,7 @@ _NOT_READ = (
     (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
     (rb"%PDF-", "a PDF", "save its table as CSV"),
     (rb"\x1f\x8b", "compressed by gzip", "unpack it"),
-    (rb"version https://git-lfs", "a pointer of Git LFS in the place of the file", "fetch it: git lfs pull"),
+    (rb"version https://git-lfs", "a Git LFS pointer instead of the file", "fetch it: git lfs pull"),
     (rb"(?i)\s*<(?:!doctype )?html", "a page of the web", "download the file itself"),
 )
 

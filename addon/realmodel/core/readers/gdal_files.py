@@ -65,8 +65,8 @@ def begins_as_gdal_shapes(head: bytes, _size: int = 0) -> bool:
 def read_gdal_raster(
     file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
-    """The only band of a raster, at the centers of its pixels, scaled as the file says. nodata: further
-    numbers that mean no height. Raises InputRefused, and UsageError where rasterio is missing."""
+    """The only band of a raster, at the centers of its pixels, scaled by the factors of the file. nodata:
+    further numbers that mean no height. Raises InputRefused, and UsageError where rasterio is missing."""
     file = Path(file)
     rasterio = extra("rasterio", f"{file}: reading a raster of this format", "gdal")
     try:
@@ -83,7 +83,7 @@ def read_gdal_raster(
     if crs is not None and crs.is_geographic:
         warnings.append("its coordinates are degrees of longitude and latitude: project it (to UTM, say)")
     if unit:
-        text = f"its heights are in '{unit}', as it says itself"
+        text = f"its elevations are in '{unit}', as the file states"
         warnings.append(f"{text}: if that is another unit, set units = {{ z = ... }}")
     across, down = (place.a, place.d), (place.b, place.e)
     origin = (place.c + (place.a + place.b) / 2, place.f + (place.d + place.e) / 2)
@@ -93,11 +93,11 @@ def read_gdal_raster(
 def _require_one_band(file: Path, dataset: Any) -> None:
     if dataset.subdatasets:
         names = [name.rpartition(":")[2] for name in dataset.subdatasets]
-        advice = "save the one with the heights as GeoTIFF"
+        advice = "save the one with the elevations as GeoTIFF"
         raise InputRefused(f"it has several rasters: {names_shown(names)}", file=file, advice=advice)
     if dataset.count != 1:
-        advice = "save the band that holds the heights in a file of its own"
-        raise InputRefused(f"it has {dataset.count} bands; heights are one", file=file, advice=advice)
+        advice = "save the band with the elevations in a separate file"
+        raise InputRefused(f"it has {dataset.count} bands; elevations are one", file=file, advice=advice)
 
 
 def _heights(dataset: Any, nodata: Sequence[float], step: Step) -> Iterator[np.ndarray]:

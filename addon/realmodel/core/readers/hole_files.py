@@ -35,7 +35,7 @@ def _whole_files(boreholes: Boreholes) -> tuple[Boreholes, dict[str, RawTable]]:
         file_format = format_of(file, HOLES)
         if file_format is None:
             if file == boreholes.file:
-                what = "it does not hold all tables of boreholes"
+                what = "it does not contain all tables of boreholes"
                 advice = "name its tables: collars = ..., intervals = ..., picks = ..."
                 raise InputRefused(what, file=file, advice=advice)
             continue

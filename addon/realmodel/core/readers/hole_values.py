@@ -79,7 +79,7 @@ def _curves(file: Path) -> RawTable:
 
 
 def _rows_of_holes(tables: HoleTables) -> dict[str, Row]:
-    """A row of each hole, which says where it begins: of collars or, without them, of picks or intervals."""
+    """A row of each hole, with its start: of collars or, without them, of picks or intervals."""
     rows = tables.collars
     if rows is None:
         rows = [*(tables.picks or ()), *(tables.intervals or ())]
@@ -96,7 +96,7 @@ def _hole(file: Path, sheet: RawTable, holes: Mapping[str, Row]) -> str | None:
 
 
 def _named(file: Path, hole: str) -> Row:
-    """A row that says of which hole it is."""
+    """A row with the name of the hole."""
     return Row(TableHeader(file, ("hole", "from"), 1, {"hole": 0, "from": 1}), 1, [hole, ""])
 
 
@@ -110,7 +110,7 @@ def _bounds(tables: HoleTables, file: Path, sheet: RawTable, model_unit: str) ->
         advice = "write the unit of the depths into the file, such as M or FT"
         raise InputRefused(f"'{text}' is not a unit of length", file=file, line=sheet.line, advice=advice)
     if unit not in (None, of_tables):
-        tables.warnings.append(f"{file}: its depths are in {unit}, as it says: converted to {of_tables}")
+        tables.warnings.append(f"{file}: its depths are in {unit}, as stated: converted to {of_tables}")
     bounds = np.array([[float(entry) for entry in entries[1:3]] for _, entries in sheet.rows])
     return bounds * (1.0 if unit is None else factor(unit, of_tables))
 

@@ -36,8 +36,8 @@ def read_shapes(
 
 
 def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
-    """Raises InputRefused where a file says that its coordinates are degrees, and they may be: as lengths
-    they would be a few meters."""
+    """Raises InputRefused if a file states that its coordinates are degrees, and they may be: as lengths they
+    would be a few meters."""
     rings = [ring for polygon in shapes.polygons for ring in polygon.rings]
     places = [*rings, *(line for _, line in shapes.lines), *(place for _, place in shapes.points)]
     if any(
@@ -47,14 +47,14 @@ def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
         return
     if is_in_degrees(shapes.system or system_of_map(layer)):
         raise InputRefused(
-            "its coordinates are degrees of longitude and latitude, as it says itself",
+            "its coordinates are degrees of longitude and latitude, as the file states",
             file=Path(layer.file),
             advice="project it (to UTM, say) in a GIS; if they are lengths, take its coordinate system out",
         )
 
 
 def system_of_map(layer: MapLayer) -> str:
-    """What a shapefile, a GeoPackage or GeoJSON says of its coordinate system; "" where nothing."""
+    """The coordinate system of a shapefile, a GeoPackage or GeoJSON; "" where nothing."""
     file = Path(layer.file)
     if file.suffix.lower() == ".shp":
         named = (file.with_suffix(ending) for ending in (".prj", ".PRJ"))

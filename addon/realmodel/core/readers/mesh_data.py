@@ -34,7 +34,7 @@ def read_mesh(
     units: of the model. file_units: of the file, "ft", or {"xy": "m", "z": "ft"}, where the file does not
     state them or is wrong; None: what it states, or else those of the model. keys: those of MeshFile: layer,
     z_axis. Raises UsageError for an unknown unit or key, InputRefused naming the file, and the line where it
-    has lines; where a file has several surfaces and `layer` names none, with their names.
+    has lines; with the names of the surfaces if there are several and `layer` selects none.
     """
     given = reading_keys(MeshFile, file, units, file_units, keys)
     mesh = read_triangle_mesh(given)

@@ -46,7 +46,7 @@ def _array(member: IO[bytes], size: int) -> np.ndarray:
     shape, is_fortran, dtype = _HEADERS[np.lib.format.read_magic(member)](member)
     count = math.prod(shape)
     if dtype.hasobject or min(shape, default=0) < 0 or count * dtype.itemsize != size - member.tell():
-        raise ValueError("an array has another size than its header says")
+        raise ValueError("the size of an array differs from its header")
     array = np.empty(count, dtype)
     content = memoryview(array.view(np.uint8)) if array.nbytes else memoryview(b"")
     for at in range(0, len(content), _PIECE):

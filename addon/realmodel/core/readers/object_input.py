@@ -110,7 +110,7 @@ def _listed(objects: list[ObjectName]) -> str:
 
 @contextmanager
 def _opened(file: Path, file_format: FileFormat, step: Step = no_step) -> Iterator[OpenFile]:
-    """Raises InputRefused in the place of whatever a library raises for a damaged file."""
+    """Raises InputRefused instead of all errors of a library for a damaged file."""
     try:
         with file_format.read(file, step) as opened:
             yield opened
@@ -146,10 +146,10 @@ def hole_sheets(
     boreholes: Boreholes, model_unit: str
 ) -> tuple[dict[str, RawTable], dict[str, tuple[np.ndarray, np.ndarray]], list[str]]:
     """The boreholes of files of objects, or their object `layer`, as tables of collars, intervals and picks,
-    those that they have and that are asked for, in the model's unit; their lines, as of HoleTables; and
+    those that they have and that are requested, in the model's unit; their lines, as of HoleTables; and
     warnings, sentences.
 
-    Picks are points whose data name a surface; where only picks are asked for, the beginnings of intervals
+    Picks are points whose data name a surface; where only picks are requested, the beginnings of intervals
     that name one, too, where the interval above has another name. `hole` among the data names the hole, else
     the object's name does. Raises InputRefused naming the file and the object.
     """
@@ -178,7 +178,7 @@ class _HoleRows:
         self.warnings: list[str] = []
 
     def add(self, obj: GeoObject, asked: set[str]) -> None:
-        """Adds what an object says of the kinds of tables that are asked for."""
+        """Adds the data of an object for the requested kinds of tables."""
         if obj.collar is not None and np.isfinite(obj.collar).all():
             self._collars[obj.name] = obj.collar
         for values in obj.values:
@@ -280,7 +280,7 @@ def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarra
 
 
 def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
-    """The name of a column: the one that the user says, or the first that is called as usual."""
+    """The name of a column: the user's, or the first with a usual name."""
     if said is not None:
         return next((name for name in values.columns if name.lower() == str(said).strip().lower()), None)
     plain = {plain_name(name): name for name in reversed(values.columns)}

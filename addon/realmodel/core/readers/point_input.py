@@ -49,10 +49,10 @@ def read_map_points(
         with_attributes = Heights(with_attributes=True)
         rows = read_shapes(MapLayer(file, given.layer, given.where), heights=with_attributes).attributes or {}
         names = list(dict.fromkeys(str(name) for row in rows.values() for name in row))
-        what = "its positions have no height"
+        what = "its positions have no elevation"
         if given.height is not None:
-            what = f"attribute '{given.height}' has no heights"
-        advice = 'name the attribute with the height: height = "..."'
+            what = f"attribute '{given.height}' has no elevations"
+        advice = 'name the attribute with the elevation: height = "..."'
         advice += f"; it has {names_shown(names)}" if names else ""
         raise HeightsMissing(what, file=file, advice=advice)
     left_out = len(positions) - len(points)
@@ -78,7 +78,7 @@ def read_object_points(
     if given.height is not None:
         heights = _attribute(obj, given.height, file)
         if heights.dtype.kind not in "iufb":
-            raise InputRefused(f"its attribute '{given.height}' has texts, no heights", file=file, item=label)
+            raise InputRefused(f"its attribute '{given.height}' has texts", file=file, item=label)
         places[:, 2] = heights
     chosen = np.ones(len(places), bool)
     for name, wanted in given.where.items():

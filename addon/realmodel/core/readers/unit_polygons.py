@@ -19,7 +19,7 @@ from .tables.table_layout import names_shown
 
 @dataclass(frozen=True, eq=False)
 class UnitPolygon:
-    """item: its name in messages, "feature 3". unit: what its attribute says, "" for nothing. rings: (N, 2)
+    """item: its name in messages, "feature 3". unit: the value of its attribute, "" for none. rings: (N, 2)
     float64 each, open, no corner repeated in a row. has_roles: as of a Polygon."""
 
     item: str
@@ -54,7 +54,7 @@ def read_unit_polygons(
     lines = [line[:, :2] for _, line in shapes.lines]
     if lines:
         text = (
-            f"{given.file}: {counted(len(lines), 'line')} beside its polygons: taken for faults, along which"
+            f"{given.file}: {counted(len(lines), 'line')} beside its polygons: treated as faults, along which"
         )
         warnings.append(f"{text} no contact is seen; if they are something else, leave them out by 'where'")
     return unit_polygons, lines, warnings
@@ -68,7 +68,7 @@ def _corners(ring: np.ndarray) -> np.ndarray:
 
 
 def _units(shapes: Shapes, source: MapFile) -> dict[str, str]:
-    """What the attribute says of each feature, by its name in messages."""
+    """The attribute of each feature, by its name in messages."""
     if shapes.attributes is None:
         what = "well-known text has no attributes, so no unit is known"
         raise InputRefused(what, file=source.file, advice="save it as GeoJSON or a GeoPackage")

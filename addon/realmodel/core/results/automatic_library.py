@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A library for projects that have none: a property with a color of its own for the rock of each surface and
+"""A library for projects that have none: a property with its own color for the rock of each surface and
 body."""
 
 from __future__ import annotations

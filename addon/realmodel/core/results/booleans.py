@@ -216,12 +216,12 @@ def intersect(
     """Intersects two triangulated surfaces, open or closed.
 
     a, b: (vertices, triangles) each; vertices (V, 3) of finite numbers, triangles (T, 3) of whole numbers.
-    They may consist of several parts, cross themselves, touch and coincide. Inside of a closed surface is
-    where its winding number is not zero: what it covers twice is inside, once; a part that is turned inside
-    out is a hole in another part, and inside where it is by itself. threads: 0, as many as there are.
+    They may consist of several parts, cross themselves, touch and coincide. A point is inside a closed
+    surface if its winding number is not zero. A region covered twice is inside, once. A component turned
+    inside out is a hole in another component, and a solid if it is alone. threads: 0, all processors.
     progress(fraction, text), cancel() -> True to stop: called from this thread.
 
-    Decisions are exact on the coordinates as they are given, but for what is thinner than rounding
+    Decisions are exact on the given coordinates, except for features thinner than rounding
     (docs/dev/exactness.md); new vertices are rounded to doubles, and no triangles cross after that. The
     result is the same for any number of threads.
 

@@ -3,7 +3,7 @@
 
 A column of cells takes its blocks and their thickness from the exact vertical line through its center, and
 the shape of contacts from the lines along its pillars. Where a pillar does not meet the surface of a column,
-as beyond a fault, the triangle that the center meets goes on to it; there heights of neighboring columns
+as beyond a fault, the triangle that the center meets continues to it; there heights of neighboring columns
 differ, which is a step (Ponting 1989, "Corner Point Geometry in Reservoir Simulation").
 """
 
@@ -150,8 +150,8 @@ class _Contacts:
     """The faces of a model between two blocks, or a block and the outside, that lines through the centers of
     columns meet: as triangles (T, 3, 3) in columns.
 
-    below: (T,) the block under each, -1 outside. sheet: (T,) equal where triangles go on in one another: of
-    one surface in one compartment, or between the same two, seen from one side. slope: (T, 2) over a
+    below: (T,) the block under each, -1 outside. sheet: (T,) equal where triangles continue in one another:
+    of one surface in one compartment, or between the same two, seen from one side. slope: (T, 2) over a
     column. has_steps: (ny * nx,) bool, columns with walls or tips of faults, where a sheet may jump.
     """
 
@@ -274,8 +274,8 @@ class _Columns:
         frame: _Frame, contacts: _Contacts, column: np.ndarray, z: np.ndarray, triangle: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """(N, 4) the heights at pillars of contacts at heights z (N,) in the centers of columns; and (N, 4)
-        the number of what meets the pillar there. Where the sheet does not, its plane goes on to the pillar,
-        and the number is -1."""
+        the number of what meets the pillar there. Where the sheet does not, its plane continues to the
+        pillar, and the number is -1."""
         nx, ny = frame.counts
         pillars = (nx + 1) * (ny + 1)
         # the outermost pillars stand just inside of the model
@@ -307,7 +307,7 @@ class _Columns:
             rows = np.flatnonzero(is_met & contacts.has_steps[column])
             up = height[best[rows]] - near[rows]
             back = z[rows] - contacts.at(of[best[rows]], centers[rows])
-            # where two planes meet on the way, both go on to the same side of the other
+            # where two planes meet on the way, both continue to the same side of the other
             is_met[rows] = (up * back >= 0) | (np.minimum(np.abs(up), np.abs(back)) <= same)
             pillar[is_met, corner] = best[is_met]
             corners[is_met, corner] = height[best[is_met]]
@@ -316,7 +316,7 @@ class _Columns:
 
 def _leaders(column: np.ndarray, z: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """(N,) for each contact at height z (N,) the one whose shape it takes, so that none crosses another in
-    its column: of contacts that would, the flattest. So walls and faults are steps, and beds go on."""
+    its column: of contacts that would, the flattest. So walls and faults are steps, and beds continue."""
     leader, goes_on = np.arange(len(z)), column[1:] == column[:-1]
     crosses = goes_on & (corners[1:] > corners[:-1]).any(axis=1)
     has_crossing = np.zeros(int(column.max(initial=-1)) + 1, bool)
@@ -483,7 +483,7 @@ def _assembled(
 
 
 def _of_library(model: ModelData, key: str) -> np.ndarray:
-    """(B,) float64: what the library says of each block, NaN where it says nothing."""
+    """(B,) float64: the library's value of each block, NaN for none."""
     library = model.project.library
     entries = [library.get(block.property) if library else None for block in model.blocks]
     return np.array([getattr(entry, key, None) for entry in entries], np.float64)

@@ -20,8 +20,8 @@ class Displacement:
     negative at a reverse one. Heave is how far its edge is from that of the lower side in plan. Both are
     measured across the fault: in the vertical plane through the place and the direction in which the fault
     dips there. length: (N,) of the part of the cutoff line that each place is the middle of. deviation: the
-    standard deviation of the throw that contacts on both sides show together, None where each side was made
-    by itself. is_found: no where the throw is smaller than that, and the surface goes on across the fault."""
+    standard deviation of the throw that contacts on both sides show together, None if each side was made
+    separately. is_found: no if the throw is smaller than that; the surface then crosses the fault."""
 
     fault: str
     rock: str

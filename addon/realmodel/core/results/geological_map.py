@@ -92,7 +92,7 @@ class _Around:
 
 
 def _walks(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> list[list[int]]:
-    """Closed walks along the edges. Where several edges begin at a vertex a walk goes on along the one that
+    """Closed walks along the edges. Where several edges begin at a vertex a walk continues along the one that
     the same area lies to the left of: the first one clockwise from the way that it came."""
     leaving: dict[int, list[int]] = defaultdict(list)
     ends = end.tolist()

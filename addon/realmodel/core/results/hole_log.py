@@ -55,7 +55,7 @@ class HoleLog:
 
 
 def draw_hole_log(drawing: Drawing, log: HoleLog, box: tuple[float, float, float]) -> None:
-    """Draws a log on a paper of its own, whose right border is at x, from its foot up. box: (x, foot,
+    """Draws a log on a separate paper, whose right border is at x, from its foot up. box: (x, foot,
     height), in points."""
     x, foot, height = box
     low, high = log.depths()

@@ -32,8 +32,8 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class HoleAxis:
-    """Where a hole is planned. collar: (x, y, z). azimuth: degrees clockwise from north (+y). dip: degrees
-    below the horizontal, 90 straight down. length: from the collar, model units. Raises UsageError."""
+    """A planned hole. collar: (x, y, z). azimuth: degrees clockwise from north (+y). dip: degrees below the
+    horizontal, 90 straight down. length: from the collar, model units. Raises UsageError."""
 
     collar: tuple[float, float, float]
     azimuth: float = 0.0
@@ -54,13 +54,13 @@ class HoleAxis:
 
     @property
     def heading(self) -> np.ndarray:
-        """(2,) of length 1: where it goes in plan."""
+        """(2,) of length 1: its direction in plan."""
         turn = np.radians(self.azimuth % 360.0)
         return np.array([float(sin(turn)), float(cos(turn))])
 
     @property
     def direction(self) -> np.ndarray:
-        """(3,) of length 1: where it goes."""
+        """(3,) of length 1: its direction."""
         if abs(self.dip) == 90.0:
             return np.array([0.0, 0.0, -np.sign(self.dip)])
         tilt = np.radians(self.dip)
@@ -77,8 +77,8 @@ class HoleAxis:
 
 @dataclass(frozen=True)
 class HoleInterval:
-    """A stretch of a planned hole in one `block` (its number), from the depth `begin` along the hole to
-    `end`. probability: that this block is there, on average along it; None where no ensemble was asked."""
+    """An interval of a planned hole in one `block` (its number), from the depth `begin` along the hole to
+    `end`. probability: of this block, on average along it; None without an ensemble."""
 
     block: int
     begin: float
@@ -93,11 +93,11 @@ class HoleInterval:
 
 @dataclass(frozen=True)
 class HoleContact:
-    """Where a planned hole goes from the block `above` into the block `below`, -1 outside of the model.
-    surface: the surface, fault or body that the contact lies on, "" for the base and walls. deviation: the
-    standard deviation of its depth along the hole: of the realizations that have this contact, and `share` is
-    how many of them do, from 0 to 1; without an ensemble (share None) as the variance of the interpolated
-    height gives it, None where that is not known."""
+    """The contact of two blocks in a planned hole: from the block `above` into the block `below`, -1 outside
+    the model. surface: the surface, fault or body that the contact lies on, "" for the base and walls.
+    deviation: the standard deviation of its depth along the hole: of the realizations that have this contact,
+    and `share` is how many of them do, from 0 to 1; without an ensemble (share None) as the variance of the
+    interpolated height gives it, None where that is not known."""
 
     depth: float
     above: int
@@ -112,9 +112,9 @@ class PlannedHoleData:
     """What a planned hole meets.
 
     axis: where it goes. intervals, contacts: along it, from the collar. block_names, properties: (B,) of the
-    model's blocks. depths (N,), probability (N, B) float64: of each block at depths along the hole, as an
-    ensemble says; None without one. unit: of lengths. remarks: sentences that say why contacts with a surface
-    have no standard deviation.
+    model's blocks. depths (N,), probability (N, B) float64: of each block at depths along the hole, from an
+    ensemble; None without one. unit: of lengths. remarks: sentences that say why contacts with a surface have
+    no standard deviation.
     """
 
     axis: HoleAxis

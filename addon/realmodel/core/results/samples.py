@@ -80,13 +80,13 @@ class Probabilities:
 
     def entropy(self) -> np.ndarray:
         """(N,) float64, bits: how uncertain the block at each place is; 0 where all realizations agree.
-        Outside of all blocks counts as one more (Shannon 1948; Wellmann and Regenauer-Lieb 2012)."""
+        The outside counts as one more block (Shannon 1948; Wellmann and Regenauer-Lieb 2012)."""
         every = np.column_stack([self.probability, self._outside])
         shares = np.where(every > 0, every, 1.0)
         return np.abs((shares * np.log2(shares)).sum(axis=1))
 
     def likeliest(self) -> np.ndarray:
-        """(N,) the number of the most probable block; -1 where there is rather none."""
+        """(N,) the number of the most probable block; -1 where the outside is most probable."""
         return np.column_stack([self._outside, self.probability]).argmax(axis=1) - 1
 
     def colors(self, block_colors: np.ndarray) -> np.ndarray:
@@ -233,7 +233,7 @@ class PlanGrids:
     NaN where there is none. thickness, upper: (B, ny, nx), of each block its thickness (all its parts over
     the
     place), 0 where it is not, and the height of its top, NaN where it is not. true_thickness: (B, ny, nx),
-    how far the top of each block is from its base, which goes on beyond its border with the slopes that it
+    how far the top of each block is from its base, which continues beyond its border with the slopes that it
     has there; 0 where the block is not. deviation: name and (ny, nx) of each surface whose heights have a
     known variance, their standard deviation, NaN where there is none.
     """

@@ -27,10 +27,10 @@ _OF_VARIANCES = RANGE_BEYOND, NO_DEVIATION
 
 @dataclass(frozen=True, eq=False)
 class SurfaceQuality:
-    """variogram: that its heights were estimated with, or None. cross_validation: None where there is none,
-    then `missing` says why. angles: (T,) the smallest angles of its triangles in plan, degrees.
-    mean_deviation, most_deviation: of the standard deviation of its heights over its area, model units; None
-    where the method gives none. remarks: warnings about the fit that concern its variances alone."""
+    """variogram: that its heights were estimated with, or None. cross_validation: None if there is none, for
+    the reason `missing`. angles: (T,) the smallest angles of its triangles in plan, degrees. mean_deviation,
+    most_deviation: of the standard deviation of its heights over its area, model units; None where the method
+    gives none. remarks: warnings about the fit that concern its variances alone."""
 
     variogram: Variogram | None
     cross_validation: CrossValidation | None
@@ -86,7 +86,7 @@ def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossV
         if option.kind == "surface" and settings.get(name) is not None
     ]
     if others:
-        return None, f"its heights follow another surface ({others[0]})"
+        return None, f"its elevations follow another surface ({others[0]})"
     points = data.points
     if len(points) < 2 or len(distinct_points(points)) < 2:
         return None, "it takes two points or more"

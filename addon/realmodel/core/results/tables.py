@@ -64,7 +64,7 @@ def block_entry(model: WithBlocks, number: int, total: float) -> dict:
 def block_table(model: WithBlocks) -> pandas.DataFrame:
     """The blocks, a row for each, from the oldest of each rock mass: `name`, `rock`, `surface` (that it was
     deposited beneath), `property` (library id, 0: none), `property_name`, `volume` (model units cubed),
-    `share` of the volume of all blocks (from 0 to 1), `cells`, `components` (connected parts). The index
+    `share` of the volume of all blocks (from 0 to 1), `cells`, `components` (connected components). The index
     `block` is the number that cell_block and sections have.
 
     Raises UsageError where pandas is missing.

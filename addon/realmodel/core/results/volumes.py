@@ -26,8 +26,8 @@ class Erosion(ShortRepr):
     """Eroded volumes, model units cubed.
 
     volume: (S, B) float64, what surface k (global index) removed of block j: the volume of the block just
-    before the surface came, less that just after. remaining: (B,) what is left, the model's own volumes.
-    taken: (N, B) float64, what body n (from 0) took of block j when it came; this is no erosion.
+    before the surface came, minus the volume just after. remaining: (B,) the present volumes of the model.
+    taken: (N, B) float64, the volume of block j that body n (from 0) replaced; this is no erosion.
     """
 
     volume: np.ndarray
@@ -46,7 +46,7 @@ class Erosion(ShortRepr):
 
     @property
     def deposited(self) -> np.ndarray:
-        """(B,) the deposited volume of each block: the remaining volume, and all that was eroded or taken
+        """(B,) the deposited volume of each block: the remaining volume, and all volumes eroded or taken
         since."""
         return self.remaining + self.by_block + self.taken.sum(axis=0)
 
@@ -228,8 +228,8 @@ def volume_deviations(model: ModelData) -> np.ndarray:
 
 
 def without_deviation(model: ModelData) -> np.ndarray:
-    """(B,) bool: the blocks that a surface bounds whose data show no variogram, so that nothing says how much
-    their volumes vary."""
+    """(B,) bool: the blocks that a surface bounds whose data show no variogram, so that the variation of
+    their volumes is not known."""
     missing = missing_deviations(model)
     lacking = [number for number, name in enumerate(model.surface_names) if name in missing]
     sides = model.face_blocks[np.isin(model.face_surface, lacking)]

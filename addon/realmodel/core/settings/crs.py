@@ -40,7 +40,7 @@ def epsg_code(crs: str | None) -> int | None:
 
 def projected_code(system: str) -> str | None:
     """What a project writes for a system that a file names by a code or as well-known text: "EPSG:25832".
-    None where that has no number of EPSG's, is in degrees, or has heights of its own."""
+    None where that has no number of EPSG's, is in degrees, or has its own heights."""
     code = _NAMED.search(system.strip())
     if code is None or is_in_degrees(system) or system.lstrip().upper().startswith("COMP"):
         return None

@@ -342,32 +342,29 @@ def _checked_sense(key: str, sense: Any) -> Any:
 class Boreholes:
     """Boreholes, tables or objects of a file, which give points and bounds for all surfaces of a rock mass.
 
-    picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the
-    collar (along the hole), or its elevation. intervals: a table with a row for each logged interval:
-    hole, from, to (along the hole) and block. One of the two, or both. collars: a table with a row for
-    each hole: hole, x, y, z, azimuth and dip or inclination where it is straight but not vertical, and the
-    depth of its end, which is only shown;
-    None where the rows of picks and intervals have x, y and z themselves. survey: a table with a row for
-    each place where the direction of a hole was measured: hole, depth along it, azimuth in degrees
-    clockwise from north (+y), and either the inclination in degrees from the vertical or the dip from the
-    horizontal; None: holes go as the collars say, or straight down. use: an optional column of picks and
-    intervals, 0 where a row is switched off. downward_dip: "negative" or
-    "positive", which dips go down; None: all of a table go the same way, down. columns: {"hole": "BHID",
-    ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them;
-    False: none is read.
-    separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}
-    (depths are in the unit of z); None: those of the model.
-    Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
-    of its boreholes), and columns names its data `surface`, `block` and `hole`; `collars`, `survey`,
-    `separator`, `decimal`, `downward_dip` and `logs` are for tables. file: a file that holds all tables at
-    once, as AGS, DIGGS, Petrel well tops and LAS, those given beside it count in their place; or one of
-    objects. tolerance: up to which gaps and overlaps of intervals
-    are closed at their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a
-    tenth of the thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that
-    are used as they are written, whatever seems wrong with them. left_out: rows that are not used.
-    logs: LAS files of logs along the holes, a file or a list of them, each of the hole that is called as its
-    well; their curves are shown, and their depths are in the unit that the file states. With collars and
-    without picks and intervals they are shown alone.
+    picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the collar
+    (along the hole), or its elevation. intervals: a table with a row for each logged interval: hole, from, to
+    (along the hole) and block. One of the two, or both. collars: a table with a row for each hole: hole, x,
+    y, z, azimuth and dip or inclination where it is straight but not vertical, and the depth of its end,
+    which is only shown; None where the rows of picks and intervals have x, y and z themselves. survey: a
+    table with a row for each place where the direction of a hole was measured: hole, depth along it, azimuth
+    in degrees clockwise from north (+y), and either the inclination in degrees from the vertical or the dip
+    from the horizontal; None: holes go as the collars say, or straight down. use: an optional column of picks
+    and intervals, 0 where a row is switched off. downward_dip: "negative" or "positive", which dips go down;
+    None: all of a table go the same way, down. columns: {"hole": "BHID", ...}, names or numbers from 1 of
+    columns that are called otherwise, in whichever tables have them; False: none is read. separator, decimal:
+    as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"} (depths are in the unit
+    of z); None: those of the model. Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its
+    object with the boreholes (None: all of its boreholes), and columns names its data `surface`, `block` and
+    `hole`; `collars`, `survey`, `separator`, `decimal`, `downward_dip` and `logs` are for tables. file: a
+    file that holds all tables at once, as AGS, DIGGS, Petrel well tops and LAS, those given beside it count
+    in their place; or one of objects. tolerance: up to which gaps and overlaps of intervals are closed at
+    their middle, in the unit of depths; None: a thousandth of the depth of the hole, at most a tenth of the
+    thinner interval; 0: none are. unrepaired: rows, as "collars.csv:17" for its line 17, that are used
+    unchanged, without repair. left_out: rows that are not used. logs: LAS files of logs along the holes, a
+    file or a list of them, each of the hole that is called as its well; their curves are shown, and their
+    depths are in the unit that the file states. With collars and without picks and intervals they are shown
+    alone.
     """
 
     picks: str | Path | None = described(FILE)

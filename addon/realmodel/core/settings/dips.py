@@ -49,9 +49,9 @@ DIPS = Setting(kind="table_file", of=DipFile, example='"dips.csv"')
 @dataclass(frozen=True, eq=False)
 class SpaceDips:
     """Dips in space, at any angle. positions: (D, 3) float64. normals: (D, 3) float64 of the bedding, of any
-    length, toward younger rock. used: (D,) bool, False where one is switched off, which says nothing then;
-    None: all are used. rows: (D,) the numbers of their rows in the table or the arrays that they come from;
-    None: they are in its order."""
+    length, toward younger rock. used: (D,) bool, False where one is switched off and not used; None: all are
+    used. rows: (D,) the numbers of their rows in the table or the arrays that they come from; None: they are
+    in its order."""
 
     positions: np.ndarray
     normals: np.ndarray
@@ -70,7 +70,7 @@ class SpaceDips:
         """The same as slopes of sheets. Raises InputRefused where one is vertical or overturned."""
         steep = np.flatnonzero(~(self.normals[:, 2] > 0) & self.in_use)
         if len(steep):
-            what = f"dip {steep[0]} is vertical or overturned, and a sheet has one height at each position"
+            what = f"dip {steep[0]} is vertical or overturned, and a sheet has one elevation at each position"
             raise InputRefused(what, item="dips", advice='leave it out, or use a series with kind = "field"')
         upward = self.normals[:, 2] > 0
         places, normals = self.positions[upward], self.normals[upward]
@@ -92,7 +92,7 @@ class SpaceDips:
     def from_angles(
         cls, positions: ArrayLike, dip: ArrayLike, dip_direction: ArrayLike, overturned: ArrayLike = False
     ) -> SpaceDips:
-        """Dips as they are measured. positions: (D, 3), model units. dip: (D,) degrees below the horizontal,
+        """Dips from measured angles. positions: (D, 3), model units. dip: (D,) degrees below the horizontal,
         beyond 90 overturned. dip_direction: (D,) degrees clockwise from north (+y). overturned: (D,) bool.
         One number counts for all."""
         places = np.asarray(positions, np.float64)
@@ -125,9 +125,9 @@ class SpaceDips:
 @dataclass(frozen=True, eq=False)
 class Dips:
     """Dips of a surface. positions: (D, 2) float64 x, y. gradients: (D, 2) float64, its slope along x and
-    along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
-    says on which side of a fault a dip is, and in which block one is that names none. used: (D,) bool, False
-    where one is switched off, which says nothing then; None: all are used.
+    along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: an elevation
+    only determines the side of a fault, and the block of a dip without a name. used: (D,) bool, False where
+    one is switched off and not used; None: all are used.
 
     Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None.
     blocks: (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or
@@ -169,7 +169,7 @@ class Dips:
     def from_angles(
         cls, positions: ArrayLike, dip: ArrayLike, dip_direction: ArrayLike, **columns: Any
     ) -> Dips:
-        """Dips as they are measured. positions: (D, 2) x, y or (D, 3) x, y, z, model units. dip: (D,) degrees
+        """Dips from measured angles. positions: (D, 2) x, y or (D, 3) x, y, z, model units. dip: (D,) degrees
         below the horizontal, less than 90. dip_direction: (D,) degrees clockwise from north (+y). One number
         counts for all. columns: surfaces, blocks or used. Raises InputRefused where one is vertical.
 
@@ -182,7 +182,7 @@ class Dips:
         steep = np.flatnonzero(~((dips >= 0) & (dips < 90)))
         if len(steep):
             raise InputRefused(
-                f"dip {steep[0]} is {dips[steep[0]]:g} degrees, and a sheet has one height at each position",
+                f"dip {steep[0]} is {dips[steep[0]]:g} degrees; a sheet has one elevation at each position",
                 item="dips",
                 advice="use SpaceDips in a series whose kind is field",
             )

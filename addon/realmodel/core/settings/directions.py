@@ -57,8 +57,7 @@ def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
 
 def normal_of(dip: float, dip_direction: float, is_overturned: bool = False) -> np.ndarray:
     """(3,) the normal, toward younger rock, of bedding that dips so many degrees, up to 180, in a direction
-    in degrees clockwise from north (+y). Beyond 90 degrees it is overturned by itself, whether or not
-    `is_overturned` says so, too."""
+    in degrees clockwise from north (+y). Beyond 90 degrees it is overturned in any case."""
     angle = math.radians(dip)
     down = np.zeros(2) if dip in (0, 180) else sin(angle) * unit_vector(dip_direction)
     upright = np.array([*down, cos(angle)])

@@ -105,7 +105,7 @@ def surface(option: str, value: Any) -> Any:
     (vertices (V, 3), triangles (T, 3))."""
     if value is None:
         raise OptionRefused(
-            f"'{option}' is missing", option=option, advice="name another surface, or a height"
+            f"'{option}' is missing", option=option, advice="name another surface, or an elevation"
         )
     if isinstance(value, str):
         return value
@@ -126,7 +126,7 @@ def surface(option: str, value: Any) -> Any:
         try:
             return np.asarray(value, np.float64)
         except (TypeError, ValueError) as error:
-            raise OptionRefused(f"'{option}' is not an array of heights", option=option) from error
+            raise OptionRefused(f"'{option}' is not an array of elevations", option=option) from error
     return number(option, Setting(), value)
 
 

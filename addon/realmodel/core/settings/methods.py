@@ -240,7 +240,7 @@ METHODS: dict[str, Method] = {
         leaves_one_out=True,
         is_local=True,
         is_constrained=True,
-        tamed_by='its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
+        tamed_by='its drift continues beyond them: use a simpler one, or extrapolate = "nearest"',
     ),
     "idw": Method(
         "Inverse Distance",

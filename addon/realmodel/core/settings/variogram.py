@@ -180,7 +180,7 @@ class Variogram:
 
 
 def _longest(structures: Sequence[Structure]) -> float:
-    """The longest range, of waves where there is nothing else: they go on far beyond what one shows."""
+    """The longest range, of waves where there is nothing else: they continue far beyond what one shows."""
     return max([part.range for part in structures if part.model != "wave"] or [structures[0].range])
 
 
@@ -193,7 +193,7 @@ def missing_data(variogram: Variogram, points: int, dips: int, terms: int) -> st
         counts = counted(points, "point") + (f" and {counted(dips, 'dip')}" if dips else "")
         missing = f"a variogram takes {least} points or more (a dip counts as two), and the data are {counts}"
     elif not dips and not variogram.experimental()[1].any():
-        missing = "near points have equal heights, so they show no variogram"
+        missing = "near points have equal elevations, so they show no variogram"
     else:
         return None
     return f"{NO_DEVIATION}: {missing}; measure more, or set a variogram by hand"
@@ -215,8 +215,8 @@ def fit_warnings(
     if pairs < _FEW_PAIRS and not has_dips:
         number = f"only {counted(pairs, 'pair')}" if pairs else "no pair"
         warnings.append(
-            f"the variogram is fitted to {number} of points, so heights far from them, and how certain "
-            "they are, say little; set one by hand, or use the method 'plane' or 'tin'"
+            f"the variogram is fitted to {number} of points, so elevations far from them, and their "
+            "standard deviations, are unreliable; set one by hand, or use the method 'plane' or 'tin'"
         )
     elif pairs >= _FEW_PAIRS and variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:
         warnings.append(
@@ -228,6 +228,6 @@ def fit_warnings(
         warnings.append(
             f"{RANGE_BEYOND}, {number_text(variogram.range)}, far exceeds the extent of "
             f"the points, {number_text(extent)}: its sill, and variances far from points, are extrapolated; "
-            "the heights may follow a trend: try universal kriging"
+            "the elevations may follow a trend: try universal kriging"
         )
     return warnings

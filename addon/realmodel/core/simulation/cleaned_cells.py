@@ -17,13 +17,13 @@ from .volume_mesh import PolyhedralMesh, changed_volumes, model_arrays
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CleanedCells(PolyhedralMesh):
-    """Polyhedra, and what was changed to get them from the exact cells.
+    """Polyhedra, and the changes from the exact cells.
 
-    tolerance, largest_move: model units; of all vertices, how far one was moved at most. removed: how many
-    "edges", "faces", "cells" are gone; left: how many "short_edges" and "thin_cells" had to stay. volumes,
-    exact_volumes: (B,) float64, of the blocks after and before, model units cubed. warnings: blocks whose
-    volume changed by more than a tenth. block_names, block_property (ids of the library, 0: none),
-    surface_names, surface_kind: as of the model, whose numbers blocks and surfaces keep.
+    tolerance, largest_move: model units; the largest move of a vertex. removed: how many "edges", "faces",
+    "cells" are gone; left: how many "short_edges" and "thin_cells" had to stay. volumes, exact_volumes: (B,)
+    float64, of the blocks after and before, model units cubed. warnings: blocks whose volume changed by more
+    than a tenth. block_names, block_property (ids of the library, 0: none), surface_names, surface_kind: as
+    of the model, whose numbers blocks and surfaces keep.
     """
 
     tolerance: float = 0.0

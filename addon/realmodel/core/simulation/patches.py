@@ -67,7 +67,7 @@ def solver_names_of(names: Iterable[str]) -> list[str]:
 
 
 def solver_names(names: Iterable[str], longest: int = 64) -> list[str]:
-    """Names of ASCII letters, digits and _ that begin with a letter, all different whatever the case."""
+    """Names of ASCII letters, digits and _ that begin with a letter, all different regardless of case."""
     identifiers: list[str] = []
     taken: set[str] = set()
     for name in names:

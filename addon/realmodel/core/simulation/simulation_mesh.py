@@ -139,13 +139,12 @@ def simulation_mesh(
     tetrahedra there. So every element has a positive volume, and elements share whole faces, also between
     blocks and rock masses.
 
-    layers: how many each block is divided into: one number, one for each block, or {block name: number}
-    (1 where none is given). layer_thickness: instead into layers no thicker than this; `layers` then bounds
+    layers: how many each block is divided into: one number, one for each block, or {block name: number} (1
+    where none is given). layer_thickness: instead into layers no thicker than this; `layers` then bounds
     their number. Where neither is given a block is one layer, or more where it is so thick that solvers could
-    not use its elements at a steep top or base; a warning says how many. elements: "prisms", or
-    "tetrahedra": the same mesh with every element divided.
-    size: where edges are shorter, as of mesh_region; "outline" and "constraints" mean all lines.
-    mesher: of the planar mesh.
+    not use its elements at a steep top or base; a warning has their number. elements: "prisms", or
+    "tetrahedra": the same mesh with every element divided. size: where edges are shorter, as of mesh_region;
+    "outline" and "constraints" mean all lines. mesher: of the planar mesh.
 
     Models that have no columns (with bodies, with faults that are not vertical, halves of cuts) are filled
     with tetrahedra of about edge_length, and layers, layer_thickness and mesher mean nothing there. All lines

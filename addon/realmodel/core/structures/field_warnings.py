@@ -34,8 +34,8 @@ def warn_of_lacks(entry: RockInput, series: Series, lacks: list[str], compartmen
 
 
 def warn_of_direction(entry: RockInput, series: Series, compartments: list[str]) -> None:
-    """Adds the warning that compartments, by their names, have no dips, which alone say in which direction
-    rock of one surface gets younger."""
+    """Adds the warning that compartments, by their names, have no dips, which alone show the direction to
+    younger rock for one surface."""
     what = "compartment" if len(compartments) == 1 else "compartments"
     text = (
         f"{series.item}: {what} {number_list(compartments, _LISTED)} without dips: those of the others say "

@@ -26,8 +26,8 @@ class SeriesData:
     """entry: of its rock mass; numbers: of its surfaces there. contacts: (C, 3) with the number (C,) of the
     surface in the series that each is on, and its row (C,) among the points of that. dips, normals: (D, 3),
     with rows (D,). bounds: (B, 3) places, each with the number (B,) in the series of the surface whose level
-    f is at most there, or else at least, as is_lower (B,) bool says, and with its row (B,) among the bounds
-    of that surface."""
+    f is at most there, or else at least, by is_lower (B,) bool, and with its row (B,) among the bounds of
+    that surface."""
 
     entry: RockInput
     numbers: list[int]
@@ -163,7 +163,7 @@ class SeriesData:
         )
 
     def _statement_text(self, kind: str, row: int) -> str:
-        """What a datum says, by its kind and row."""
+        """The text of a datum, by its kind and row."""
         if kind == "bound":
             return self.bound_text(row)
         if kind == "dip":
@@ -173,7 +173,7 @@ class SeriesData:
         return f"{text}: on '{self.entry.rock.surfaces[number].name}'"
 
     def bound_text(self, row: int) -> str:
-        """What a bound says."""
+        """The text of a bound."""
         name = self.entry.rock.surfaces[self.numbers[self.bound_surfaces[row]]].name
         side = "older" if self.is_lower[row] else "younger"
         block = self._block_of(row)

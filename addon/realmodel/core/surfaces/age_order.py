@@ -116,7 +116,7 @@ def _in_holes(names: Sequence[str], holes: Any) -> np.ndarray:
 
 
 def _without_common_slope(points: list[np.ndarray]) -> list[np.ndarray]:
-    """The points less the slope in x and y that fits all surfaces best, each at a height of its own."""
+    """The points less the slope in x and y that fits all surfaces best, each at its own height."""
     x, y, z = np.concatenate([xyz - xyz.mean(axis=0) for xyz in points]).T
     extra = _LEAST_SPREAD * (dot(x, x) + dot(y, y))
     xx, yy, xy = dot(x, x) + extra, dot(y, y) + extra, dot(x, y)

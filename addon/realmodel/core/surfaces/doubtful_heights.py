@@ -23,10 +23,10 @@ from ..settings.rules import RULES, Rule
 from .rock_input import RockInput
 from .wrong_sides import heights_at
 
-_MOST = 20_000  # points or nodes at most at which other surfaces are looked at
+_MOST = 20_000  # points or nodes at most at which other surfaces are examined
 _NOTABLE = 0.25  # of the distance to the neighbors: an outlier below it is not reported
 _BEYOND_NORMAL = 1.5  # times the largest of so many normally distributed residuals, and more, is an outlier
-_DEVIATIONS = 3.0  # of the error of the heights of points, which let expect a residual
+_DEVIATIONS = 3.0  # of the error of the heights of points, which predict a residual
 _LEAST_SHARE = 0.01  # of the area: less is neither reported, nor taken as known from the points
 
 
@@ -63,7 +63,7 @@ def _missed(
     """The warning about the point that a surface misses by most, a tied one before it was. are_all: the
     points are all that it has, and have the numbers that users know.
 
-    It is given where the residual, less what the mesh does not show and what errors of heights let expect, is
+    It is given where the residual, less what the mesh does not show and what errors of heights predict, is
     larger than the median distance to the surfaces before and after it; or larger than a quarter of this, if
     it is an outlier: larger than any that as many normally distributed residuals with the deviation of the
     other ones would have.

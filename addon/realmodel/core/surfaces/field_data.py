@@ -30,7 +30,7 @@ _LISTED = 12  # observations that a warning names; the report has all
 
 @dataclass
 class FieldData:
-    """Of one rock mass. rock: with arrays in the place of boreholes and observations. picks: of its
+    """Of one rock mass. rock: with arrays instead of boreholes and observations. picks: of its
     boreholes. surfaces: each as it was before it is read, with the picks to be added to it, or None.
     unnamed: names of picks that no
     surface from points has. left_out: rows of tables that are not used. map_warnings: sentences. ground: the
@@ -136,8 +136,8 @@ def _on_the_ground_alone(
         return []
     names = number_list([f"'{name}'" for name in shown])
     return [
-        f"only outcrops or a map say where {names} {'is' if len(shown) == 1 else 'are'}, and nothing says "
-        "what is below the ground, so blocks may be no more than a skin: add dips, boreholes or points"
+        f"only outcrops or a map say where {names} {'is' if len(shown) == 1 else 'are'}, and no data "
+        "show what is below the ground, so blocks may be very thin: add dips, boreholes or points"
     ]
 
 
@@ -214,7 +214,7 @@ def apply_observations(
     work: Work, entry: RockInput, situation: PlaceContext, given: tuple[Observations, np.ndarray]
 ) -> None:
     """Gives the surfaces of a RockInput that is read the contacts and bounds that follow from its
-    observations, in the place of those that they have. situation: where these lie, but for where surfaces
+    observations, instead of those that they have. situation: where these lie, but for where surfaces
     reach. given: as of observed_on_mesh."""
     observations, is_own = given
     situation = replace(situation, covered=_covered(work, entry, observations.places))

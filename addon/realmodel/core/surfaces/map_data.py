@@ -52,7 +52,7 @@ def _ground_shape(rock: Rock) -> dict | None:
 
 @dataclass(frozen=True, eq=False)
 class MapOnGround:
-    """A map as it is read. polygons: in plan. frame: where it counts, and the ground. warnings: sentences."""
+    """A map after reading. polygons: in plan. frame: where it counts, and the ground. warnings: sentences."""
 
     polygons: list[UnitPolygon]
     frame: MapFrame
@@ -161,7 +161,7 @@ def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_
         return np.full(len(plan), float(level))
     if surface.has_points and surface.points is None:
         what = f"the ground of the map is not known: surface '{surface.name}' has no points or mesh"
-        raise rock.refused(what, "map", 'give its heights: ground = "dem.tif"')
+        raise rock.refused(what, "map", 'give its elevations: ground = "dem.tif"')
     read = SurfaceInput.of(rock, surface, units).read(no_step)
     if read.shape is not None:
         return native_module().surface_heights(*read.shape.arrays, np.ascontiguousarray(plan))
@@ -172,7 +172,7 @@ def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_
 @dataclass(frozen=True, eq=False)
 class DrapedMap:
     """vertices: (V, 3) float64, model units. triangles: (T, 3) int32, counter-clockwise from above. unit:
-    (T,) int32, of `names`: the block that a triangle shows or, where there is none, what the map says.
+    (T,) int32, of `names`: the block that a triangle shows or, where there is none, that of the map.
     warnings: sentences about polygons that are not shown."""
 
     vertices: np.ndarray

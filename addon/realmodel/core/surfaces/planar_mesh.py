@@ -52,7 +52,7 @@ class MeshOptions:
     points: ArrayLike | None = None
 
     def request(self) -> dict:
-        """What the native mesher is asked for. Raises InputRefused and UsageError."""
+        """The request to the native mesher. Raises InputRefused and UsageError."""
         lines = [places_of(line, f"constraint {number}") for number, line in enumerate(self.constraints)]
         fixed_points = self.constraint_points
         fixed_points = None if fixed_points is None else places_of(fixed_points, "constraint_points")

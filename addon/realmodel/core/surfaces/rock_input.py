@@ -27,7 +27,7 @@ from .rock_structure import RockFaults, RockStructure
 class RockInput:
     """A rock mass, read and interpolated.
 
-    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its triangulation in
+    rock: as given, with arrays instead of files. surfaces: oldest first. region: its triangulation in
     plan, or None. interpolations: the result for each surface, None for ready meshes. file_faces: for each
     surface None, or the face of its file that each triangle belongs to. attributes: of the vertices of each
     interpolated surface, by its number (`variance`, `distance`). warnings: of reading and interpolating.

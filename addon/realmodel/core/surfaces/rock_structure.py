@@ -88,8 +88,8 @@ def fault_sides(work: Work, points: np.ndarray, shape: FaultShape) -> np.ndarray
 def sides_of(
     work: Work, points: np.ndarray, faults: RockFaults, asked: list[int] | None = None
 ) -> np.ndarray:
-    """(N, F) int8 sides of all faults; 0 where a branch is not there. asked: only these are looked at, those
-    at which they end among them; points count as above the others."""
+    """(N, F) int8 sides of all faults; 0 where a branch is not there. asked: only these are used, those at
+    which they end among them; points count as above the others."""
     sides = np.ones((len(points), len(faults)), np.int8)
     for fault in range(len(faults)) if asked is None else asked:
         sides[:, fault] = fault_sides(work, points, faults.shapes[fault])

@@ -22,7 +22,7 @@ class Places:
 
     def shared_with(self, other: Places, most: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The numbers of the points of this surface and of the other one that share a position, (N,) each.
-        most: how many positions are looked at; None: all."""
+        most: the number of tested positions; None: all."""
         if len(self._at) > len(other._at):
             return other.shared_with(self, most)[::-1]
         step = 1 if most is None else -(-len(self._at) // most)

@@ -56,7 +56,7 @@ def needed_surfaces(rock: Rock, number: int) -> list[int]:
 
 
 def counts_by_node(rock: Rock, number: int, surface: Surface, data: SurfaceData) -> bool:
-    """Whether heights of a surface, in the place of one of a rock mass, follow at each node from points near
+    """Whether heights of a surface, instead of one of a rock mass, follow at each node from points near
     it alone, without other surfaces and nodes."""
     method, settings = surface.method_options()
     is_tied = surface.tie and (len(data.bounds) > 0 or len(data.tied_points(surface)) > 0)
@@ -223,8 +223,8 @@ def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Shee
 
 def no_triangle_known() -> InputRefused:
     return InputRefused(
-        "no triangle of the region's mesh has heights at all its nodes",
-        advice='extrapolate = "method" or "nearest" gives heights beyond the points',
+        "no triangle of the region's mesh has elevations at all its nodes",
+        advice='extrapolate = "method" or "nearest" gives elevations beyond the points',
     )
 
 

@@ -30,9 +30,9 @@ from .rock_input import RockInput
 
 @dataclass(frozen=True)
 class ReadSurface:
-    """surface: with arrays in the place of files. data: what it says itself, and picks do. shape: the
-    triangulation of a ready mesh, else None. faces: (T,) the face of its file that each triangle belongs to,
-    None where these are equal. warnings: sentences."""
+    """surface: with arrays instead of files. data: its own data, and picks. shape: the triangulation of a
+    ready mesh, else None. faces: (T,) the face of its file that each triangle belongs to, None where these
+    are equal. warnings: sentences."""
 
     surface: Surface
     data: SurfaceData

@@ -56,7 +56,7 @@ class PlacesOnSheet:
 
 def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list[BuildWarning]:
     """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
-    where heights of all older ones are known. Each older surface is asked once for the points of all.
+    where heights of all older ones are known. Each older surface is evaluated once for the points of all.
 
     A surface that does not cut ends on the top that is there, and any surface on one that protects itself; a
     minimum thickness keeps it above the one before it. What an older surface's points do above a younger
@@ -234,7 +234,7 @@ def points_above_younger(entry: RockInput, numbers: Collection[int]) -> list[Bui
     holes: dict[int, list[str]] = {}
     for older, younger in combinations(checked, 2):
         if RULES[surfaces[older].rule].protects or not RULES[surfaces[younger].rule].cuts:
-            continue  # the points of the younger one are looked at instead: wrong_sides
+            continue  # the points of the younger one are examined instead: wrong_sides
         if younger == older + 1 and surfaces[younger].minimum_thickness is not None:
             continue  # found where this is imposed
         older_rows, younger_rows, names = _in_one_hole(data[older], data[younger])

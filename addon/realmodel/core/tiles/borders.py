@@ -4,7 +4,7 @@
 Both see the same surfaces on the line, so their interfaces are the same broken lines there. But a tile may
 have vertices on a straight stretch that its neighbor has not (where it divided a facet). So tiles exchange
 these vertices; then, between two neighboring vertices of the line, a block is one quadrilateral that both
-tiles have with the same doubles, whatever cells it is divided into on either side.
+tiles have with the same doubles, for any division into cells on either side.
 """
 
 from __future__ import annotations

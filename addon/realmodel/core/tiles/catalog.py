@@ -43,7 +43,7 @@ class TileEntry:
 
 @dataclass(frozen=True)
 class Catalog:
-    """What tiles.toml says. project: without shapes. digest: of the input. patches: quadrilaterals of
+    """The content of tiles.toml. project: without shapes. digest: of the input. patches: quadrilaterals of
     blocks on the borders between tiles, or with faults or bodies the faces between cells of two tiles, which
     were compared double for double; unequal: those that one side alone has."""
 
@@ -114,9 +114,7 @@ def read_catalog(folder: Path) -> Catalog:
     """Raises InputRefused where the folder holds no whole model in tiles."""
     file = folder / CATALOG
     if not file.is_file():
-        raise InputRefused(
-            f"no {CATALOG}: it holds no model in tiles, or one that is not finished", file=folder
-        )
+        raise InputRefused(f"no {CATALOG}: it contains no model in tiles, or an unfinished one", file=folder)
     content = TomlDocument(file).content
     try:
         if content["format"] != _FORMAT:

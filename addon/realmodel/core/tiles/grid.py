@@ -15,7 +15,7 @@ from ..base.errors import UsageError
 from ..base.mapped_arrays import in_pieces
 from ..base.triangles import Sheet
 
-_SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was asked for
+_SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was requested
 _IN_GAP = 0.3819660112501051  # the golden section: far from all simple fractions
 _BEYOND = 1 / 64  # of the model's extent: how far the outermost tiles reach beyond it
 _MOST_TILES = 100_000
@@ -81,7 +81,7 @@ def checked_size(tile_size: Any) -> tuple[float, float]:
 def tile_grid(meshes: Sequence[np.ndarray], tile_size: tuple[float, float]) -> TileGrid:
     """A grid over all meshes' vertices, (V, 2) or (V, 3) each, with lines off all of them.
 
-    A line stands in the widest gap between vertices near where it was asked for. Raises UsageError where
+    A line stands in the widest gap between vertices near where it was requested. Raises UsageError where
     there are too many tiles.
     """
     lines = []

@@ -69,8 +69,8 @@ class Seam:
     """The faces between cells of a tile and those of another, in order of their keys.
 
     key: (F,) the same for the same polygon on the same surface. part: (F, 2) of the tile's cell, the
-    connected part of its block, and the cell of a model of blocks. block: (F, 2) the tile's first. is_one:
-    (F,) bool, whether both cells are one of a model of blocks. place: (F, 3) a corner."""
+    connected component of its block, and the cell of a model of blocks. block: (F, 2) the tile's first.
+    is_one: (F,) bool, whether both cells are one of a model of blocks. place: (F, 3) a corner."""
 
     key: np.ndarray
     part: np.ndarray

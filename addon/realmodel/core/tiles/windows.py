@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a tile is built from: of a project that nothing divides the triangles that meet it. With faults and
-bodies a window around it: a project of its own, of the triangles that are near, whose cells in the tile are
+bodies a window around it: a separate project, of the triangles that are near, whose cells in the tile are
 those of the whole."""
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ class Windows:
         return self._all[-1]
 
     def divide(self, tile_size: tuple[float, float]) -> TileGrid:
-        """The grid of the tiles; to be called before any window is asked for. Raises UsageError."""
+        """The grid of the tiles; to be called before any window is requested. Raises UsageError."""
         self._grid = tile_grid([plan.vertices for plan in self._all], tile_size)
         for plan in {*self._all, *self._plan_of.values()}:
             plan.sort(self._grid, self._keep)
@@ -210,7 +210,7 @@ class Windows:
         of_plan: dict[_Plan, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         if not self.structures.is_divided:
             box, none = self._grid.box(*tile), np.zeros(0, np.int8)
-            # as no vertex is on a line: what meets the neighbors alone need not be looked at then
+            # as no vertex is on a line: what meets the neighbors alone need not be examined then
             inner = (*np.nextafter(box[:2], np.inf).tolist(), *np.nextafter(box[2:], -np.inf).tolist())
             inputs = [self._rock(rock, inner, [], none, of_plan) for rock in range(len(self.inputs))]
             return Window(box, inputs, self.structures, None, np.empty(0, np.int32), np.zeros(1, np.int32))
@@ -397,7 +397,7 @@ def _joined(
     work: Work, inputs: list[RockInput], keep: StoreArray, borders: bool
 ) -> tuple[list[RockInput], str | None]:
     """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows,
-    and borders joined where that is asked for, one mesh at a time; and the warning about that, or None.
+    and borders joined where that is requested, one mesh at a time; and the warning about that, or None.
     Heights do not matter."""
     distinct = [
         [sheet for k in range(len(entry.surfaces)) for sheet in entry.divided().distinct(k)]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """IFC 4.3 (ISO 16739-1:2024) by IfcOpenShell: a geomodel of closed strata, their boundaries, boreholes.
 
-A block is an IfcGeotechnicalStratum of the IfcGeomodel; each connected part of it is a closed set of
+A block is an IfcGeotechnicalStratum of the IfcGeomodel; each connected component of it is a closed set of
 triangles. Where blocks meet, or meet the outside on a surface, an IfcVirtualElement has the triangles that
-both have, and an IfcRelConnectsWithRealizingElements says whose boundary it is (an IfcRelSpaceBoundary takes
+both have, and an IfcRelConnectsWithRealizingElements connects the two blocks (an IfcRelSpaceBoundary takes
 spaces alone). A borehole is an IfcBorehole of strata.
 """
 

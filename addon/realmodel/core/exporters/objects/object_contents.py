@@ -40,7 +40,7 @@ class BlockShell:
 
     @property
     def known(self) -> dict[str, str | float]:
-        """What the library says of it, but for its looks."""
+        """Its library entry, without its look."""
         values = {key: getattr(self.entry, key, None) for key in _OF_PROPERTY}
         return {key: value for key, value in values.items() if value is not None}
 

@@ -4,8 +4,8 @@
 Input: `ModelData`, the objects of a model. Output: the text of the page.
 
 three.js 0.111 draws it (MIT; license.txt); page.js is what the page does, page.css its looks. Each triangle
-is stored once, with the block on each of its sides. Coordinates count from a place near the middle of the
-model and have 32 bits, the arrays are compressed (deflate) and written as Base64.
+is stored once, with the block on each of its sides. Coordinates are relative to a place near the middle of
+the model and have 32 bits, the arrays are compressed (deflate) and written as Base64.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def page_of(model: ModelData, step: Callable[[float], None] = lambda _share: Non
 
 
 def _blocks(model: ModelData, contents: Contents) -> list[dict[str, Any]]:
-    """What the page says of each existing block, as the report has it."""
+    """The entry of each existing block in the page, as in the report."""
     total, colors = model.volume, rgb_bytes(model.block_colors).tolist()
     blocks = []
     for shell in contents.blocks:
@@ -121,7 +121,7 @@ def _points(model: ModelData) -> np.ndarray:
 
 
 class _Arrays:
-    """Arrays as text. origin: where coordinates count from, in whole units."""
+    """Arrays as text. origin: the point to which coordinates are relative, in whole units."""
 
     def __init__(self, model: ModelData):
         has_vertices = len(model.vertices) > 0

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """glTF 2.0, binary (.glb; Khronos 2021): a node for each part, a material in the color of each property.
 
-Y is up there: model coordinates (x, y, z) are (x, z, -y). Numbers have 32 bits there, so vertices count from
-a point of the model, at which the root node stands; its extras hold that point in model coordinates.
+Y is up there: model coordinates (x, y, z) are (x, z, -y). Numbers have 32 bits there, so vertices are
+relative to a point of the model, the origin of the root node; its extras hold it in model coordinates.
 """
 
 from __future__ import annotations

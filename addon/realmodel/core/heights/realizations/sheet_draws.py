@@ -80,7 +80,7 @@ class SheetField:
 
 
 def drawn_companions(task: Task, drawn: SheetField, baseline: float) -> Companions:
-    """The sheets of a task with what is drawn of them in the place of their heights and slopes. baseline:
+    """The sheets of a task with what is drawn of them instead of their heights and slopes. baseline:
     over which slopes count."""
     companions = task.companions
     assert companions is not None

@@ -86,7 +86,7 @@ class FieldArea:
 @dataclass(frozen=True)
 class GaussianField:
     """A random field of mean 0 in an area, with the variogram's covariance without its nugget. anisotropy:
-    {ratio, azimuth} of structures that have none of their own."""
+    {ratio, azimuth} of structures without an anisotropy."""
 
     variogram: Variogram
     anisotropy: dict | None

@@ -83,7 +83,7 @@ def _system(groups: dict[str, _Group]) -> str:
 
 
 def _values(groups: dict[str, _Group], name: str, column: str) -> set[str]:
-    """What a column of a group says, where it says something."""
+    """The entries of a column of a group that are not empty."""
     group = groups.get(name)
     if group is None or column not in group.names:
         return set()
@@ -96,36 +96,38 @@ def _groups(file: Path) -> dict[str, _Group]:
     groups: dict[str, _Group] = {}
     group = _Group(0)
     for line, entries in _entries(file):
-        first = entries[0]
+        first = entries[0].strip()
         if first.startswith("**"):
             group = groups.setdefault(first.lstrip("*?").strip().upper(), _Group(line))
         elif first == "GROUP":
             group = groups.setdefault(entries[1].strip().upper() if len(entries) > 1 else "", _Group(line))
-        elif first.startswith("*"):  # the heading of AGS 3 may go on in further lines
-            group.names += [entry.lstrip("*?").strip().upper() for entry in entries if entry]
+        elif first.startswith("*"):  # the heading of AGS 3 may continue in further lines
+            group.names += [name.strip().lstrip("*?").strip().upper() for name in entries if name.strip()]
         elif first == "HEADING":
             group.names = [entry.strip().upper() for entry in entries[1:]]
         elif first == "UNIT":
-            group.units = entries[1:]
+            group.units = [entry.strip() for entry in entries[1:]]
         elif first == "<UNITS>":
-            group.units = ["", *entries[1:]]
+            group.units = ["", *(entry.strip() for entry in entries[1:])]
         elif first == "<CONT>":
             _continue(file, line, group, entries)
         elif first == "DATA":
             group.rows.append((line, entries[1:]))
         elif first != "TYPE":
             group.rows.append((line, entries))
+    for group in groups.values():  # spaces count where a text goes on in a further line
+        group.rows = [(line, [entry.strip() for entry in row]) for line, row in group.rows]
     return groups
 
 
 def _entries(file: Path) -> Iterator[tuple[int, list[str]]]:
     for line, text in enumerate(read_text(file).split("\n"), 1):
         if text.strip():
-            yield line, [entry.strip() for entry in next(csv.reader([text.strip().rstrip("\x1a")]))] or [""]
+            yield line, next(csv.reader([text.strip().rstrip("\x1a")])) or [""]
 
 
 def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:
-    """Texts of AGS 3 that go on in a further line are added to those of the row before."""
+    """Texts of AGS 3 that continue in a further line are added to those of the row before."""
     if not group.rows:
         raise InputRefused("<CONT> continues no row", file=file, line=line)
     before = group.rows[-1][1]

@@ -61,8 +61,8 @@ def geopackage_layers(file: Path) -> list[str]:
 
 
 def system_of(file: Path, layer: str | None) -> str:
-    """What a GeoPackage says of the coordinate system of a layer, or of its only one: a code of EPSG's, or
-    well-known text; "" where nothing."""
+    """The coordinate system of a layer of a GeoPackage, or of its only layer: a code of EPSG's, or well-known
+    text; "" where nothing."""
     with suppress(*UNREADABLE), closing(connect(file)) as base:
         for name, authority, code, text in base.execute(_SYSTEMS):
             if layer is None or name.lower() == layer.lower():

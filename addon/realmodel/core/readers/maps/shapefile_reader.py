@@ -38,7 +38,7 @@ def beside(file: Path) -> list[Path]:
 
 
 def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
-    """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
+    """The shapes of a shapefile. Its rings follow the even-odd rule, for any direction: many programs
     write outlines and holes in the wrong directions.
     Raises InputRefused, and BuildFailed without pyshp."""
     file, where = Path(layer.file), layer.where
@@ -47,8 +47,8 @@ def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | Non
     attribute = heights.attribute if heights else None
     has_table = bool(where) or attribute is not None
     if has_table and ".dbf" not in files:
-        what = "there is no .dbf beside it, which holds the attributes"
-        advice = f"bring it along, or leave out '{'where' if where else 'height'}'"
+        what = "its .dbf file, which has the attributes, is missing"
+        advice = f"put it into the same folder, or leave out '{'where' if where else 'height'}'"
         raise InputRefused(what, file=file, advice=advice)
     selection, shapes = Selection(file, where), Shapes.wanted(heights)
     has_table |= shapes.attributes is not None and ".dbf" in files

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shapes of files of outlines, lines and points, whatever their format."""
+"""The shapes of files of outlines, lines and points, in any format."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Shapes:
     """The shapes of one file: polygons, lines (N, 2) and points (2,), the latter two with their names in
     messages. Read with heights, positions have three numbers, the third NaN where the file gives none.
     attributes: of features, by their names in messages, where they are wanted. system: their coordinate
-    system, as the reader is told it, "" where other files say it."""
+    system, from the reader, "" if other files have it."""
 
     polygons: list[Polygon] = field(default_factory=list)
     lines: list[tuple[str, np.ndarray]] = field(default_factory=list)

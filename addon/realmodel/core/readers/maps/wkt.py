@@ -51,7 +51,7 @@ def read_wkt(layer: MapLayer, _step: Step = no_step, heights: Heights | None = N
         raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
     if heights and heights.attribute is not None:
         what = "well-known text has no attributes, so 'height' has no effect"
-        raise InputRefused(what, file=file, advice="write the heights as z")
+        raise InputRefused(what, file=file, advice="write the elevations as z")
     return parse_wkt(text, file, heights is not None)
 
 

@@ -164,7 +164,7 @@ class _Content:
         return rows
 
     def _rows(self, number: int, place: dict, kind: np.dtype, shape: tuple[int, int]) -> np.ndarray:
-        """(N, K) numbers of an accessor from where `place` says that they are."""
+        """(N, K) numbers of an accessor, at `place`."""
         view, (count, columns) = self._json["bufferViews"][place["bufferView"]], shape
         size = kind.itemsize * columns
         stride = view.get("byteStride", size)

@@ -147,7 +147,7 @@ class _Tags:
         """The numbers from 0 of nodes by their tags. Raises InputRefused."""
         at = np.minimum(np.searchsorted(self._tags, corners), len(self._tags) - 1)
         if (self._tags[at] != corners).any():
-            raise InputRefused("an element has a node that is not there", file=self._file)
+            raise InputRefused("an element has a node that does not exist", file=self._file)
         return self._order[at]
 
 

@@ -38,7 +38,7 @@ def read_leapfrog(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
         ]
         at = len(content) - sum(kind.itemsize * prod(shape) for _, kind, shape in rows)
         if at not in _BEFORE:
-            raise ValueError("its arrays have other sizes than its index says")
+            raise ValueError("the sizes of its arrays differ from its index")
         for name, kind, shape in rows:
             arrays[name] = np.frombuffer(content, kind, prod(shape), at).reshape(shape)
             at += arrays[name].nbytes

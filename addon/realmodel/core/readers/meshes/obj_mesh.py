@@ -86,7 +86,7 @@ def _named(blocks: dict[tuple[str, str], list]) -> dict[str, tuple[list, bool]]:
 
 def _lines(file: Path, step: Step) -> Iterator[tuple[int, str]]:
     """The number from 1 and the text of each line that has one, without comments; a line that ends in a
-    backslash goes on in the next one."""
+    backslash continues in the next one."""
     begun, begin = "", 0
     for first, lines, share in text_lines(file):
         for number, line in enumerate(lines, first):

@@ -52,8 +52,8 @@ def read_off(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
 
 
 class _Lines:
-    """The lines that say something, without comments. taken: how many there were since the header; last: the
-    number of the last one, from 1."""
+    """The nonempty lines, without comments. taken: how many there were since the header; last: the number of
+    the last one, from 1."""
 
     def __init__(self, file: Path, step: Step):
         self._file, self._step = file, step

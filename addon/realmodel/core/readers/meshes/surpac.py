@@ -58,7 +58,7 @@ def read_dtm(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
 
 def begins_as_str(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so has strings: its first record names their styles. Others look like
-    tables, so that only the ending tells them."""
+    tables, so they are recognized by their extension only."""
     return b"ssi_styles:" in head.partition(b"\n")[0].lower()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The triangulated surface of a file, whatever its format."""
+"""The triangulated surface of a file, in any format."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """VTK's older format (.vtk), text or binary, of versions 1 to 5.1 ("VTK File Formats", simple legacy
 formats): the faces of a POLYDATA, an UNSTRUCTURED_GRID or a STRUCTURED_GRID of one layer, or the points where
-there are none. And its files of several blocks (.vtm), each of which is a file of its own."""
+there are none. And its files of several blocks (.vtm), each of which is a separate file."""
 
 from __future__ import annotations
 

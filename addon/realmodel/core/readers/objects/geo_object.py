@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is read of an object in a file of objects, whatever its format; and files that are read as a whole."""
+"""What is read of an object in a file of objects, in any format; and files that are read as a whole."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def _hole(obj: Any, wanted: ObjectName) -> GeoObject:
 
 
 def _along(obj: Any, vertices: np.ndarray) -> Values:
-    """The intervals between vertices, with the depths that a drillhole says."""
+    """The intervals between vertices, with the depths of a drillhole."""
     begins, ends = (vertices[np.array(obj.cells)[:, end]] for end in (0, 1))
     columns = _columns(obj, "CELL")
     depth_columns = [columns.pop(name) for name in ("FROM", "TO") if name in columns]
@@ -99,7 +99,7 @@ def _along(obj: Any, vertices: np.ndarray) -> Values:
 
 
 def _tables(obj: Any) -> Iterator[Values]:
-    """The tables of a drillhole in a group of drillholes, each with depths of its own."""
+    """The tables of a drillhole in a group of drillholes, each with its own depths."""
     for group in obj.property_groups or ():
         limits = [getattr(group, name, None) for name in ("from_", "to_")]
         depths = [limit.values for limit in limits if limit is not None and limit.values is not None]

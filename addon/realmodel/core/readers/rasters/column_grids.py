@@ -59,7 +59,7 @@ def read_cps3_grid(
     of_none, text = keys.get("FSASCI", (0, ""))
     words, none = re.findall(r'"[^"]*"|\S+', text), [_NO_HEIGHT]
     if len(words) > 4:
-        none = header_numbers(file, words[4], of_none, 1, "the number for no height")
+        none = header_numbers(file, words[4], of_none, 1, "the number for no elevation")
     (first, counts), (second, ends) = keys["FSNROW"], keys["FSLIMI"]
     numbers = header_numbers(file, counts, first, 2, "the numbers of rows and columns")
     numbers += header_numbers(file, ends, second, 4, "the ends of x and y")
@@ -89,7 +89,7 @@ def read_zmap_grid(
     null = text.split(",")[1].strip() if text.count(",") else ""
     none = []
     if null.lower() not in NO_HEIGHT_WORDS:
-        none = header_numbers(file, null, of_none, 1, "the number for no height")
+        none = header_numbers(file, null, of_none, 1, "the number for no elevation")
     layout = header_numbers(file, numbers, of_numbers, 6, "rows, columns, and the ends of x and y")
     if by_gdal:  # which takes the edges of its pixels for the ends
         for low, count in ((2, layout[1]), (4, layout[0])):

@@ -54,8 +54,8 @@ def read_geotiff(
     file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """The first image of a GeoTIFF with one number a pixel: whole or floating-point, in strips or tiles,
-    uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centers of pixels, or where the file
-    says so at their corners. nodata: further numbers that mean no height.
+    uncompressed or by LZW, DEFLATE or PackBits. Elevations are at the centers of pixels, or at their corners
+    if the file states so. nodata: further numbers that mean no height.
 
     Raises InputRefused naming the file, BuildFailed where tifffile is not there.
     """
@@ -95,7 +95,7 @@ def geotiff_system(file: str | Path) -> int | None:
             return None
     tifffile = vendored("tifffile", "tifffile", "reading GeoTIFF")
     with _no_logging(), tifffile.TiffFile(file) as tiff:
-        directory = tiff.pages[0].tags.get(_GEO_KEYS)  # its value is read when it is asked for
+        directory = tiff.pages[0].tags.get(_GEO_KEYS)  # its value is read when it is requested
         number = _geo_keys(() if directory is None else directory.value).get(_PROJECTED, _OF_USER)
     return None if number == _OF_USER else number
 
@@ -118,8 +118,8 @@ def _check(file: Path, tiff: Any, page: Any, is_kept_in_memory: bool) -> None:
         return InputRefused(what, file=file, advice=advice)
 
     if page.samplesperpixel != 1:
-        advice = "save the band that holds the heights in a file of its own"
-        raise refuse(f"it has {page.samplesperpixel} numbers per pixel; heights have one", advice)
+        advice = "save the band with the elevations in a separate file"
+        raise refuse(f"it has {page.samplesperpixel} numbers per pixel; elevations have one", advice)
     if page.dtype is None or page.dtype.kind not in "iuf" or page.bitspersample != 8 * page.dtype.itemsize:
         raise refuse(f"pixels of {page.bitspersample} bits are not supported")
     if page.compression not in (_NONE, _LZW, *_DEFLATE, _PACKBITS):
@@ -302,7 +302,7 @@ def _world(file: Path) -> tuple[float, ...]:
 def _warnings(keys: dict) -> list[str]:
     if keys.get(_MODEL_TYPE) == _GEOGRAPHIC:
         return [
-            "its plan coordinates are degrees of longitude and latitude, its heights are not: "
+            "its plan coordinates are degrees of longitude and latitude, its elevations are not: "
             "project it (to UTM, say) in a GIS"
         ]
     return []

@@ -62,8 +62,8 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
                     break
                 begin -= len(as_number) - len(word.group())
             number = text.line + raw.count(b"\n", body, at + begin)
-            advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
-            what = f"not a height: '{entry:.40}'"
+            advice = "write the NODATA_value for missing elevations" if error.kind == "not_finite" else None
+            what = f"not an elevation: '{entry:.40}'"
             raise InputRefused(what, file=file, line=number, advice=advice) from error
         at += len(chunk)
         count += len(numbers)
@@ -72,7 +72,7 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
         step(at / len(raw))
     if count != rows * columns:
         raise InputRefused(
-            f"{columns} columns and {rows} rows need {rows * columns} heights; there are {count}",
+            f"{columns} columns and {rows} rows need {rows * columns} elevations; there are {count}",
             file=file,
             advice="the file is cut off or its header is wrong",
         )

@@ -97,5 +97,5 @@ def _records(file: Path, raw: FileBytes, at: int, rows: int, columns: int) -> It
         have += size // 4
         at += size + 8
     if have != rows * columns:
-        what = f"{columns} columns and {rows} rows need {rows * columns} heights; there are {have}"
+        what = f"{columns} columns and {rows} rows need {rows * columns} elevations; there are {have}"
         raise InputRefused(what, file=file)

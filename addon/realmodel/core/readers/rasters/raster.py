@@ -37,7 +37,7 @@ class Raster:
         """
         points = gather(self._pieces(), np.empty((0, 3)))
         if not len(points):
-            raise InputRefused("no cell of the raster has a height", file=file)
+            raise InputRefused("no cell of the raster has an elevation", file=file)
         return points
 
     def heights_at(self, plan: np.ndarray) -> np.ndarray:

@@ -67,10 +67,10 @@ def picks_of_tables(
     scale (3,): the factors to the model's unit.
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
-    (WellTrajectory); all others are vertical, with a warning where a table says otherwise. Rows without a
-    depth are left out with a warning: the hole did not reach the surface. Intervals of holes without a collar
-    are listed, and refused where no hole has one; picks of one are refused. units: what the names of the
-    tables mean. plan_step: as of read_intervals. Raises InputRefused naming file and line.
+    (WellTrajectory); all others are vertical, with a warning if a table has an angle. Rows without a depth
+    are left out with a warning: the hole did not reach the surface. Intervals of holes without a collar are
+    listed, and refused where no hole has one; picks of one are refused. units: what the names of the tables
+    mean. plan_step: as of read_intervals. Raises InputRefused naming file and line.
     """
     holes = Holes(tables)
     picks = Picks() if tables.picks is None else _picks(tables.picks, holes, units, scale)

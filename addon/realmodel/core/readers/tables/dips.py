@@ -39,7 +39,7 @@ _POLARITY = {
     **dict.fromkeys(("upright", "normal", "up", "u", "n"), 1.0),
     **dict.fromkeys(("overturned", "inverted", "reversed", "down", "o", "i", "r"), -1.0),
 }
-_SHEET = "a sheet has one height at each position"
+_SHEET = "a sheet has one elevation at each position"
 _SAY_POLARITY = "write 1 or upright, -1 or overturned"
 _ELSEWHERE = 'leave the row out: steep folds belong in a series with kind = "field"'
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of boreholes as they are read, row by row, whatever format they come from."""
+"""The tables of boreholes after reading, row by row, for all formats."""
 
 from __future__ import annotations
 

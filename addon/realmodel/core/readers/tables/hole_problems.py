@@ -18,7 +18,7 @@ _LISTED = 3
 
 # By the kind of a problem; those of intervals and picks that are left out have theirs in observations.KINDS.
 HOLE_PROBLEMS = {
-    "hole_name": "holes are taken for those with collars",
+    "hole_name": "holes are matched with those with collars",
     "double": "rows are there twice, and count once",
     "two_collars": "holes have two collars, of which one is used",
     "no_place": "holes are without x, y or z, and are not used",
@@ -34,10 +34,10 @@ HOLE_PROBLEMS = {
     "gap": "gaps between intervals are closed at their middle",
     "overlap": "overlaps of intervals are closed at their middle",
     "reversed": "intervals end above where they begin, and are turned around",
-    "elevations": "depths are heights, and are converted: the collar's height less them",
+    "elevations": "depths are elevations; converted: the collar's elevation minus them",
     "minus_sign": "depths have a minus sign, which is taken away",
-    "unrepaired": "rows are used as they are written, as 'unrepaired' says",
-    "switched_off": "rows are not used, as 'left_out' says",
+    "unrepaired": "rows are used unchanged, because of 'unrepaired'",
+    "switched_off": "rows are not used, because of 'left_out'",
     NOT_REACHED: "picks are without a depth, as the hole did not reach the surface",
 }
 
@@ -49,9 +49,9 @@ DECIDED = ("unrepaired", "switched_off")  # kinds that are the user's word, and 
 class HoleProblem:
     """A fault of a row of a table of boreholes.
 
-    kind: what is wrong, as "gap", "overlap", "null", "double", "elevations", "no_collar". file, line: of the
+    kind: the fault, such as "gap", "overlap", "null", "double", "elevations", "no_collar". file, line: of the
     row; line 0 where the format has none. hole: its name. depth: along it, as the table has it, NaN where
-    there is none. text: what is wrong, and what was done. action: "used" as it is, "repaired", or "left out".
+    there is none. text: the fault and its treatment. action: "used" as it is, "repaired", or "left out".
     code: the unit or surface of an interval or a pick, None of other rows.
     """
 

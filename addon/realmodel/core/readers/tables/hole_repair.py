@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what is wrong with the rows of tables of boreholes, mends it or leaves it out, and lists it. Rows
-that are right stay as they are."""
+"""Finds faults in rows of tables of boreholes, repairs them or leaves the rows out, and lists them. Correct
+rows are not changed."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
 
 def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]]:
     """The rows, by their table, that take no part in the repair and are used as they are; they and those that
-    are not used are taken out of the tables. Raises InputRefused for a row that there is not."""
+    are not used are taken out of the tables. Raises InputRefused for a row that does not exist."""
     unrepaired, left_out = (
         _row_names(names) for names in (tables.boreholes.unrepaired, tables.boreholes.left_out)
     )
@@ -81,10 +81,10 @@ def _taken_out(tables: HoleTables, problems: ProblemList) -> dict[str, list[Row]
         for row in getattr(tables, kind) or ():
             name = row.file.name, row.line
             if name in unrepaired:
-                problems.note("unrepaired", USED, row, "used as it is written, as 'unrepaired' says")
+                problems.note("unrepaired", USED, row, "used unchanged, because of 'unrepaired'")
                 taken.setdefault(kind, []).append(row)
             elif name in left_out:
-                problems.note("switched_off", LEFT_OUT, row, "not used, as 'left_out' says")
+                problems.note("switched_off", LEFT_OUT, row, "not used, because of 'left_out'")
             else:
                 others.append(row)
                 continue
@@ -257,7 +257,7 @@ def _with_collars(
 
 
 def depth_of(row: Row) -> float | None:
-    """The depth of a row, None where it says none."""
+    """The depth of a row, None if it is empty."""
     for name in ("depth", "from", "to"):
         if name in row.columns and row.has(name) and is_number(row.text(name), row.decimal):
             return row.number(name)

@@ -334,8 +334,8 @@ def header_factors(
     header: TableHeader, units: str | Mapping | None, model_unit: str
 ) -> tuple[dict[str, float], list[str]]:
     """The factors of columns to the unit in which they are read, that of the key `units` or else of the
-    model, and degrees, by their meaning, where the header says another; and warnings. Raises InputRefused for
-    a unit of length that is not known."""
+    model, and degrees, by their meaning, where the header has another one; and warnings. Raises InputRefused
+    for a unit of length that is not known."""
     of_key = units if isinstance(units, Mapping) else {"xy": units, "z": units}
     written = {
         meaning: (header.names[at].strip(), header.units.get(meaning, ""))
@@ -365,8 +365,7 @@ def header_factors(
 
 
 def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
-    """The warnings about the units that the header of a table says. Raises InputRefused for one that is not
-    known."""
+    """The warnings about units in the header of a table. Raises InputRefused for one that is not known."""
     layout = _opened(given, file, known).layout
     _, warnings = header_factors(_header(given, file, layout, known), given.units, model_unit)
     return warnings

@@ -37,7 +37,7 @@ class WellTrajectory:
 
     def __init__(self, depths: Sequence[float], directions: Sequence[Direction]):
         """depths (N,), N > 0: along the hole from its collar, each greater than the one before it.
-        directions (N, 3): of length 1, no two neighbours opposite to each other."""
+        directions (N, 3): of length 1, no two neighbors opposite to each other."""
         self._depths = np.array(depths, float)
         self._directions = np.array(directions, float).reshape(-1, 3)
         begin, end = self._directions[:-1], self._directions[1:]
@@ -64,7 +64,7 @@ class WellTrajectory:
         return self._starts[n] + self._along(n, depth - self._depths[n])
 
     def _along(self, n: int, length: float) -> np.ndarray:
-        """The way of this length from station n towards the next one."""
+        """The way of this length from station n toward the next one."""
         turned = self._doglegs[n] * length / (self._depths[n + 1] - self._depths[n])
         # (1 - cos t) / t = t / 2 (sin(t / 2) / (t / 2))^2
         sideways = turned / 2 * _sin_by(turned / 2) ** 2 * self._across[n]
@@ -217,7 +217,7 @@ def end_of(collar: Row) -> float:
 
 
 def is_inclined(row: Row) -> bool:
-    """Whether a row says, by an angle of whatever convention, that the hole is not vertical."""
+    """Whether an angle of a row, in any convention, shows that the hole is not vertical."""
     for name in ("dip", "inclination"):
         if row.has(name):
             entry = row.text(name).replace(",", ".")
@@ -286,7 +286,7 @@ class Holes:
         has_depth = any(row.has(column) for column in ("depth", "from", "to"))
         z = row.number("z") if "z" in row.columns and has_depth else float("nan")
         if np.isnan(z) and has_depth:
-            raise row.refuse("a depth needs the collar's height", "give a column z, or a table of collars")
+            raise row.refuse("a depth needs the collar's elevation", "give a column z, or a table of collars")
         return np.array((row.number("x"), row.number("y"), z))
 
     def way_to(self, row: Row, depth: float) -> np.ndarray:
@@ -306,9 +306,8 @@ class Holes:
         return path.offset(depth)
 
     def place_at(self, row: Row, column: str, scale: np.ndarray) -> tuple[np.ndarray, float]:
-        """(3,) the place of a row whose column says its elevation, and its depth, NaN where the height of the
-        collar, or the way there, is not known. Refuses an elevation that does not determine the position in
-        the hole."""
+        """(3,) the place of a row with an elevation, and its depth, NaN where the height of the collar, or
+        the way there, is not known. Refuses an elevation that does not determine the position in the hole."""
         begin = self.begin_of(row)
         if self._is_of_objects:
             return np.array([row.number(axis) for axis in "xyz"]) * scale, float("nan")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what is wrong with the intervals of boreholes, mends it or leaves it out, and lists it."""
+"""Finds faults in the intervals of boreholes, repairs them or leaves the rows out, and lists them."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _as_depths(holes: dict[str, list[_Interval]], heights: dict[str, float], pro
             if interval.begin == interval.end == 0:
                 continue
             what = f"from {interval.begin:.9g} to {interval.end:.9g} are "
-            what += f"heights of a hole from {heights[hole]:.9g} down" if kind == "elevations" else "below 0"
+            what += f"elevations in a hole from {heights[hole]:.9g}" if kind == "elevations" else "below 0"
             problems.note(kind, REPAIRED, interval.row, what, interval.begin, interval.code)
             top = heights[hole] if kind == "elevations" else 0.0
             interval.moved(top - interval.begin, top - interval.end)

@@ -91,7 +91,7 @@ def _plan_step_of(plan: np.ndarray) -> float:
 def _interval(
     row: Row, hole: str, code: str, units: UnitNames, left_out: list[LeftOut]
 ) -> tuple[float, float, str] | None:
-    """(from, to, block) of a row; None where it says nothing, or cannot be used."""
+    """(from, to, block) of a row; None if it is empty or cannot be used."""
     if units.says_nothing(code) or not (row.has("from") and row.has("to")):
         return None
     begin, end = row.number("from"), row.number("to")

@@ -88,7 +88,7 @@ class Observations(ShortRepr):
                 text = f"{count} places have {len(values)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
         if not (np.isfinite(errors) & (errors >= 0)).all():
-            raise InputRefused("an error of a height is negative, or not finite", item="observations")
+            raise InputRefused("an error of an elevation is negative, or not finite", item="observations")
         arrays = places, blocks, holes, depths, intervals, used, on, errors, rows
         for name, value in zip(_ARRAYS, arrays, strict=True):
             object.__setattr__(self, name, value)
@@ -288,7 +288,7 @@ KINDS = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Bounds(ShortRepr):
-    """Heights that a surface lies at or above, or at or below.
+    """Elevations at or above which, or at or below which, a surface lies.
 
     places: (N, 3) float64, model units; with faults a bound counts in the compartment of its place. is_lower:
     (N,) bool, True where the surface lies at the place or above it, False at it or below; of a level set,
@@ -339,8 +339,8 @@ class Bounds(ShortRepr):
         )
 
     def along(self, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Places (P, 3) at which bounds with ways are looked at, no farther apart than a step, but not the
-        ends of a way; and (P,) the row of each."""
+        """Places (P, 3) at which bounds with ways are tested, at most a step apart, without the ends of a
+        way; and (P,) the row of each."""
         if self.ends is None:
             return self.places, np.arange(len(self))
         way = self.ends - self.places
@@ -445,7 +445,7 @@ def read_observed_places(
 def _height_error(row: Row) -> float:
     error = row.number("error") if row.has("error") else 0.0
     if error < 0:
-        raise row.refuse(f"the error of the height, {error:g}, is negative", "leave it empty where it is 0")
+        raise row.refuse(f"the error of the elevation, {error:g}, is negative", "leave it empty for 0")
     return error
 
 

@@ -108,7 +108,7 @@ KNOWN = frozenset(name for names in _NAMES.values() for name in names)
 @dataclass(frozen=True)
 class PointRows:
     """points (P, 3) float64 in the order of the file; how many rows had no value, and how many did not
-    hold what was asked for. table: that they are from. axes: the numbers from 0 of its columns of x, y and
+    hold what was requested. table: that they are from. axes: the numbers from 0 of its columns of x, y and
     z. columns: the names of these, where the header has them; units: the texts of the file that name their
     units, "" for none. decimal: the mark of numbers. doubts: sentences about columns whose choice was a
     guess."""
@@ -162,7 +162,7 @@ def table_of(given: PointFile, *wanted: str | int, step: Step = no_step) -> Text
 
 
 def _has_columns(expected: Expected, cells: list[str]) -> bool:
-    """Whether the cells of a row are the names of the columns that are expected: those asked for, or else as
+    """Whether the cells of a row are the names of the columns that are expected: those requested, or else as
     many as are needed."""
     names = [name.lower() for name in expected.wanted if isinstance(name, str)]
     if names:
@@ -273,7 +273,7 @@ def _require_xyz_first(table: TextTable) -> None:
 
 
 def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str) -> tuple[str, ...]:
-    """Sentences about columns that were guessed, or whose names say something else than they are read as."""
+    """Sentences about columns that were guessed, or that are read differently from their names."""
     names, called = table.layout.names or (), _named(table)
     doubts = []
     row = next(iter(head_rows(table, 9)), [])
@@ -288,7 +288,7 @@ def _doubts(table: TextTable, wanted: Sequence[int], z: np.ndarray, z_axis: str)
         if {called[wanted[0]], called[wanted[1]]} & {*_DEGREES["x"], *_DEGREES["y"]}:
             doubts.append(
                 f"'{names[wanted[0]]}' and '{names[wanted[1]]}' are degrees of longitude and latitude, "
-                "heights are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
+                "elevations are not: project them (to UTM, say) in a GIS, or name others by 'columns'"
             )
         words = re.findall(r"[^\W\d_]+", names[wanted[2]].lower())
         if z_axis == "up" and not set(words).isdisjoint(_DEPTHS):
@@ -362,8 +362,8 @@ def _read_rows(
 def _pieces(
     table: TextTable, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: JoinPieces
 ) -> PointRows:
-    """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
-    beginning of the file. reading: its decimal mark, columns, filters and missing values."""
+    """native.read_numbers over the whole table, piece by piece on all processors; its errors are relative to
+    the beginning of the file. reading: its decimal mark, columns, filters and missing values."""
     native = native_module()
     mark, columns, filters, missing = reading
     begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
@@ -604,5 +604,5 @@ def read_point_array(file: Path, gather: JoinPieces) -> np.ndarray:
 
     points = gather(known(), np.empty((0, 3)))
     if not len(points):
-        raise InputRefused("no point of the array has a height", file=file)
+        raise InputRefused("no point of the array has an elevation", file=file)
     return points

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what is wrong with the stations of surveys, mends it or leaves it out, and lists it."""
+"""Finds faults in the stations of surveys, repairs them or leaves them out, and lists them."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ def _one_each(stations: list[Row], angle: str, sign: float, problems: ProblemLis
             break
         n = int(turns[0]) + 1
         if n == 1 and len(single) > 2 and _bends(single[1], single[2:3], towards) < _SHARP:
-            n = 0  # the others go on
+            n = 0  # the others continue
         depth = single[n].number("depth")
         problems.note("station", LEFT_OUT, single[n], "the hole would turn back here", depth)
         del single[n]

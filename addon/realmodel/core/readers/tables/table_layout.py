@@ -89,8 +89,8 @@ class Expected:
 def table_layout(
     file: Path, raw: Content, start: int, encoding: str, expected: Expected, dialect: Dialect | None = None
 ) -> TableLayout:
-    """The layout of a table that begins at byte `start` of its file. dialect: what kind of table it is, if it
-    is one with a header of its own. Raises InputRefused where there are no rows."""
+    """The layout of a table that begins at byte `start` of its file. dialect: its kind, if it has a special
+    header. Raises InputRefused where there are no rows."""
     separator, known_names = expected.separator, expected.known
     head = raw[start : start + HEAD_BYTES]
     if start + HEAD_BYTES < len(raw):

@@ -14,7 +14,7 @@ from .points import AXES, KNOWN, TextTable, head_rows, open_table, wanted_column
 from .table_layout import Expected, is_any_number, plain_name
 
 _ROWS = 3
-_PIECES, _PIECE = 64, 1 << 16  # of a long table these are looked at, in equal distances
+_PIECES, _PIECE = 64, 1 << 16  # of a long table these are examined, in equal distances
 _LEAST, _MOST = 2, 50  # values of a column that names surfaces
 _NAMING = frozenset(
     ("horizon", "formation", "surface", "unit", "marker", "layer", "top", "strat", "stratum", "lithology")
@@ -23,11 +23,11 @@ _NAMING = frozenset(
 
 @dataclass
 class TablePreview:
-    """names: of the columns; where there is no header, which has_header says, their numbers from 1. rows: the
-    first of them, as they are written. axes: the columns that are taken for x, y and z; only those that are
-    known where the header does not name all. splits: {column: its values in the order of the file}, of
-    columns that may name surfaces; those that plainly do come first. is_plain: whether the first does.
-    problem: why the table cannot be read as it is."""
+    """names: of the columns; their numbers from 1 without a header (has_header). rows: the first of them, as
+    they are written. axes: the columns that are taken for x, y and z; only those that are known where the
+    header does not name all. splits: {column: its values in the order of the file}, of columns that may name
+    surfaces; those that plainly do come first. is_plain: whether the first does. problem: why the table
+    cannot be read."""
 
     file: Path
     names: list[str]

@@ -10,7 +10,7 @@ from functools import cached_property
 
 from .hole_tables import NO_VALUE, normalized_name
 
-# What stands for core that is not there, or that nobody looked at.
+# What stands for core that is not there, or that nobody examined.
 _SHORT = frozenset(("lc", "nr", "nl"))  # which may be the code of a unit as well: LC is London Clay
 _NO_CORE = _SHORT | frozenset(
     normalized_name(name)
@@ -34,14 +34,14 @@ class UnitNames:
     names: Mapping[str, str] = field(default_factory=dict)
 
     def says_nothing(self, code: str) -> bool:
-        """Whether an entry stands for no unit: it is empty, lost core, or `names` says so."""
+        """Whether an entry stands for no unit: it is empty, lost core, or has no meaning in `names`."""
         meant = self._found(code)
         if meant is not None:
             return not meant
         return _is_empty(code)
 
     def means_nothing(self, code: str) -> bool:
-        """Whether `names` says that an entry stands for nothing."""
+        """Whether an entry has no meaning in `names`."""
         return self._found(code) == ""
 
     def meaning(self, code: str) -> str:
@@ -97,7 +97,7 @@ class UnitNames:
 
 
 def may_be_a_unit(code: str) -> bool:
-    """Whether an entry that says nothing may be the code of a unit."""
+    """Whether an entry without a meaning may be the code of a unit."""
     return normalized_name(code) in _SHORT
 
 

@@ -18,7 +18,7 @@ from .strike_line import StrikeLine
 
 FOOTWALL, HANGING_WALL = 0, 1  # columns of `blocks` and `cells`
 SIDES = ("footwall", "hanging wall")
-_BESIDE = 1e-4  # of the size of a face: how far from it a place is looked at
+_BESIDE = 1e-4  # of the size of a face: how far from it a place is examined
 _INWARD = 0.1  # of the way from an edge to the middle of its face
 
 

@@ -36,7 +36,7 @@ def draw_juxtaposition(fault: JuxtapositionData, exaggeration: float = 1.0) -> D
         )
     flat = fault.unrolled()
     if not len(fault) or not (np.ptp(flat, axis=0) > 0).all():
-        raise UsageError(f"there is nothing to draw: fault '{fault.fault}' has no height in the model")
+        raise UsageError(f"nothing to draw: fault '{fault.fault}' has no vertical extent in the model")
     low, high = flat.min(axis=0), flat.max(axis=0)
     extent = (high - low) * (1.0, exaggeration)
     ratio, scale = page_scale(extent, fault.unit)

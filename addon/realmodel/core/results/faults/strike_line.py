@@ -16,7 +16,7 @@ _STRAIGHT = 0.05  # of the fault's width in plan: bends of its line that are sma
 @dataclass(frozen=True, eq=False)
 class StrikeLine:
     """points: (N, 2) in plan, the level line of a fault at its middle elevation, with the fault's dip to the
-    right; it goes on straight at both ends."""
+    right; it continues straight at both ends."""
 
     points: np.ndarray
 
@@ -50,7 +50,7 @@ class StrikeLine:
         lengths = norm(steps)
         ways = steps / lengths[:, None]
         turn = ways[1:, 0] * ways[:-1, 1] - ways[1:, 1] * ways[:-1, 0]
-        # how far the line that halves an angle goes on for each unit to the left
+        # how far the line that halves an angle continues for each unit to the left
         lean = turn / np.maximum(1.0 + dot(ways[1:], ways[:-1]), 1e-3)
         begins, ends = np.concatenate([[0.0], -lean]), np.concatenate([lean, [0.0]])
         starts = np.cumsum(lengths) - lengths

@@ -33,7 +33,7 @@ EQUAL_AREA, EQUAL_ANGLE = "equal_area", "equal_angle"
 NETS = {EQUAL_AREA: "equal area (Schmidt)", EQUAL_ANGLE: "equal angle (Wulff)"}
 _RADIUS, _LEFT, _BELOW, _RIGHT, _SIZE = 160.0, 24.0, 24.0, 190.0, 8.0
 _SMALL, _PAD, _LINES_BELOW = 80.0, 8.0, 5  # radius and room of a net beside a model, and its lines of text
-_RINGS = 40  # of the places at which densities are looked at
+_RINGS = 40  # of the places at which densities are examined
 _MOST_CIRCLES = 60  # more great circles than this hide each other
 _LEVELS = 8
 BLUE, RED, GREEN = (0.12, 0.42, 0.70), (0.80, 0.20, 0.15), (0.15, 0.50, 0.25)
@@ -193,7 +193,7 @@ def draw_beside(
     place: tuple[float, float],
     marked: np.ndarray | None = None,
 ) -> float:
-    """Draws a small stereonet on a paper of its own, whose lower right corner is at a place, with its numbers
+    """Draws a small stereonet on a separate paper, whose lower right corner is at a place, with its numbers
     below; returns the left border of the paper. marked: (3,) a pole that is drawn large."""
     (x, y), radius = small_net(place)
     lines = [dips.name, *dips.lines()]

@@ -381,7 +381,7 @@ def page_scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
 
 
 def scale_text(ratio: float) -> str:
-    """A scale as it is written."""
+    """The text of a scale."""
     return f"1 : {ratio:,.0f}" if ratio >= 10 else f"1 : {ratio:g}"
 
 
@@ -435,7 +435,7 @@ def _draw_ends(
     letters: tuple[str, str],
 ) -> None:
     """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
-    coordinates are on one line; else they are on lines of their own, with their letters."""
+    coordinates are on one line; else they are on their own lines, with their letters."""
     x, y, width, height = axes.box
     if isinstance(section, FenceData):
         for at in section.bends[1:-1][_turns(section.polyline) > _BEND]:

@@ -18,7 +18,7 @@ from ...readers.tables.interval_values import IntervalValues
 from ...readers.tables.observations import Observations
 
 UNKNOWN = -1  # block of a part of a hole that nothing is known of
-_BEYOND = 0.05  # of its length: how far a line goes on at both ends, where nothing is given
+_BEYOND = 0.05  # of its length: how far a line continues at both ends, where nothing is given
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,9 +172,9 @@ def hole_places(project: Project) -> dict[str, np.ndarray]:
 def line_through(
     places: Mapping[str, np.ndarray], holes: Sequence[str], extend: float | None = None
 ) -> np.ndarray:
-    """(N, 2) float64: a line in plan through holes, in their order, that goes on by `extend` at both ends;
-    None: by a twentieth of its length. places: where the holes are. Raises InputRefused for a hole that is
-    not there, or holes at fewer than two places, UsageError."""
+    """(N, 2) float64: a line in plan through holes, in their order, that continues by `extend` at both ends;
+    None: by a twentieth of its length. places: where the holes are. Raises InputRefused for an unknown hole,
+    or holes at fewer than two places, UsageError."""
     if extend is not None and not (np.isfinite(extend) and extend >= 0):
         raise UsageError(f"extend must be 0 or more, not {extend!r}")
     if unknown := [name for name in holes if name not in places]:

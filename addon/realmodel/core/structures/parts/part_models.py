@@ -12,8 +12,8 @@ from ...base.triangles import Sheet
 from ...settings.rules import RULES
 
 NOTHING = -1
-FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
-LID = -3  # a level above all rock, in the place of a level set: it cuts off what reaches up there
+FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie instead of the base elevation
+LID = -3  # a level above all rock, instead of a level set: it cuts off what reaches up there
 DEEP = -4  # below everything, under a body where no base elevation is
 _DEPOSITS = "conformable"
 

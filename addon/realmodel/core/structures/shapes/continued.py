@@ -12,9 +12,9 @@ from ...base.errors import InputRefused, place_text
 from ...base.triangles import Sheet, cross, edge_numbers, edges_of, welded
 from .fitted import plane_axes
 
-_MITRE = 0.5  # a vertex goes on at most by twice the length
+_MITRE = 0.5  # a vertex continues at most by twice the length
 _ALONG = 1e-3  # of a squared edge: what continues it is at least as long, or it would fold over
-_RISES = 0.05  # of the length: so far each edge goes on at least, or it would fold back
+_RISES = 0.05  # of the length: so far each edge continues at least, or it would fold back
 _PARALLEL = 0.99  # cosine between two directions: where they are as near, their lines meet far away
 
 
@@ -58,7 +58,7 @@ def _are_outer(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -
 
 
 def connected(edges: np.ndarray) -> np.ndarray:
-    """(E,) the number of the connected part, from 0, that each edge is in."""
+    """(E,) the number of the connected component, from 0, that each edge is in."""
     _, ends = np.unique(edges, return_inverse=True)
     ends = ends.reshape(-1, 2)
     least = np.arange(ends.max(initial=-1) + 1)
@@ -112,7 +112,7 @@ def _beyond(
     places: np.ndarray, ends: np.ndarray, away: np.ndarray, by: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The vertices (K, 3) beyond those (N, 3) of some edges (E, 2), and for each of the latter which it is
-    (N,): so far that each edge goes on by a length in its direction, away (E, 3). Raises InputRefused."""
+    (N,): so far that each edge continues by a length in its direction, away (E, 3). Raises InputRefused."""
     along = places[ends[:, 1]] - places[ends[:, 0]]
     least = _ALONG * dot(along, along)
     group = np.arange(len(places))
@@ -139,7 +139,7 @@ def _beyond(
 def _corners(
     places: np.ndarray, ends: np.ndarray, away: np.ndarray, group: np.ndarray, by: float
 ) -> np.ndarray:
-    """(K, 3) where the lines meet into which the edges before and after each group of vertices go on."""
+    """(K, 3) where the lines meet into which the edges before and after each group of vertices continue."""
     count = int(group.max()) + 1
     size = np.bincount(group, minlength=count)[:, None]
     middle = np.zeros((count, 3))

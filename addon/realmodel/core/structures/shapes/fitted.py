@@ -25,7 +25,7 @@ from ...settings.methods import checked_options
 from ...surfaces.planar_mesh import MeshOptions, mesh_rings
 from .ground import Top, heights_on, levels_of, plan_of
 
-_METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
+_METHOD = "dsi"  # smooth, through the points, and continues beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
 _TRIED = 100  # points of a path: so many are tried as the first one, and parts of the path are turned round
 _NARROW = 0.1  # of their length: of points that are so narrow a strip dips say better how it is turned
@@ -36,8 +36,8 @@ _ROUND = 16  # directions of an outline that is extended
 def fit_sticks(sticks: Sequence[np.ndarray], extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
     """The surface through fault sticks: their points, and triangles between neighbors.
 
-    sticks: arrays (N, 3), in any order, as are the points of each. extend: how far each stick goes on at both
-    ends, and, if extend_sideways, the surface beyond the first and the last one. Returns vertices (V, 3)
+    sticks: arrays (N, 3), in any order, as are the points of each. extend: how far each stick continues at
+    both ends, and, if extend_sideways, the surface beyond the first and the last one. Returns vertices (V, 3)
     float64 and triangles (T, 3) int32. Neighbors are joined at equal shares of their lengths, so sticks keep
     their shape. Raises InputRefused.
     """
@@ -181,7 +181,7 @@ def fit_points(
 
     points: (P, 3). The plane is that of the least squares of distances; on it the points' convex outline is
     meshed, and their distances from the plane are interpolated (discrete smooth interpolation). extend: how
-    far the outline goes on beyond the points; with extend_sideways False up and down the dip only. dips: of
+    far the outline continues beyond the points; with extend_sideways False up and down the dip only. dips: of
     the surface, checked; the direction of their normals does not matter. Where the points show no plane, it
     is that of the dips. Returns vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
     """
@@ -217,7 +217,7 @@ def _ruled(
     points: np.ndarray, dips: SpaceDips, extend: float
 ) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Points in about one line, with copies of them at both sides in the plane that their dips show, so that
-    the surface goes on sideways as it is; and the axes of that plane."""
+    the surface continues sideways as it is; and the axes of that plane."""
     spread, (line, _, _) = principal_axes(points)
     normals = dips.normals[dips.in_use]
     normals = normals / norm(normals)[:, None]
@@ -297,7 +297,7 @@ _MOST_LINES = 1000
 
 def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     """The fault with its trace as one line (N, 3), z NaN where it has none, and with the dip of the file's
-    attributes where it has none of its own; and warnings. Raises InputRefused."""
+    attributes if it has none; and warnings. Raises InputRefused."""
     text_or_file = fault.trace_file or (fault.trace if isinstance(fault.trace, str) else None)
     fault_lines = (
         FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
@@ -336,7 +336,7 @@ def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, lis
 
     tops: of each rock mass that it displaces, the RockInput, and the number of the surface that the line is
     on where it has no elevation, or None. A number as direction is that of the dip, and all rulings are
-    parallel to it; a point of the compass says the side to which the plane through both ends dips. Raises
+    parallel to it; a point of the compass is the side to which the plane through both ends dips. Raises
     InputRefused.
     """
     plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace_line()[:, 2])
@@ -418,7 +418,7 @@ def _lines_of(trace: Any) -> list[np.ndarray]:
 
 def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
     """The pieces of a trace as one line: ends that are nearest to one another are joined, first those with
-    the smallest gap. Refuses pieces that do not go on from one another."""
+    the smallest gap. Refuses pieces that do not continue from one another."""
     lines = [line for line in lines if len(line) > 1]
     if not lines:
         raise InputRefused("its trace has no length in plan", advice="give two points or more")
@@ -471,14 +471,14 @@ def _refuse_unsorted(line: np.ndarray) -> None:
 
 
 def _refuse_turning_back(before: np.ndarray, after: np.ndarray) -> None:
-    """Refuses two pieces of a trace of which the second does not go on from the first."""
+    """Refuses two pieces of a trace of which the second does not continue from the first."""
     gap = after[0, :2] - before[-1, :2]
     steps = [before[-1, :2] - before[0, :2], gap, after[-1, :2] - after[0, :2]]
     steps = [step for step in steps if step.any()]
     turns_back = any(dot(a, b) < 0 for a, b in itertools.combinations(steps, 2))
     if turns_back or norm(gap) > max(norm(steps[0]), norm(steps[-1])):
         raise InputRefused(
-            f"the lines of its trace do not go on from one another at {place_text(before[-1, :2])}",
+            f"the lines of its trace are not connected at {place_text(before[-1, :2])}",
             advice="give the lines of one fault only: choose them with where = { ... }",
             place=tuple(before[-1, :2].tolist()),
         )
@@ -612,7 +612,7 @@ def _compare(top: np.ndarray, toward: np.ndarray, dip: float) -> list[str]:
 
 
 def _continuation(line: np.ndarray, run: float, toward: np.ndarray, lengths: list[float]) -> np.ndarray:
-    """(2, 2): how far a line, seen along the dip, goes on straight beyond its first and last point, in the
+    """(2, 2): how far a line, seen along the dip, continues straight beyond its first and last point, in the
     mean direction of its last tenth there."""
     steps = []
     for ordered, length in zip((line[::-1], line), lengths, strict=True):

@@ -99,7 +99,7 @@ def _data(entry: RockInput, number: int) -> np.ndarray:
 
 
 def _number(surface: Surface) -> Callable[[str], float]:
-    """number(key): what a surface says of it; 0 where that is no number."""
+    """number(key): its value from a surface; 0 where that is no number."""
 
     def number(key: str) -> float:
         value = surface.options.get(key, getattr(surface, key, None))

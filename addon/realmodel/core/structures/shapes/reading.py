@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads faults and bodies: arrays in the place of files and points."""
+"""Reads faults and bodies: arrays instead of files and points."""
 
 from __future__ import annotations
 

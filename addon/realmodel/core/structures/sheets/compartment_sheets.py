@@ -219,7 +219,7 @@ class CompartmentSheets:
             )
             text += f"are interpolated on the sheet of compartment {' and '.join(elsewhere)}"
         else:
-            text = f"it has no {self.surface.data} in compartment {here}: there it goes on as in compartment "
+            text = f"it has no {self.surface.data} in compartment {here}: it continues as in compartment "
             text += " and ".join(elsewhere)
         for source in sources:
             fault = "" if source.fault is None else f"fault '{structure.faults.names[source.fault]}'"

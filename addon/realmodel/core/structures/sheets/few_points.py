@@ -43,5 +43,5 @@ def are_few(
 
 def of_residuals(surface: Surface) -> tuple[str, dict]:
     """The method, and its options, by which what few points differ from a trend is interpolated: inverse
-    distance. Others would go on beyond the points with slopes that so few do not show. A plane stays one."""
+    distance. Others would continue beyond the points with slopes that so few do not show. A plane stays."""
     return ("constant", {}) if surface.method == "plane" else ("idw", {"extrapolate": "method"})

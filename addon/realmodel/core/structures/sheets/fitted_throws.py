@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The throws of faults that the contacts on their sides show, fitted together with what these have in common.
 
-The heights of a surface are a plane, a step at each fault, and a random field that goes on across the faults.
-Surfaces that lie on one another share the field, or a part of it. The steps are those of generalized least
-squares (Chiles and Delfiner 2012, "Geostatistics", section 3.4), with the field that is the likeliest one
-(restricted maximum likelihood). Where a field that differs from side to side is likelier, blocks are turned
-or bent differently, and no step is what their surfaces differ by.
+The heights of a surface are a plane, a step at each fault, and a random field that continues across the
+faults. Surfaces that lie on one another share the field, or a part of it. The steps are those of generalized
+least squares (Chiles and Delfiner 2012, "Geostatistics", section 3.4), with the field that is the likeliest
+one (restricted maximum likelihood). Where a field that differs from side to side is likelier, blocks are
+turned or bent differently, and no step is what their surfaces differ by.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ...surfaces.surface_heights import needed_surfaces
 from .families import keys_of
 from .points_at_faults import contradicting, point_sides
 
-_MOST = 150  # points of a surface: more show how it goes on to the fault; and of all that are fitted at once
+_MOST = 150  # points of a surface: more show how it continues to the fault; and of all fitted at once
 _FREE = 2  # points more than unknowns
 _RANGES = (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 2.0)  # of the field, of the extent of the points
 _NUGGETS = (1e-4, 1e-2, 0.1, 0.5, 1.0)  # of its sill

@@ -102,7 +102,7 @@ class InterpolatedSurface:
             text = (
                 f"no throw of fault '{structure.faults.names[fault]}' is found, from {below} contacts below "
                 f"and {above} above it: it is smaller than its standard deviation, "
-                f"{self.steps.deviations[fault]:.3g}; the surface goes on across the fault"
+                f"{self.steps.deviations[fault]:.3g}; the surface continues across the fault"
             )
             warning = BuildWarning(text, "throw", self.entry.rock.name, self.surface.name)
             structure.warnings.append((list(range(len(structure.compartments))), warning))
@@ -117,8 +117,8 @@ class InterpolatedSurface:
             for fault in np.flatnonzero(family.key).tolist()
         ]
         text = (
-            f"it has no points in compartment '{here}': there it goes on from its others, by throws that "
-            f"these show, {number_list(throws)}"
+            f"it has no points in compartment '{here}': there it continues from the others, by the throws "
+            f"that these show, {number_list(throws)}"
         )
         warning = BuildWarning(text, "compartment", self.entry.rock.name, self.surface.name)
         structure.warnings.append((list(family.members), warning))
@@ -171,7 +171,7 @@ class InterpolatedSurface:
 
     def _constrained(self, family: Family, beside: Sequence[tuple] = ()) -> SurfaceData:
         """Its data with the dips and bounds in a family's compartments. beside: faults that die out there,
-        the side of each that is asked for, and its trace: what lies beside that on the other side does not
+        the side of each that is requested, and its trace: what lies beside that on the other side does not
         count."""
         dips = self.dips
         if dips is not None:

@@ -24,12 +24,12 @@ from ...surfaces.rock_input import RockInput
 from ...surfaces.rock_structure import FaultShape, sides_of
 
 _NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
-_EXPECTED_BY = 16  # points: so many let expect a height
+_EXPECTED_BY = 16  # points: so many predict a height
 _PLANE = 1e6  # a spline so smooth is a plane
 _LEAST = 1e-3  # of the range of heights: nearer to what is expected, a point agrees
-_SURE = 0.25  # of the distance from what another side lets expect: so near, a point counts for its side
-_PASSES = 40  # times that points which count let expect more
-_FEW = 0.01  # of the points: so few let expect nothing more
+_SURE = 0.25  # of the distance from what another side predicts: so near, a point counts for its side
+_PASSES = 40  # times that points which count predict more
+_FEW = 0.01  # of the points: so few predict nothing more
 _SHIFTS = np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
 
 
@@ -50,7 +50,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
     A point that is near a fault that displaces the surface (distances) gets the sides of those points, beside
-    no fault, that let expect a height nearest to its own. Where only one side has such points, its position
+    no fault, that predict a height nearest to its own. Where only one side has such points, its position
     decides, unless some of the points near the fault agree with them and others do not: these are of the
     other side. Contacts that follow from observations stay where they lie: so do the bounds that do, and what
     meets at a fault is no contact.
@@ -114,7 +114,8 @@ class _Agreement:
     def place(self, near: np.ndarray, beside: np.ndarray) -> None:
         """Gives points near faults the sides that they agree with. Points beside faults keep theirs, but do
         not count where they agree with another: a horizon may reach beyond its fault. near, beside: (P, F)
-        bool. Points that clearly agree with a side count from then on, for what the others may expect."""
+        bool. Points that clearly agree with a side count from then on, for what the others may
+        expect."""
         is_near = near.any(axis=1)
         places = self._choices(np.flatnonzero(is_near), near, self.reach)
         others = self._choices(np.flatnonzero(beside.any(axis=1) & ~is_near), beside, 0.0)
@@ -173,7 +174,7 @@ class _Agreement:
         return choices
 
     def _off(self, choice: _Choice) -> tuple[np.ndarray, np.ndarray]:
-        """(N, C) how far the points are from what those that count let expect, infinite where these say
+        """(N, C) how far the points are from what those that count predict, infinite where these say
         nothing and for points that count themselves; and how far they may be and agree: what a place within
         reach would change, or a plane instead of a spline."""
         off, tolerated = np.full(choice.possible.shape, np.inf), np.zeros(choice.possible.shape)
@@ -237,8 +238,7 @@ def placed_warning(
     first = points[int(moved.any(axis=1).argmax())]
     text = (
         f"{count} of its {len(points)} points, one at {place_text(first)}, lie on or just beyond fault"
-        f"{'s' if len(of) > 1 else ''} {', '.join(of)}, and are taken for the side whose other points they "
-        "agree with"
+        f"{'s' if len(of) > 1 else ''} {', '.join(of)}, and are assigned to the side that they fit best"
     )
     return BuildWarning(text, "points", rock, surface)
 

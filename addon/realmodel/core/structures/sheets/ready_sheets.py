@@ -299,7 +299,7 @@ class ReadyMesh:
         return False
 
     def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
-        """Sheets of another family as they are: they go on by heights of their vertices."""
+        """Sheets of another family as they are: they continue by heights of their vertices."""
         return sheets
 
     def adopt(self, sheets: Sheets, others: Sheets) -> None:
@@ -489,7 +489,7 @@ def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:
 
 def _two_heights_beyond(fault: str, place: np.ndarray) -> InputRefused:
     return InputRefused(
-        f"it has two heights beyond the tip of fault '{fault}' near {place_text(place)}",
+        f"it has two elevations beyond the tip of fault '{fault}' near {place_text(place)}",
         advice="extend the fault, or give data beyond the tip that agree",
         place=tuple(place.tolist()),
     )

@@ -33,8 +33,8 @@ class Cutoff(NamedTuple):
 def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int) -> Cutoff:
     """The cutoff line of a sheet on one side (-1 or +1) of a fault.
 
-    It is the border of what of the sheet's triangles lies on that side. So where the sheet goes on beyond it
-    in the fault itself, as where it bridges a bay of its own cutoff line, nothing else counts.
+    It is the border of what of the sheet's triangles lies on that side. So where the sheet continues beyond
+    it in the fault itself, as where it bridges a bay of its own cutoff line, nothing else counts.
     """
     vertices = sheet.vertices
     crossed = crossed_edges(work, sheet, fault)
@@ -136,7 +136,7 @@ class Measured:
         sheet, shape = self._sheet(compartment), self.structure.faults.shapes[self.fault]
         key = sheet, side
         if key not in self.cutoffs:
-            assert sheet is not None  # displacements are asked for of sheets that are made
+            assert sheet is not None  # displacements are requested of sheets that are made
             self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side)
         return self.cutoffs[key]
 
@@ -255,8 +255,8 @@ class Shift:
 
 
 class Throws:
-    """The throws of a rock mass's faults, measured between the sheets that are there, and those that are told
-    to it. few: the surfaces of those that are there which few points show."""
+    """The throws of a rock mass's faults, measured between existing sheets, and given ones. few: the surfaces
+    of those that are there which few points show."""
 
     def __init__(self, work: Work, structure: RockStructure, few: list[int]):
         self.work = work

@@ -163,7 +163,7 @@ def blended(
 
     heights: what is seen from each combination of sides that there is. near: (N,) bool, the nodes near its
     compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
-    weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
+    weights: of each fault (N,), 1 where its sides have their own sheets, 0 where they have the same.
     """
     result = {sides: z.copy() for sides, z in heights.items()}
     ramped = np.array([weight < 1.0 for weight in weights])
@@ -208,8 +208,8 @@ def with_equal_ends(
     within: CompartmentTest,
 ) -> dict[SideRow, np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
-    triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
-    its ramp, they are drawn together. ramps: each fault with it."""
+    triangles through which a fault that dies out would continue beyond its ends. Within a distance from
+    these, its ramp, they are drawn together. ramps: each fault with it."""
     faults = [fault for fault, _ in ramps]
     first = next(iter(heights.values()))
     if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
@@ -380,9 +380,9 @@ class _Drawn:
 
 
 def _draw_between(met_by: _Meeting, by_sides: dict, near: dict[SideRow, np.ndarray], drawn: _Drawn) -> bool:
-    """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
-    neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
-    with_equal_ends has them, changed."""
+    """Lets sheets be equal where a fault would continue between those of its two sides beyond its ends,
+    though neither meets it: rock would be above it alone, or below. Whether there is such a place. near,
+    drawn: as with_equal_ends has them, changed."""
     work, plan, triangles, faults, *_ = met_by
     every = np.array(list(by_sides.values()))
     low, high = (np.column_stack([plan, extreme.reduce(every, axis=0)]) for extreme in (np.fmin, np.fmax))
@@ -415,7 +415,7 @@ def _draw_between(met_by: _Meeting, by_sides: dict, near: dict[SideRow, np.ndarr
 
 
 class _Between(NamedTuple):
-    """Where a fault would go on between sheets. pairs: the sides of each two sheets, the triangles (T, 3)
+    """Where a fault would continue between sheets. pairs: the sides of each two sheets, the triangles (T, 3)
     over which it may be between them, and the numbers (T,) of these two triangles as one pair. places: (K, 3)
     in the compartment, and owner (K,) the pair of triangles that each lies between."""
 
@@ -522,12 +522,12 @@ def split_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Compartmen
 
 
 def _continued(fault: FaultShape, box: np.ndarray) -> np.ndarray:
-    """(M, 3, 3) the triangles in which a fault goes on beyond its border, through a box (2, 3)."""
+    """(M, 3, 3) the triangles in which a fault continues beyond its border, through a box (2, 3)."""
     return native_module().structure_continuation(fault.native(), box).reshape(-1, 3, 3)
 
 
 def _met_points(work: Work, fault: FaultShape, points: np.ndarray) -> np.ndarray:
-    """(P,) bool: the points at which a fault would go on beyond its ends."""
+    """(P,) bool: the points at which a fault would continue beyond its ends."""
     alone = np.repeat(np.arange(len(points), dtype=np.int32)[:, None], 3, axis=1)
     return triangles_met(work, fault, points, points, alone) > 0
 
@@ -535,7 +535,7 @@ def _met_points(work: Work, fault: FaultShape, points: np.ndarray) -> np.ndarray
 def _lie_in(
     work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: CompartmentTest
 ) -> np.ndarray:
-    """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
+    """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would continue
     beyond its ends, in the triangles `beyond`."""
     is_inside = np.zeros(len(lines), bool)
     if len(lines):
@@ -614,7 +614,7 @@ def beyond_lips(
 
     Their convex outline bridges each bay of a cutoff line by triangles in the fault itself. So each point
     nearer than `reach` to a fault has another one beyond it, four times as far, where those that are not near
-    one let expect the sheet; at the same height where that does not leave the fault, and where the method is
+    one predict the sheet; at the same height where that does not leave the fault, and where the method is
     to take the height of the nearest point beyond all.
     """
     if not lips or not METHODS[method].is_triangulated or settings["extrapolate"] == "none":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The order of blocks along boreholes and columns, and what a place in a block says of the surfaces over
-and under it."""
+"""The order of blocks along boreholes and columns, and the bounds of surfaces that follow from a place in a
+block."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def in_wrong_order(
 
     blocks: (N,) the numbers of the blocks, oldest first; -1 for what has no order. parts: (N,) the number of
     the part of space that each lies in, such as a compartment: across its border there is no order.
-    may_lie_above: (B, B) bool, whether rock of the first block may lie above the second. Of each
-    hole, or of the places over one another, the longest part remains that has an order. Where a hole is
-    flatter than 45 degrees it may cross a surface upward, and says nothing of the order.
+    may_lie_above: (B, B) bool, whether rock of the first block may lie above the second. Of each hole, or of
+    the places over one another, the longest part remains that has an order. Where a hole is flatter than 45
+    degrees it may cross a surface upward, and does not show the order.
     """
     wrong = np.zeros(len(observations), bool)
     for rows in _columns(observations, blocks, parts):

@@ -40,8 +40,8 @@ class _Compared:
 
 @dataclass(frozen=True)
 class _Part:
-    """The data of two surfaces in a part of space: of each its points (P, 3), its dips, and what says how its
-    heights vary; error: as of Alike, of both."""
+    """The data of two surfaces in a part of space: of each its points (P, 3), its dips, and the variogram
+    data; error: as of Alike, of both."""
 
     points: list[np.ndarray]
     dips: list[Dips | None]
@@ -52,7 +52,7 @@ class _Part:
 def conformable_run(rock: Rock, data: Sequence[SurfaceData], number: int) -> list[int]:
     """The surfaces that are interpolated with a variogram in the run of consecutive ones that their rules
     call conformable, oldest first, with one of them; none where it has no other, or is in a series. What
-    protects itself, and what cuts older rock, has a shape of its own."""
+    protects itself, and what cuts older rock, has its own shape."""
     surfaces = rock.surfaces
 
     def is_kriged(other: int) -> bool:
@@ -74,7 +74,7 @@ def conformable_run(rock: Rock, data: Sequence[SurfaceData], number: int) -> lis
 
 
 def _is_kriged(surface: Surface, data: SurfaceData) -> bool:
-    """Whether a surface that is read is interpolated from points with a variogram, by itself."""
+    """Whether a surface that is read is interpolated separately from points with a variogram."""
     if surface.series is not None or not surface.has_points:
         return False
     if not 0 < len(data.points) <= _MOST_ALIKE:

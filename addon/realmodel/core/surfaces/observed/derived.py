@@ -27,7 +27,7 @@ class PlaceContext:
     on the other side of a fault beside the one before: for surfaces that it does not displace they are one.
     inside: (N, B) bool, in which bodies; after: of each body, the surface after which it came; bodies: their
     names; voids: which of them are voids. parted: (N,) bool, where blocks meet that a fault or a body may
-    divide, which says nothing; disputed: (N,) bool, the same, where parts of intervals are left out for that.
+    divide, which is not used; disputed: (N,) bool, the same, where parts of intervals are left out for that.
     None and empty: everywhere covered, without faults and bodies."""
 
     covered: np.ndarray | None = None
@@ -174,7 +174,7 @@ def _without_surface(
 
 def _against_bodies(rock: Rock, situation: PlaceContext, blocks: np.ndarray, left_out: _Listed) -> np.ndarray:
     """(N,) bool: places in a body that are observed to be in something else, and the other way round. A void
-    says nothing against a block: rock is seen before it is dug, and what fills it later."""
+    does not contradict a block: rock is seen before it is dug, and what fills it later."""
     against = np.zeros(len(blocks), bool)
     if situation.inside is None:
         return against
@@ -341,7 +341,7 @@ def _tightest(
 
 
 def with_contacts(rock: Rock, data: Sequence[SurfaceData], derived: Derived) -> list[SurfaceData]:
-    """The data of the surfaces of a rock mass with these contacts in the place of those that they had from
+    """The data of the surfaces of a rock mass with these contacts instead of those that they had from
     observations, and with the bounds and those by contacts of older surfaces. A surface that has no point, no
     contact, and needs some, goes through places on its bounds."""
     all_data = []

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which surfaces of a rock mass the dip of a block counts for.
 
-A block was deposited on the surface below it, whatever this had cut before, and lies parallel to it; it lies
-parallel to the surface above it unless that came as an erosion surface and cut it. So surfaces that cut part
-the others into runs that are conformable with one another, each with its unconformity as the lowest. Where
-all surfaces cut, as by default, their rules do not say which of them are unconformities: none parts but the
-youngest, which may be the ground.
+A block was deposited on the surface below it, independent of what that had cut, and is parallel to it; it
+lies parallel to the surface above it unless that came as an erosion surface and cut it. So surfaces that cut
+part the others into runs that are conformable with one another, each with its unconformity as the lowest.
+Where all surfaces cut, as by default, their rules do not say which of them are unconformities: none parts but
+the youngest, which may be the ground.
 """
 
 from __future__ import annotations

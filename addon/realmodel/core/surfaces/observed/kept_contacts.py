@@ -24,8 +24,8 @@ def observed_contacts(surface: Surface, data: SurfaceData) -> np.ndarray:
 
 def kept_bounds(rock: Rock, data: Sequence[SurfaceData]) -> list[Bounds]:
     """For each surface of a rock mass that is read the contacts of older ones, where it would cut these: it
-    lies at them or above. Of level sets of one field only the lowest is asked; the sheets of a series keep
-    off one another."""
+    lies at them or above. Of level sets of one field only the lowest is used; the sheets of a series keep off
+    one another."""
     surfaces = rock.surfaces
     succession = Succession([surface.rule for surface in surfaces])
     places: list[list[np.ndarray]] = [[np.empty((0, 3))] for _ in surfaces]

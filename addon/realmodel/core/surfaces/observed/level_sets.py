@@ -4,7 +4,7 @@ most or at least that of a surface.
 
 That a surface lies at a place or above it means here that f is at most its level. Levels rise in the order of
 the surfaces, so of several that f is below only the lowest counts, and of several that it is above the
-highest. Where a level set would be over or under the place says nothing.
+highest. The position of a level set over or under the place has no meaning.
 """
 
 from __future__ import annotations

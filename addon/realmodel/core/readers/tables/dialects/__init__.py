@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables of text that other programs write with a header of their own, one module for each.
+"""Tables of text with special headers of other programs, one module for each.
 
 Input: the first lines of a file. Output: the names of its columns, their units, and where its rows begin.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A kind of table of text with a header of its own."""
+"""A kind of table of text with a special header."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class FileHeader:
 
 @dataclass(frozen=True)
 class Dialect:
-    """A kind of table that its beginning tells: begins(head, size), as of a FileFormat. header(file,
+    """A kind of table, recognized by its beginning: begins(head, size), as of a FileFormat. header(file,
     lines): of its first lines; raises InputRefused. not_rows: lines among its rows that are none."""
 
     label: str

@@ -63,7 +63,7 @@ def sheet_text(
 
 @contextmanager
 def _opened(file: Path) -> Iterator[Any]:
-    """The workbook, read row by row. Raises InputRefused in the place of whatever openpyxl raises."""
+    """The workbook, read row by row. Raises InputRefused instead of all errors of openpyxl."""
     with file.open("rb") as opened:
         head = opened.read(100)
     if head.startswith(_OLD) or _OPEN_DOCUMENT in head:
