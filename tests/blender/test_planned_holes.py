@@ -87,9 +87,7 @@ class PlannedHoles(PanelCase):
         row.length = 20.0  # a model that was not built since the file was opened is not in memory
         self.assertIsNone(built_models.current(self.scene))
         self.assertIsNone(planned_holes.kept(row))
-        self.refused(
-            ops.planned_hole_save, "blocks are not known yet", filepath=str(self.folder / "h.csv")
-        )
+        self.refused(ops.planned_hole_save, "blocks are not known yet", filepath=str(self.folder / "h.csv"))
         ops.build()
         self.assertEqual([e.end for e in planned_holes.kept(row).intervals], [15, 20])
 
