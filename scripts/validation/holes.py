@@ -76,7 +76,8 @@ def methods() -> dict:
                 print(f"{given[0].name}, {method}: {refusal}", flush=True)
                 return None
 
-        works = {name: lambda name=name, of=of: of("contacts", name) for name in METHODS}
+        works = {"default": lambda of=of: of("contacts", None)}
+        works |= {name: lambda name=name, of=of: of("contacts", name) for name in METHODS}
         works["SciPy RBF"] = lambda given=(history, *points): _rbf_share(*given)
         works[WITH_LOGS] = lambda of=of: of("all", None)
         if history.conformable:
