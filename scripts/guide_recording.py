@@ -160,7 +160,7 @@ def assemble(folder, target):
         frames.append(frame)
     durations = [milliseconds for _, _, milliseconds in kept]
     frames[0].save(
-        target, save_all=True, append_images=frames[1:], duration=durations, loop=0, quality=80, method=6
+        target, save_all=True, append_images=frames[1:], duration=durations, loop=0, quality=80, method=3
     )
     if target.stat().st_size > MOST:
         raise SystemExit(f"{target} has {target.stat().st_size:,} bytes, more than {MOST:,}")

@@ -15,7 +15,7 @@ _GRIDS = {  # height, strength of the Displace
     "shale": (1.7, 1.2),
     "limestone": (2.7, 1.2),
     "marl": (3.3, 1.2),
-    "ground": (4.6, 0.5),
+    "ground": (5.0, 0.5),
 }
 _CLIFF = 3.4  # its height
 _FAULTS = {"West fault": (300.0, 0.22, 0.1), "East fault": (720.0, -0.2, -0.06)}
@@ -64,7 +64,7 @@ def grids():
         grid(name, height, 12.0, strength, 7 if name == "ground" else 1)
     for vertex in bpy.data.objects["ground"].data.vertices:
         x, y, _ = vertex.co
-        across = y + 0.22 * x + 0.9 * math.sin(0.8 * x) + 0.35 * math.sin(2.1 * x)
+        across = 2.0 + y + 0.22 * x + 0.9 * math.sin(0.8 * x) + 0.35 * math.sin(2.1 * x)
         vertex.co.z = _CLIFF * (0.5 * math.tanh(across / 0.45) - 0.5) + 0.05 * across
     for name, color in zip(_GRIDS, GRID_COLORS, strict=True):
         item = bpy.data.objects[name]

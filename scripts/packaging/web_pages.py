@@ -87,9 +87,7 @@ def _page(name, names):
             text = "".join(part.content for part in tokens[number + 1].children)
             token.attrSet("id", slug(text))
             title = text if token.tag == "h1" else title
-        if (
-            token.type == "html_block"
-        ):  # a picture with a width
+        if token.type == "html_block":  # a picture with a width
             for address in _SOURCE.findall(token.content):
                 picture = normpath(f"{folder}/{address}")
                 pictures.add(picture)
