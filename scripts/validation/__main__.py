@@ -57,23 +57,23 @@ def measured(name: str) -> None:
 def versions(solvers: dict) -> dict:
     """{program: its version} of all that was measured."""
     manifest = (ROOT / "addon" / "realmodel" / "blender_manifest.toml").read_text(encoding="utf-8")
-    found = {"RealModel": re.search(r'^version = "([^"]+)"', manifest, re.MULTILINE)[1]}
-    found |= {name: importlib.metadata.version(package) for name, package in PACKAGES.items()}
-    return {**found, **solvers, "Python": platform.python_version()}
+    programs = {"RealModel": re.search(r'^version = "([^"]+)"', manifest, re.MULTILINE)[1]}
+    programs |= {name: importlib.metadata.version(package) for name, package in PACKAGES.items()}
+    return {**programs, **solvers, "Python": platform.python_version()}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("part", nargs="*", help=f"measure these again: {', '.join(PARTS)}")
     parser.add_argument("--again", action="store_true", help="measure all parts again")
-    given = parser.parse_args()
-    if unknown := set(given.part) - PARTS.keys():
+    options = parser.parse_args()
+    if unknown := set(options.part) - PARTS.keys():
         parser.error(f"no such part: {', '.join(sorted(unknown))}")
-    if given.again:
+    if options.again:
         shutil.rmtree(RESULTS, ignore_errors=True)
     RESULTS.mkdir(parents=True, exist_ok=True)
     for name in PARTS:
-        if name in given.part or (not given.part and not (RESULTS / f"{name}.json").exists()):
+        if name in options.part or (not options.part and not (RESULTS / f"{name}.json").exists()):
             measured(name)
     missing = [name for name in PARTS if not (RESULTS / f"{name}.json").exists()]
     if missing:

@@ -130,7 +130,7 @@ def _booleans() -> dict:
                 rows[name]["open"] += sum(solids.open_edges(mesh[1]) for mesh in meshes.values())
                 volumes[name] = v
             off = (
-                abs(volumes["RealModel"][each] - volumes["Manifold"][each]) for each in volumes["Manifold"]
+                abs(volumes["RealModel"][name] - volumes["Manifold"][name]) for name in volumes["Manifold"]
             )
             beside = max(beside, float(max(off) / size))
             pairs += 1

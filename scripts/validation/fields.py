@@ -45,7 +45,7 @@ def _rows(cases: Iterator, programs: dict) -> dict:
     rows = {name: {"shares": [], "seconds": 0.0, "refusals": []} for name in programs}
     for case in cases:
         for name, program in programs.items():
-            share, seconds = judged(lambda run=program, given=case: run(given), rows[name]["refusals"])
+            share, seconds = judged(lambda run=program, data=case: run(data), rows[name]["refusals"])
             rows[name]["shares"].append(None if share is None else round(share, 4))
             rows[name]["seconds"] += seconds
         print(*(f"{name} {row['shares'][-1]}" for name, row in rows.items()), sep=", ", flush=True)
@@ -104,7 +104,7 @@ def _noddy_realmodel(name: str) -> float:
     """The whole model, with its unconformity or fault."""
     model = build(load_project(FOLDS / name / "project.toml"))
     points, block = _noddy_truth(name)
-    names = np.array([*(each.name.split(" / ")[0] for each in model.blocks), ""])
+    names = np.array([*(block.name.split(" / ")[0] for block in model.blocks), ""])
     expected = np.array([f"A unit {number}" for number in block])
     return float((names[model.block_at(points)] == expected).mean())
 
@@ -176,9 +176,9 @@ def _distances(solved: Solved, points: list[np.ndarray]) -> list[np.ndarray]:
     moves = STEP * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
     values = solved.at((moves[:, None] + np.concatenate(points)).reshape(-1, 3)).reshape(7, -1)
     steepness = norm((values[1:4] - values[4:]).T) / (2 * STEP)
-    surfaces = np.repeat(np.arange(len(points)), [len(each) for each in points])
+    surfaces = np.repeat(np.arange(len(points)), [len(some) for some in points])
     far = (values[0] - solved.levels[surfaces]) / steepness
-    return np.split(far, np.cumsum([len(each) for each in points])[:-1])
+    return np.split(far, np.cumsum([len(some) for some in points])[:-1])
 
 
 def claudius() -> dict:
@@ -189,12 +189,12 @@ def claudius() -> dict:
         name: np.vstack([compare_fields.table(f"{name}Points"), compare_fields.table(f"{name}Section")])
         for name in names
     }
-    given = [horizons[name][horizons[name][:, 4] < SHARE, :3] for name in names]
+    known = [horizons[name][horizons[name][:, 4] < SHARE, :3] for name in names]
     unseen = [horizons[name][horizons[name][:, 4] >= SHARE, :3][::EVERY] for name in names]
     dips = compare_fields.table("Dips")
     normals = -dips[:, 3:6] / norm(dips[:, 3:6])[:, None]
-    surfaces = np.repeat(np.arange(4, dtype=np.int32), [len(each) for each in given])
-    data = LevelSetData(names, np.concatenate(given), surfaces, dips[:, :3], normals)
+    surfaces = np.repeat(np.arange(4, dtype=np.int32), [len(some) for some in known])
+    data = LevelSetData(names, np.concatenate(known), surfaces, dips[:, :3], normals)
     beds = Beds(data, compare_fields.LOW, compare_fields.HIGH, CLAUDIUS_VALUES)
 
     def of(program):
@@ -206,7 +206,7 @@ def claudius() -> dict:
     for name, work in works.items():
         refusals: list[str] = []
         far, seconds = judged(work, refusals)
-        told = None if far is None else [[float(each.mean()), float(each.std())] for each in far]
+        told = None if far is None else [[float(some.mean()), float(some.std())] for some in far]
         print(name, told, refusals, f"{seconds:.1f} s", flush=True)
         rows[name] = {"distances": told, "seconds": round(seconds, 1), "refusals": refusals}
     asked = sum(map(len, unseen))

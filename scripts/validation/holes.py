@@ -69,16 +69,16 @@ def methods() -> dict:
         points = random_points(history)
         data = measure(history)
 
-        def of(what, method, given=(history, data, points)):
+        def of(what, method, case=(history, data, points)):
             try:
-                return right_share(build(project(given[0], given[1], what, method)), *given[2])
+                return right_share(build(project(case[0], case[1], what, method)), *case[2])
             except RealModelError as refusal:
-                print(f"{given[0].name}, {method}: {refusal}", flush=True)
+                print(f"{case[0].name}, {method}: {refusal}", flush=True)
                 return None
 
         works = {"default": lambda of=of: of("contacts", None)}
         works |= {name: lambda name=name, of=of: of("contacts", name) for name in METHODS}
-        works["SciPy RBF"] = lambda given=(history, *points): _rbf_share(*given)
+        works["SciPy RBF"] = lambda case=(history, *points): _rbf_share(*case)
         works[WITH_LOGS] = lambda of=of: of("all", None)
         if history.conformable:
             works[WITH_SERIES] = lambda of=of: of("series", None)
@@ -89,7 +89,7 @@ def methods() -> dict:
             seconds[name] = seconds.get(name, 0.0) + time.process_time() - began
         print(history.name, {name: row[-1] for name, row in rows.items()}, flush=True)
     seconds = {name: round(total / len(rows[name]), 1) for name, total in seconds.items()}
-    return {"histories": [each.name for each in HISTORIES], "methods": rows, "seconds": seconds}
+    return {"histories": [history.name for history in HISTORIES], "methods": rows, "seconds": seconds}
 
 
 def wells() -> dict:
@@ -97,13 +97,13 @@ def wells() -> dict:
     by the others, and the errors of the heights of contacts."""
     model = build(load_project(WELLS))
     began = time.process_time()
-    found = model.cross_validate_holes(folds=GROUPS)
+    validation = model.cross_validate_holes(folds=GROUPS)
     seconds = time.process_time() - began
     rock = model.rock_inputs[0].rock
     log = _Log(rock)
-    contacts = {hole.hole: hole.contacts for hole in found.holes}
+    contacts = {hole.hole: hole.contacts for hole in validation.holes}
     turns = in_turn(run(lambda work: _numbers(work, log)), GROUPS)
-    rows = {"RealModel": _row(found.share, found.errors, seconds)}
+    rows = {"RealModel": _row(validation.share, validation.errors, seconds)}
     for name, predict in (("SciPy RBF", _rbf), ("nearest hole", _nearest)):
         began = time.process_time()
         lengths, errors = [], []
@@ -114,7 +114,7 @@ def wells() -> dict:
         share = sum(lengths) / log.total
         rows[name] = _row(share, np.concatenate(errors), time.process_time() - began)
         print(name, rows[name], flush=True)
-    return {"holes": len(found.holes), "groups": found.groups, "programs": rows}
+    return {"holes": len(validation.holes), "groups": validation.groups, "programs": rows}
 
 
 def _row(share: float, errors: np.ndarray, seconds: float) -> dict:

@@ -164,7 +164,7 @@ def _claudius(data: dict) -> str:
     for name in _programs(part):
         row = part["programs"][name]
         far = row["distances"] or [None] * 4
-        cells = ["refused" if each is None else f"{each[0]:.1f} ± {each[1]:.1f}" for each in far]
+        cells = ["refused" if pair is None else f"{pair[0]:.1f} ± {pair[1]:.1f}" for pair in far]
         rows.append([name, *cells, f"{row['seconds']:.0f} s"])
     return _table(["mean ± deviation, m", "D", "C", "B", "A", "processor time"], rows)
 

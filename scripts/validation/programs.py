@@ -145,7 +145,7 @@ def gempy_values(model, places: np.ndarray):
         except Exception as error:  # whatever GemPy raises is its refusal
             raise Refused(f"{type(error).__name__}: {error}") from error
     outputs = model.solutions.octrees_output[0].outputs_centers
-    fields = [each.exported_fields.scalar_field for each in outputs]
+    fields = [output.exported_fields.scalar_field for output in outputs]
     fields = np.array([np.asarray(field)[-len(places) :] for field in fields])
     return fields, np.rint(units.ravel()[-len(places) :]).astype(int)
 

@@ -32,12 +32,12 @@ def solver_results() -> dict:
     return {"rows": rows, "versions": _versions(), "seconds": round(time.process_time() - began, 1)}
 
 
-def _row(work, solver, elements, found, expected, of) -> dict:
+def _row(work, solver, elements, result, expected, of) -> dict:
     return {
         "work": work,
         "solver": solver,
         "elements": elements,
-        "found": float(found),
+        "found": float(result),
         "expected": float(expected),
         "of": of,
     }
@@ -56,8 +56,8 @@ def _settlement():
             materials = {name: layer[1:] for name, layer in layers.items()}
             moved = solvers.run_calculix(Path(folder), "mesh.inp", materials, test_solvers.GRAVITY)
         top = mesh.points[:, 2] == sum(layer[0] for layer in layers.values())
-        found = -moved[top, 2]
-        worst = found[np.abs(found - expected).argmax()]
+        sunk = -moved[top, 2]
+        worst = sunk[np.abs(sunk - expected).argmax()]
         yield _row("settlement of two layers, m", "CalculiX", elements, worst, expected, "closed form")
 
 
@@ -74,24 +74,24 @@ def _flat_heat():
         mesh = model.simulation_mesh(1.0, 0.1, layer_thickness=1.0, elements=elements)
         media = [CONDUCTIVITY[block] for block in mesh.block_names]
         with tempfile.TemporaryDirectory() as folder:
-            found = solve(mesh, Path(folder), media)
-        yield _row("flow through two flat layers", name, elements, found, expected, "closed form")
+            flow = solve(mesh, Path(folder), media)
+        yield _row("flow through two flat layers", name, elements, flow, expected, "closed form")
 
 
 def _hill_heat():
     """The example two_layers: two solvers that share nothing, on two meshes."""
     model = build(load_project(ROOT / "blend_samples" / "two_layers" / "project.toml"))
-    found = {}
+    flows = {}
     for elements, solve in (("prisms", solvers.foam_heat), ("tetrahedra", solvers.ogs_heat)):
         mesh = model.simulation_mesh(3.0, 0.48, layer_thickness=1.2, elements=elements)
         with tempfile.TemporaryDirectory() as folder:
-            found[elements] = solve(mesh, Path(folder), test_solvers.MEDIA)
+            flows[elements] = solve(mesh, Path(folder), test_solvers.MEDIA)
     yield _row(
         "flow through the hill two_layers",
         "OpenFOAM",
         "prisms",
-        found["prisms"],
-        found["tetrahedra"],
+        flows["prisms"],
+        flows["tetrahedra"],
         "OpenGeoSys, tetrahedra",
     )
 
