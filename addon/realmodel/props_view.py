@@ -18,7 +18,7 @@ from .bl import changes
 from .bl.display import cuts, fields
 from .bl.field import boreholes, shown_log, shown_net
 from .bl.objects.stored_arrays import ArraysProperty
-from .core.proof.misfits import DIP_TOLERANCE
+from .core.validation.misfits import DIP_TOLERANCE
 
 
 def slider_name(most):

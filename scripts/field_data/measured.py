@@ -11,8 +11,8 @@ import numpy as np
 from realmodel.core import Dips, Model, Observations, Project, Rock, Surface
 from realmodel.core.base.work import run
 from realmodel.core.project.series import Series
-from realmodel.core.proof.closed_form import closed_forms
 from realmodel.core.settings.series_kinds import SHEETS
+from realmodel.core.validation.closed_form import closed_forms
 
 from .histories import BASE, GRID, LENGTH, History
 

@@ -13,8 +13,8 @@ from realmodel.core import build, load_project
 from realmodel.core.base.errors import RealModelError
 from realmodel.core.base.work import run
 from realmodel.core.heights.left_out_places import in_turn, places_of
-from realmodel.core.proof.observed import PLACES
 from realmodel.core.surfaces.observed.derived import BlockNumbers
+from realmodel.core.validation.observed import PLACES
 from scipy.interpolate import RBFInterpolator
 from stacks import places
 

@@ -8,9 +8,9 @@ import pytest
 from realmodel.core.base.mapped_arrays import unchanged
 from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
-from realmodel.core.proof.closed_form import ClosedForm
 from realmodel.core.structures.setup import make_structures, mesh_inputs, read_inputs
 from realmodel.core.surfaces import wrong_sides
+from realmodel.core.validation.closed_form import ClosedForm
 
 
 def plane_fault(x=5.0, lean=0.0, y=(-5.0, 15.0), z=(-20.0, 20.0), turn=0.0):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from realmodel.core.base.algebra import dot, norm, principal_axes
 
 CORE = Path(__file__).resolve().parents[2] / "addon" / "realmodel" / "core"
-# Pictures, cells' volumes in files of other programs, and the proof of a model, which are not part of one.
+# Pictures, volumes of cells in files of other programs, and validation, which are no part of a model.
 OTHER = {
     "drawing",
     "exporters",

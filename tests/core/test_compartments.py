@@ -8,10 +8,10 @@ from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.cells.joining import blocks_divided
 from realmodel.core.cells.reach import PartExtents
-from realmodel.core.proof.closed_form import BodyOfRock
 from realmodel.core.structures.parts.parts import divide, structures_of
 from realmodel.core.structures.shapes.reading import require_meeting
 from realmodel.core.surfaces.rock_structure import fault_sides
+from realmodel.core.validation.closed_form import BodyOfRock
 from structure_cases import ball, plane_fault, prepared
 
 BOX = np.array([[0.0, 0.0, -4.0], [10.0, 10.0, 4.0]])

@@ -66,7 +66,7 @@ def test_sticks_of_a_real_reservoir():
 
 
 def checked(project_path, model, tmp_path):
-    """Passes the proof, and the outside checker where it is there; what lies across its faults adds up."""
+    """Passes validation, and the outside checker where it is there; what lies across its faults adds up."""
     assert model.validate(1000).passed
     assert_areas_of_faces(model)
     check = places.CHECK / "check_model.py"

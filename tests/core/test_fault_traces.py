@@ -182,7 +182,7 @@ def corner_model(region, trace, dip, direction, **options):
 
 
 def require_no_slivers(model):
-    """Its proof passes, and no two vertices are as near to each other as rounding."""
+    """It passes validation, and no two vertices are as near to each other as rounding."""
     assert not [(test.name, test.failed) for test in model.validate(100).tests if test.failed]
     vertices = model.vertices
     away = np.abs(vertices[:, None] - vertices).max(axis=2)

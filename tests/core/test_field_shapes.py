@@ -17,7 +17,7 @@ from realmodel.core.display.field_shapes import (
     field_surfaces,
     series_with_fields,
 )
-from realmodel.core.proof.closed_form import closed_forms
+from realmodel.core.validation.closed_form import closed_forms
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 PLANE = (500.0, 400.0, -300.0), (0.2, 1.0, 0.1)

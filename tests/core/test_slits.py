@@ -7,7 +7,7 @@ import pytest
 from folded_rocks import SQUARE, dome, folded_project, given_field, plunging, recumbent, sheet
 from realmodel.core import Fault, InputRefused, Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.base.work import run
-from realmodel.core.proof.closed_form import closed_forms
+from realmodel.core.validation.closed_form import closed_forms
 
 LEVELS = {recumbent: (1.5, 2.5, 4.0), dome: (3.0, 4.5, 6.0), plunging: (2.5, 4.0, 6.0)}
 

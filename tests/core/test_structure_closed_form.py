@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from realmodel.core.base.triangles import Sheet
 from realmodel.core.base.work import run
-from realmodel.core.proof import closed_form as form
 from realmodel.core.settings.rules import RULES
 from realmodel.core.surfaces.rock_structure import FaultShape, RockFaults, fault_sides
+from realmodel.core.validation import closed_form as form
 from structure_cases import blocks_at
 
 BOX_TRIANGLES = np.array(

@@ -105,7 +105,7 @@ def test_the_judge_asks_for_the_whole_volume_and_the_proof(monkeypatch):
     assert not any(failure.startswith("whole") for failure in failures_of(case, count=10))
     case.is_full = True
     assert any(failure.startswith("whole") for failure in failures_of(case, count=10))
-    monkeypatch.setattr("realmodel.core.proof.closed_form.closed_forms", lambda model: [])
+    monkeypatch.setattr("realmodel.core.validation.closed_form.closed_forms", lambda model: [])
     assert any(failure.startswith("validation: places") for failure in failures_of(case, count=10))
 
 

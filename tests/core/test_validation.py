@@ -12,8 +12,8 @@ from realmodel.batch import command, sources
 from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.cells.cell_complex import ARRAYS
 from realmodel.core.exporters.report import model_report
-from realmodel.core.proof.validation import ValidationReport
 from realmodel.core.surfaces.surface_input import SurfaceArrays
+from realmodel.core.validation.validation import ValidationReport
 from stacks import places
 from stacks.generate import FAMILIES, random_stack
 from stacks.rock_masses import random_rock_masses

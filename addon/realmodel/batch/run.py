@@ -22,9 +22,9 @@ from ..core.exporters import FIELDS, MODEL, SURFACES
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import hole_entries, model_report, write_report
 from ..core.exporters.surface_files import write_surfaces_report
-from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from ..core.results.sheets import DEFAULT_SIZE
 from ..core.surfaces.prepare import with_arrays
+from ..core.validation.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from .cuts import (
     CutRequest,
     JuxtapositionRequest,

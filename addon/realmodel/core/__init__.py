@@ -35,10 +35,6 @@ from .project.project import Project, Rock, Surface
 from .project.project_file import load_library, load_project
 from .project.series import Series
 from .project.structure_entries import Body, Fault
-from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
-from .proof.misfits import Misfit
-from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
-from .proof.validation import ValidationReport
 from .proposal import ProposedProject, propose_project
 from .readers.borehole_tables import BoreholeTables, read_boreholes
 from .readers.code_counts import CodeCount, count_codes
@@ -57,6 +53,10 @@ from .settings.variogram import Structure, Variogram
 from .simulation import CleanedCells, SimulationMesh
 from .surfaces.planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
 from .tiles import Tile, TiledModel, open_tiles
+from .validation.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
+from .validation.misfits import Misfit
+from .validation.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
+from .validation.validation import ValidationReport
 
 __all__ = [
     "Block",

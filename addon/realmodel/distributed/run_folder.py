@@ -25,13 +25,13 @@ from ..core.exporters.encodings.vtk_xml import write_pieces
 from ..core.exporters.model_arrays import write_arrays
 from ..core.exporters.solvers.vtu import write_vtu
 from ..core.model.model import Model
-from ..core.proof.validation import PLACES_OF_REPORT
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
 from ..core.tiles.grid import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
 from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
 from ..core.tiles.windows import Window, Windows
+from ..core.validation.validation import PLACES_OF_REPORT
 from .packing import unpacked
 
 RUN = "run"  # what only a run needs, in the folder

@@ -20,13 +20,13 @@ from ..core.base.triangles import Sheet
 from ..core.base.work import Work, native_module
 from ..core.cells.assembly import are_joined, list_blocks
 from ..core.cells.cell_complex import CellComplex
-from ..core.proof.closed_form import surface_forms
-from ..core.proof.cut_bases import check_bases
 from ..core.structures.parts.parts import box_around, divide
 from ..core.structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..core.surfaces.surface_input import ReadSurface, SurfaceInput
 from ..core.tiles.tile_model import Frame, without_shapes
 from ..core.tiles.windows import Windows
+from ..core.validation.closed_form import surface_forms
+from ..core.validation.cut_bases import check_bases
 from .workers import Workers
 
 _READ, _MESHED = 0.2, 0.3  # of the time

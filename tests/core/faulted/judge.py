@@ -13,7 +13,7 @@ from .located import Faces, distances
 
 NEAR = 128  # units in the last place: what is nearer to some surface is not decided
 LINES = 12  # vertical ones on which all that is between two surfaces is looked at
-VALIDATED = 600  # points of the proof of one model in three
+VALIDATED = 600  # points of the validation of one model in three
 
 
 def kinds_of(failures):

@@ -8,7 +8,7 @@ from faulted.judge import model_bytes, topology
 from .case import AIR, BODY, SIZE, SheetCase
 from .generate import HIGH, LOW, Drawn
 
-VALIDATED = 1500  # points of the proof
+VALIDATED = 1500  # points of the validation
 DENSE = 40  # contacts of each surface, and dips, from which the model must be about the truth
 LEAST_SHARE = 0.85
 

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ...core import RealModelError
-from ...core.proof.misfits import attitude_text
+from ...core.validation.misfits import attitude_text
 from ..display import bodies
 from ..host.debounce import DebouncedJob
 from ..objects import exaggeration, model_tree, viewports, visible

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 
-from ...core.proof.left_out_holes import validated_holes
+from ...core.validation.left_out_holes import validated_holes
 from ..display import shown_models
 from ..host.thread_job import ThreadJob
 from ..objects import viewports

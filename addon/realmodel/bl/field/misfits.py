@@ -4,7 +4,7 @@
 import numpy as np
 
 from ...core import RealModelError
-from ...core.proof.misfits import misfits
+from ...core.validation.misfits import misfits
 from ..display import shown_models
 from ..host import caches
 from ..project import project_settings, settings

@@ -15,10 +15,10 @@ from ..base.work import Work, native_module, run
 from ..cells.model_data import ModelData
 from ..fields import level_solids
 from ..fields.series_field import SeriesField
-from ..proof.closed_form import ClosedForm, closed_forms
 from ..results.layer_values import local_compartments
 from ..results.sections.section_data import SectionData
 from ..surfaces.rock_input import RockInput
+from ..validation.closed_form import ClosedForm, closed_forms
 
 _FINE = 1.0  # edges of what is drawn on a section, of the spacing of the lattice
 _ROUNDS = 14  # in which triangles of a section are halved at most

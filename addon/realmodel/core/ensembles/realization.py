@@ -19,11 +19,11 @@ from ..heights.realizations.draws import Draw
 from ..heights.realizations.sheet_draws import SeriesDraw
 from ..heights.realizations.turning_bands import FieldArea, Noise
 from ..model.model import Model
-from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.parts.parts import Structures
 from ..structures.setup import make_surfaces
 from ..surfaces.observed.conformable import sheets_beside
 from ..surfaces.rock_input import RockInput
+from ..validation.closed_form import ClosedForm, closed_forms
 
 _INTERPOLATED, _INTERSECTED = 0.5, 0.98  # of the time
 _MOST_BYTES = 256_000_000  # of the closed forms of realizations that are kept

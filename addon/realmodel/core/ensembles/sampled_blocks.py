@@ -21,7 +21,6 @@ from ..cells.model_data import ModelData
 from ..exporters import SAMPLES
 from ..model.cutting import Fence, Section
 from ..model.planned_hole import PlannedHole
-from ..proof.closed_form import ClosedForm, blocks_of_all
 from ..results.model_holes import HoleAxis, HoleContact, mean_share
 from ..results.samples import (
     BoreholeSamples,
@@ -35,6 +34,7 @@ from ..results.samples import (
 )
 from ..results.sections.section_drawing import directions, flattened, is_vertical, plane_of
 from ..results.volumes import missing_deviations
+from ..validation.closed_form import ClosedForm, blocks_of_all
 from .realization import Realizer
 
 MOST_PLACES = 20_000_000  # times blocks

@@ -17,9 +17,6 @@ from ..base.work import native_module
 from ..cells.model_data import ModelData, UsedSurfaces
 from ..notebook import data_frame
 from ..project.structure_entries import Body, Fault
-from ..proof.left_out_holes import HoleValidation
-from ..proof.observed import Observed, observed
-from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
 from ..results.corner_point import CornerPointGrid, corner_point_entry
 from ..results.displacements import displacements
 from ..results.faults.juxtaposition import fault_areas
@@ -30,6 +27,9 @@ from ..simulation import cleaned_entry, mesh_entry
 from ..simulation.cleaned_cells import CleanedCells
 from ..simulation.simulation_mesh import SimulationMesh
 from ..surfaces.surface_heights import used_vertices
+from ..validation.left_out_holes import HoleValidation
+from ..validation.observed import Observed, observed
+from ..validation.validation import PLACES_OF_REPORT, ValidationReport, validate
 
 if TYPE_CHECKING:
     import pandas

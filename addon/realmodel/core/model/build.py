@@ -15,11 +15,11 @@ from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.assembly import assemble, intersect
 from ..project.project import Project
 from ..project.project_checks import CELL_KINDS, check_cells, check_memory, check_project, check_stage
-from ..proof.closed_form import surface_forms
-from ..proof.cut_bases import check_bases, warn_of_eroded_contacts
 from ..settings.method_options import check_threads
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
+from ..validation.closed_form import surface_forms
+from ..validation.cut_bases import check_bases, warn_of_eroded_contacts
 from .estimate import require_memory
 from .model import Model
 

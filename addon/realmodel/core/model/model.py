@@ -16,11 +16,6 @@ from ..exporters import MODEL, SHEETS, SURFACES, check_tolerance
 from ..exporters.page import page_of
 from ..exporters.report import Report, model_report
 from ..fields import ScalarField
-from ..proof.closed_form import block_at, grid
-from ..proof.left_out_holes import cross_validate_holes
-from ..proof.misfits import misfits
-from ..proof.observed import observed
-from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
 from ..results.corner_point import corner_point_grid
 from ..results.geological_map import geological_map
@@ -32,6 +27,11 @@ from ..results.tables import block_table, borehole_table, map_dataset
 from ..results.volumes import Erosion, eroded
 from ..settings.method_options import check_threads
 from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
+from ..validation.closed_form import block_at, grid
+from ..validation.left_out_holes import cross_validate_holes
+from ..validation.misfits import misfits
+from ..validation.observed import observed
+from ..validation.validation import PLACES_OF_CHECK, ValidationReport, validate
 from . import cutting, notebook_view
 from .juxtapositions import juxtaposition
 from .model_file import read_model

@@ -10,9 +10,9 @@ from ..base.errors import BuildFailed, InputRefused
 from ..model.build import build
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
-from ..proof.left_out_holes import cross_validate_holes
 from ..settings.rules import RULES
 from ..settings.series_kinds import SHEETS
+from ..validation.left_out_holes import cross_validate_holes
 
 _FOLDS = 5
 _COARSE = 2.0  # times the edge length, for trials

@@ -22,10 +22,10 @@ from ..model.cutting import Fence, Section
 from ..model.model import Model
 from ..notebook import ShortRepr
 from ..project.project import Project
-from ..proof.closed_form import AIR, checked_places, grid_centers
 from ..results.layer_values import RockFields, field_of
 from ..results.model_holes import Interval
 from ..results.tables import block_table, borehole_table
+from ..validation.closed_form import AIR, checked_places, grid_centers
 from .catalog import TILES, Catalog, TileEntry, read_catalog
 from .tile_fields import FIELDS, read_rock_fields
 from .tile_model import read_model
