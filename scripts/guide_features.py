@@ -93,7 +93,7 @@ def fold(walk):
     yield from keep(walk, "series_panel", "UI", ["surfaces", "series"])
     group.view.show_field_section, group.view.use_section = False, False
     group.view.show_dips = group.view.show_misfits = True
-    group.view.dip_tolerance = math.radians(5.0)
+    group.view.dip_tolerance = 0.1
     for item in blocks():
         item.hide_set(True)
     yield from settled(walk)
