@@ -83,8 +83,6 @@ def carving(walk):
     yield from guide_window.build(walk)
     group.live = True
     ground = next(row.interface for row in group.rocks[0].surfaces if row.name == "ground")
-    # Blender evaluates a mesh during a stroke only where it has a modifier
-    ground.modifiers.new("Smooth", "SMOOTH").factor = 0.01
     group.active_result = len(group.results) - 4
     for item in bpy.context.selected_objects:
         item.select_set(False)

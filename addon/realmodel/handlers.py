@@ -100,6 +100,7 @@ def _take_undone():
 
 @persistent
 def _changed(scene, depsgraph):
+    live.evaluate_sculpted(scene, depsgraph)
     names = display.evaluated(depsgraph)
     if names and not live.is_at_work():
         _evaluated.setdefault(scene.name, set()).update(names)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh for simulation: Esc, then from the file browser to the file."""
+"""A mesh for simulation: Esc, then from the file browser to the file. A surface that is sculpted."""
 
 import bpy
-from steps_1_panel import idle, model
+from steps_1_panel import idle, model, volumes
 from steps_3_import import invoked
 
 
@@ -49,4 +49,37 @@ def mesh_from_the_browser(walk):
     view.filebrowser_display_type = before
 
 
-STEPS = (cancel_a_mesh, mesh_from_the_browser)
+def sculpt_a_surface(walk):
+    """With Auto on, the blocks follow each stroke in Sculpt Mode, where Blender evaluates no mesh."""
+    ground = model().rocks[0].surfaces[-1].interface
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    ground.hide_set(False)
+    bpy.context.view_layer.objects.active = ground
+    ground.select_set(True)
+    model().live = True
+    bpy.ops.object.mode_set(mode="SCULPT")
+    brush = bpy.context.tool_settings.sculpt.brush
+    brush.direction, brush.strength, brush.sculpt_plane = "SUBTRACT", 0.5, "Z"
+    yield walk.redrawn(2)
+    yield idle
+    before = volumes()
+    corners = [ground.matrix_world @ vertex.co for vertex in ground.data.vertices]
+    middle = sum(corners[1:], corners[0]) / len(corners)
+    x, y = walk.pixel_of(min(corners, key=lambda corner: (corner - middle).length))
+    walk.move(x, y)
+    yield walk.redrawn()
+    walk.window.event_simulate(type="LEFTMOUSE", value="PRESS", x=x, y=y)
+    for step in range(1, 6):
+        walk.move(x + 6 * step, y)
+        yield walk.redrawn()
+    walk.window.event_simulate(type="LEFTMOUSE", value="RELEASE", x=x + 30, y=y)
+    yield lambda: volumes() != before and idle()
+    assert ground.mode == "SCULPT"
+    walk.shot("sculpted")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    model().live = False
+    yield walk.redrawn()
+
+
+STEPS = (cancel_a_mesh, mesh_from_the_browser, sculpt_a_surface)

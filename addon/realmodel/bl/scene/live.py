@@ -99,28 +99,47 @@ def is_at_work():
 
 def changed(scene, edited):
     """Blender has evaluated what has these names, as of `display.evaluated`, with another shape or place."""
-    group = scene.realmodel
-    for rock in group.rocks:
+    for rock in scene.realmodel.rocks:
         if rock.region is not None and _names(rock.region) & edited:
             rock.region_area = -1.0
             region_size.ask()
-            _edited(scene, rock.region)
-        for obj in plan_mesh.objects(rock):
-            if _names(obj) & edited:
-                _edited(scene, obj)
+    for obj in _inputs(scene):
+        if _names(obj) & edited:
+            _edited(scene, obj)
+
+
+def evaluate_sculpted(scene, depsgraph):
+    """Has Blender evaluate objects of a model after a stroke in Sculpt Mode: by itself it does so only for
+    objects with modifiers, and when the mode ends."""
+    strokes = {
+        update.id.original
+        for update in depsgraph.updates
+        if isinstance(update.id, bpy.types.Object)
+        and update.is_updated_shading
+        and not update.is_updated_geometry
+        and update.id.original.mode == "SCULPT"
+    }
+    for obj in strokes.intersection(_inputs(scene)) if strokes else ():
+        obj.update_tag(refresh={"DATA"})
+
+
+def _inputs(scene):
+    """The objects that a scene's model is made from."""
+    for rock in scene.realmodel.rocks:
+        if rock.region is not None:
+            yield rock.region
+        yield from plan_mesh.objects(rock)
     for _, row in settings.interface_rows(scene):
-        made = row.interface if row.interface_digest else None
-        if made is not None and _names(made) & edited:
-            _edited(scene, made)
-        source = row.object if row.source in settings.OF_OBJECTS else None
-        if source is not None and _names(source) & edited:
-            _edited(scene, source)
+        if row.interface is not None and row.interface_digest:
+            yield row.interface
+        if row.object is not None and row.source in settings.OF_OBJECTS:
+            yield row.object
 
 
 def _edited(scene, obj):
-    """Blender has evaluated an object that a model is made from. Only in edit mode it is sure that it has
+    """Blender has evaluated an object that a model is made from. Only in these modes it is sure that it has
     another shape now."""
-    if obj.mode == "EDIT":
+    if obj.mode in {"EDIT", "SCULPT"}:
         touch(scene)
     else:
         _look_at(scene)
