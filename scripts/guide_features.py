@@ -199,7 +199,8 @@ def filling(walk):
     with viewport(walk):
         bpy.ops.realmodel.fill_with_strata("INVOKE_DEFAULT")
     yield walk.redrawn(8)
-    save_picture(viewed(walk), walk.folder / "filling.png")
+    picture = viewed(walk)  # its rows from the bottom up: above the dialog it is empty
+    save_picture(picture[: int(0.76 * len(picture))], walk.folder / "filling.png")
     walk.key("ESC")
     yield lambda: "Strata Preview" not in bpy.data.objects
     yield walk.redrawn(3)
