@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bodies without a mesh, between their contacts in the intervals of boreholes: veins, sills, lenses."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -102,7 +104,7 @@ def test_any_logs_make_a_closed_body_or_none(seed, count):
     try:
         _, _, volume, _ = body_of(ends, without, rng.choice([None, 40.0]))
     except InputRefused as error:
-        assert "how far it goes" in str(error) or "different elevations" in str(error)
+        assert re.search("how far it goes|different elevations|same position in plan", str(error))
         return
     assert volume > 0
 

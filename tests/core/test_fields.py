@@ -302,7 +302,7 @@ def test_data_that_cannot_be_used_are_refused():
     refused("have a contact at one place", contacts=again, contact_surfaces=other)
     none = np.empty((0, 3))
     refused(
-        "which direction",
+        "direction to younger rock",
         names=("H1",),
         contact_surfaces=np.zeros(len(data.contacts), np.int32),
         dips=none,

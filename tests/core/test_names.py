@@ -76,7 +76,7 @@ def test_slice_and_clip_are_section_and_cut(model):
 
 
 def test_arguments_by_position_still_work_and_warn(model):
-    with pytest.warns(DeprecationWarning, match="section: give threads by name"):
+    with pytest.warns(DeprecationWarning, match="section: pass threads by name"):
         old = model.section((0.5, 0.5, 0.5), (1, 0, 0), 2)
     assert old.area == model.section((0.5, 0.5, 0.5), (1, 0, 0), threads=2).area
     with pytest.raises(TypeError):

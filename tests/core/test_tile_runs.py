@@ -39,7 +39,7 @@ def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
     monkeypatch.setattr(tile_folder, "_join", stops)
     with pytest.raises(KeyboardInterrupt):
         build_tiles(project, tmp_path / "t", (40, 40))
-    with pytest.raises(InputRefused, match="not finished"):
+    with pytest.raises(InputRefused, match="unfinished"):
         open_tiles(tmp_path / "t")
     assert {path.name for path in (tmp_path / "t" / "run").glob("joined-*")} == {
         f"joined-{tile}.json" for tile in ("0000-0000", "0001-0000")
