@@ -32,21 +32,6 @@ SIZE = (900, 560)
 RAYS, SECONDS = 10, 600.0  # of a pixel, and of a picture at most
 
 
-def boulder():
-    """A ball with bumps, as somebody may sculpt one; the active object."""
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=7, radius=1.0)
-    item = bpy.context.object
-    item.name = "Boulder"
-    places = np.empty(3 * len(item.data.vertices), np.float32)
-    item.data.vertices.foreach_get("co", places)
-    places = places.reshape(-1, 3)
-    x, y, z = places.T
-    bumps = 0.15 * np.sin(3 * x + 2 * z) * np.cos(4 * y) + 0.03 * np.sin(9 * x - 7 * y + 5 * z)
-    bumps += 0.01 * np.sin(23 * x + 17 * z) * np.cos(19 * y)
-    item.data.vertices.foreach_set("co", (places * (2.0 + 2.0 * bumps)[:, None]).ravel())
-    return item
-
-
 def light_and_camera(scene):
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = (5.2, -6.2, 3.2)
@@ -63,7 +48,7 @@ def light_and_camera(scene):
 
 def filled_boulder():
     """A boulder filled with tilted and faulted strata under level ones."""
-    boulder()
+    sculptures.boulder()
     bpy.ops.realmodel.fill_with_strata(
         preset="FAULTED",
         palette="CANYON",
@@ -89,7 +74,7 @@ def cliff():
 
 def print_parts():
     """Beds moved apart, with pegs on them and holes for these."""
-    boulder().scale = (1.6, 1.2, 0.7)
+    sculptures.boulder().scale = (1.6, 1.2, 0.7)
     bpy.ops.realmodel.fill_with_strata(preset="PRINT", beds=3, peg_size=0.12, rock_looks=False, seed=3)
     beds = sorted(bpy.context.selected_objects, key=lambda item: item.name)
     for number, bed in enumerate(beds):

@@ -296,21 +296,19 @@ def smooth():
 
 
 OF_PANELS = (start, tour, csv_panel)  # pictures of the sidebar alone
-OF_DIALOGS = (csv_dialog, features.filling, features.meshing)
+OF_DIALOGS = (csv_dialog, features.filling)
 WITH_PANELS = (  # of the viewport and the sidebar
     csv,
     quality,
     sculpt_built,
     features.boreholes,
-    features.residuals,
-    features.drawing,
 )
-WITH_MANY_PANELS = (
+WITH_MANY_PANELS = (  # with a longer sidebar
     window,
     section,
-    features.uncertainty,
+    features.planned_hole,
     features.fold,
     features.faults,
-)  # with a longer sidebar
-OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures, features.tiles)  # of the viewport alone
+)
+OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures)  # of the viewport alone
 AS_FOUND = (start, window)  # with panels open or closed as users find them

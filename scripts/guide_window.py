@@ -6,7 +6,6 @@ import math
 
 TAB = {}  # the panels of the tab in their order, and their options
 ELEVATION = math.radians(27.0)  # of the eye above the horizon, as in the add-on
-BLUE = (0.278, 0.447, 0.702)  # of what is switched on, and of sliders as far as they are filled
 MARGIN = 14  # pixels around a viewport, where Blender has a border and arrows that open regions
 
 
@@ -80,20 +79,6 @@ def widen(walk, pixels):
     yield walk.redrawn(2)
     if walk.region("UI").width < before + 0.5 * pixels:
         raise AssertionError("the sidebar stays as wide as it is")
-
-
-def slider(walk, number):
-    """(left, right, height) in the window of the blue field of this number from the top, in the sidebar."""
-    import numpy as np
-
-    region = walk.region("UI")
-    picture = seen(walk, region)
-    is_blue = (abs(picture - np.array(BLUE)) < 0.03).all(axis=2)
-    rows = np.flatnonzero(is_blue.sum(axis=1) > 20)[::-1]
-    fields = np.split(rows, np.flatnonzero(np.diff(rows) < -2) + 1)
-    row = int(np.median(fields[number]))
-    columns = np.flatnonzero(is_blue[row])
-    return region.x + columns[0], region.x + columns[-1], region.y + row
 
 
 def keep(walk, name, region=None, panels=()):

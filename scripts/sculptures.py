@@ -40,6 +40,25 @@ def block():
     return item
 
 
+def boulder():
+    """A ball with bumps, as somebody may sculpt one; the active object."""
+    import bpy
+    import numpy as np
+
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=7, radius=1.0)
+    item = bpy.context.object
+    item.name = "Boulder"
+    places = np.empty(3 * len(item.data.vertices), np.float32)
+    item.data.vertices.foreach_get("co", places)
+    places = places.reshape(-1, 3)
+    x, y, z = places.T
+    bumps = 0.15 * np.sin(3 * x + 2 * z) * np.cos(4 * y) + 0.03 * np.sin(9 * x - 7 * y + 5 * z)
+    bumps += 0.01 * np.sin(23 * x + 17 * z) * np.cos(19 * y)
+    item.data.vertices.foreach_set("co", (places * (2.0 + 2.0 * bumps)[:, None]).ravel())
+    item.data.update()
+    return item
+
+
 def _voxels(item, size):
     """Makes one surface of parts that overlap, of quads of this size."""
     remesh = item.modifiers.new("Remesh", "REMESH")

@@ -9,7 +9,6 @@ import functools
 import importlib.metadata
 import json
 import platform
-import re
 import shutil
 import sys
 import time
@@ -56,8 +55,7 @@ def measured(name: str) -> None:
 
 def versions(solvers: dict) -> dict:
     """{program: its version} of all that was measured."""
-    manifest = (ROOT / "addon" / "realmodel" / "blender_manifest.toml").read_text(encoding="utf-8")
-    programs = {"RealModel": re.search(r'^version = "([^"]+)"', manifest, re.MULTILINE)[1]}
+    programs = {"RealModel": (ROOT / "VERSION").read_text(encoding="utf-8").strip()}
     programs |= {name: importlib.metadata.version(package) for name, package in PACKAGES.items()}
     return {**programs, **solvers, "Python": platform.python_version()}
 
