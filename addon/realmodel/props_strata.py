@@ -180,7 +180,6 @@ BEDS = (
 )
 SHAPE, EROSION = (("base_depth", "close_holes"),), (("strength", "joints", "roughness", "faces"),)
 SOLID = (("masks", "gap", "pegs", "peg_size"),)
-GROUPS = (*BEDS, *SHAPE, ("erosion", *EROSION[0]), *SOLID)
 
 
 def values_of(values):

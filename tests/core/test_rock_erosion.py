@@ -18,8 +18,17 @@ from realmodel.core import (
 )
 from realmodel.core.base import work
 from realmodel.core.base.triangles import open_edges
-from realmodel.core.filling import SHAPES, closed_mesh, eroded_within, hardness_of_beds, kept_of, lay_beds
-from realmodel.core.filling.erosion import Lattice, _winding
+from realmodel.core.filling import (
+    SHAPES,
+    closed_mesh,
+    divided_at_beds,
+    eroded_within,
+    hardness_of_beds,
+    kept_of,
+    lay_beds,
+    scree_within,
+)
+from realmodel.core.filling.erosion import Lattice, winding
 from solids import box, moved, together, torus, volume
 from test_filling import ball
 
@@ -118,10 +127,10 @@ def test_winding_numbers_of_nodes_on_edges_and_corners():
     solid = together(box((0, 0, 0), (4, 4, 4)), moved(box((0, 0, 0), (1, 1, 1)), (6, 1, 1)))
     corners = solid[0][solid[1]]
     lattice = Lattice(np.array([-1.0, -1.0, -0.5]), 1.0, (10, 7, 7))
-    winding = _winding(lattice, corners)
-    assert set(np.unique(winding)) == {0, 1}
+    around = winding(lattice, corners)
+    assert set(np.unique(around)) == {0, 1}
     # a node above an edge counts as a little farther to the right and up
-    assert winding.sum() == 4 * 4 * 4 + 1
+    assert around.sum() == 4 * 4 * 4 + 1
 
 
 @pytest.mark.parametrize("kind", SHAPES)
@@ -157,3 +166,53 @@ def test_refused_values():
 def test_cancel():
     with pytest.raises(Cancelled):
         eroded(ball(), erosion=DifferentialErosion(faces=500_000), cancel=lambda: True)
+
+
+@pytest.mark.parametrize(
+    "strata",
+    [
+        Strata(beds=30, dip=20, variation=1.0),
+        Strata(
+            beds=9, dip=30, fold_amplitude=0.3, fold_wavelength=1.3, faults=3, throw=0.3, unconformity=0.6
+        ),
+        Strata(beds=7, fold_amplitude=0.5, fold_wavelength=1.5, axial_dip=40),
+    ],
+)
+def test_a_mesh_divided_at_beds(strata):
+    mesh = ball()
+    beds = lay_beds(strata, mesh[0])
+    vertices, triangles = divided_at_beds(*mesh, beds)
+    assert vertices[: len(mesh[0])].tobytes() == mesh[0].tobytes()
+    assert not len(open_edges(vertices, triangles))
+    assert np.isclose(volume(vertices, triangles), volume(*mesh), rtol=1e-12)
+    corners = vertices[triangles]
+    inner = corners.mean(axis=1)[:, None] * 0.98 + corners * 0.02
+    bed = beds.numbers(inner.reshape(-1, 3)).reshape(-1, 3)
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    of_one = (bed == bed[:, :1]).all(axis=1)
+    assert areas[of_one].sum() > 0.98 * areas.sum(), "but folds, which are not linear along an edge"
+
+
+def test_scree_leans_against_walls_at_its_angle():
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(0.0, 41.0), np.arange(0.0, 21.0), indexing="ij"))
+    number = np.arange(41 * 21).reshape(41, 21)
+    a, b, c, d = (
+        part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    )
+    triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    ground = np.column_stack([x, y, np.where(x < 20, 12.0, 2.0)])
+    mesh = closed_mesh(ground, triangles, 0.0)
+    vertices, made = work.run(lambda job: scree_within(job, mesh, 1.0, 34.0, 3, 60_000))
+    assert not len(open_edges(vertices, made))
+    assert volume(vertices, made) > 0
+    corners = vertices[made]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    up = normal[:, 2] / np.linalg.norm(normal, axis=1)
+    middle = corners.mean(axis=1)
+    open_ = (middle[:, 0] > 20.5) & (up > 0.3) & (middle[:, 2] > 2.5)
+    slope = np.degrees(np.arccos(np.average(up[open_], weights=np.linalg.norm(normal[open_], axis=1))))
+    assert 28.0 < slope < 40.0
+    assert vertices[:, 2].max() < 10.0
+    assert (vertices[:, 0] < 36.0).all()
+    with pytest.raises(InputRefused, match="no wall"):
+        work.run(lambda job: scree_within(job, box((0, 0, 0), (10, 10, 5)), 1.0, 34.0, 3, 5000))

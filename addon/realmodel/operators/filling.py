@@ -18,7 +18,7 @@ from .pictures import by_hand, set_up_first
 from .reporting import InBackground, Reporting, not_building, object_mode
 
 _PICTURE_SIZE = 3.0  # in heights of a button
-_WIDTH = 360  # of the dialog, in units of the interface
+_WIDTH = 640  # of the dialog, in units of the interface
 
 
 def a_mesh(context):
@@ -106,7 +106,7 @@ class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
         self._show()
         if context.area is not None and context.area.type == "VIEW_3D":
             # The dialog opens around the mouse: at the left it does not hide the object in the middle.
-            half = round(0.6 * _WIDTH * context.preferences.system.ui_scale)
+            half = round(0.55 * _WIDTH * context.preferences.system.ui_scale)
             context.window.cursor_warp(context.area.x + half, context.area.y + context.area.height // 2)
         return context.window_manager.invoke_props_dialog(self, width=_WIDTH)
 
@@ -120,9 +120,11 @@ class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
 
     def draw(self, _context):
         layout = self.layout
-        layout.label(text="Preset")
-        draw_presets(layout, lambda cell, key: cell.prop_enum(self, "preset", key))
-        draw_values(layout, self, props_strata.GROUPS)
+        columns = layout.split(factor=0.5)
+        left, right = columns.column(), columns.column()
+        draw_presets(left, 3, lambda cell, key: cell.prop_enum(self, "preset", key))
+        draw_values(left, self, (*props_strata.SHAPE, ("erosion", *props_strata.EROSION[0])))
+        draw_values(right, self, (*props_strata.BEDS, *props_strata.SOLID))
         if self._problem:
             layout.label(text=self._problem, icon="ERROR")
 
@@ -307,9 +309,9 @@ def _is_shape_of(obj, bed):
     return collection is not None and bed is not None and (obj == bed or bed.name in collection.objects)
 
 
-def draw_presets(layout, button):
+def draw_presets(layout, columns, button):
     """Pictures of the presets. button(layout, key) draws what chooses one."""
-    grid = layout.grid_flow(row_major=True, columns=4, even_columns=True)
+    grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True)
     for number, key in enumerate(PRESETS):
         cell = grid.column(align=True)
         cell.template_icon(icon_value=thumbnails.icon(strata_presets.PICTURES, number), scale=_PICTURE_SIZE)

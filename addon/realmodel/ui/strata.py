@@ -52,7 +52,7 @@ class REALMODEL_PT_strata_beds(_Step, bpy.types.Panel):
         def button(cell, key):
             cell.operator("realmodel.strata_preset", text=PRESETS[key][0]).preset = key
 
-        draw_presets(layout, button)
+        draw_presets(layout, 2, button)
         if values is None:
             hint(layout, "A preset shows beds on the active mesh. They follow its shape.")
             return

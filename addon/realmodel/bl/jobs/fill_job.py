@@ -13,7 +13,7 @@ import numpy as np
 from ...core import BuildFailed
 from ...core.base.triangles import without_flat
 from ...core.display import polygon_mesh
-from ...core.filling import eroded_within, fill_within, kept_of
+from ...core.filling import divided_at_beds, eroded_within, fill_within, kept_of
 from ..host.thread_job import ThreadJob
 from ..objects import filled_beds, meshes, placing
 from ..objects.boolean_job import VOLUME
@@ -55,7 +55,7 @@ class ErosionJob(_StrataJob):
     """Shows the eroded mesh of an object in its modifier. `run` and `finish` return how many faces it has."""
 
     def _work(self, job):
-        vertices, triangles = self._eroded(job)
+        vertices, triangles = divided_at_beds(*self._eroded(job), self._beds)
         local = self._shape.to_local(vertices).astype(np.float32)
         triangles = without_flat(local.astype(np.float64), triangles)
         return local, triangles[:, ::-1] if self._shape.is_mirrored else triangles

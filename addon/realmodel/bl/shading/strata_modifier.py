@@ -28,6 +28,7 @@ NAME = "Strata"
 KEY = "realmodel_strata_group"  # on the group: its version
 ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from 0
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
+_ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
 _VERSION = 1
 ROCKS = max(map(len, PALETTES.values()))
@@ -275,11 +276,9 @@ def _fill(group):
     nodes = GeometryNodes(group)
     inputs = nodes.new("NodeGroupInput").outputs
     geometry = nodes.either(inputs["Geometry"], nodes.mesh_of(inputs[_ERODED]), inputs[_SHOW_ERODED])
-    bed = _bed(nodes, nodes.mesh_of(inputs[_TABLE]))
-    geometry = nodes.stored(geometry, filled_beds.BED, bed["bed"], "INT")
-    for name in ("height", "thickness", "age", "hardness"):
-        geometry = nodes.stored(geometry, meshes.PREFIX + name, bed[name])
-    geometry = nodes.stored(geometry, ROCK, bed["rock"], "INT", "FACE")
+    beds = _Beds(nodes, nodes.mesh_of(inputs[_TABLE]))
+    geometry = beds.stored(geometry)
+    geometry = nodes.stored(geometry, ROCK, beds.of_row("rock", beds.row(beds.height())), "INT", "FACE")
     rock = nodes.named(ROCK, "INT")
     for number in range(ROCKS):
         here = nodes.math("MULTIPLY", nodes.math("COMPARE", rock, float(number), 0.5), inputs[_SHOW_ROCKS])
@@ -289,45 +288,75 @@ def _fill(group):
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
 
 
-def _bed(nodes, table):
-    """Fields of what a table says of a position: see core.filling.Beds, whose formulas these are."""
-    whole = {name: nodes.at(table, 0, nodes.named(name, "FLOAT_VECTOR"), "FLOAT_VECTOR") for name in _WHOLE}
-    position = nodes.of("GeometryNodeInputPosition", "Position")
-    place = nodes.new("ShaderNodeCombineXYZ")
-    for axis, name in enumerate("xyz"):
-        turned = nodes.vector("DOT_PRODUCT", position, whole[name])
-        nodes.link(nodes.math("ADD", turned, nodes.part(whole["shift"], axis)), place.inputs[axis])
-    z = nodes.part(place.outputs[0], 2)
-    away = nodes.vector("SUBTRACT", place.outputs[0], whole["middle"])
-    away = nodes.vector("SUBTRACT", away, nodes.vector("SCALE", whole["lean"], z))
-    apart, floor = (nodes.part(whole["levels"], axis) for axis in (0, 1))
-    strip = _row(nodes, table, nodes.vector("DOT_PRODUCT", away, whole["fault_across"]), apart, 1)
-    throw = nodes.at(table, strip, nodes.named("throw", "FLOAT"), "FLOAT")
-    plane = nodes.vector("DOT_PRODUCT", away, whole["slope"])
-    fold = _fold(nodes, nodes.vector("DOT_PRODUCT", away, whole["across"]), whole["wave"])
-    height = nodes.math("SUBTRACT", z, nodes.total([plane, fold, throw]))
-    covers = nodes.math("GREATER_THAN", z, floor)
-    height = nodes.mixed(height, z, covers)
-    row = nodes.math("MULTIPLY", covers, 2.0)
-    index = _row(nodes, table, height, apart, row)
-    found = {name: nodes.at(table, index, nodes.named(name, "FLOAT"), "FLOAT") for name in _OF_POINTS}
-    thickness = nodes.math("SUBTRACT", found["top"], found["base"])
-    share = nodes.math("DIVIDE", nodes.math("SUBTRACT", height, found["base"]), thickness)
-    share = nodes.math("MAXIMUM", nodes.math("MINIMUM", share, 1.0), 0.0)
-    return {
-        **found,
-        "height": share,
-        "thickness": thickness,
-        "age": nodes.math("SUBTRACT", found["bed"], 1.0),
-    }
+class _Beds:
+    """Fields of what a table says of positions: see core.filling.Beds, whose formulas these are."""
 
+    def __init__(self, nodes, table):
+        self._nodes, self._table = nodes, table
+        vectors = {name: nodes.named(name, "FLOAT_VECTOR") for name in _WHOLE}
+        self._whole = whole = {
+            name: nodes.at(table, 0, vector, "FLOAT_VECTOR") for name, vector in vectors.items()
+        }
+        position = nodes.of("GeometryNodeInputPosition", "Position")
+        place = nodes.new("ShaderNodeCombineXYZ")
+        for axis, name in enumerate("xyz"):
+            turned = nodes.vector("DOT_PRODUCT", position, whole[name])
+            nodes.link(nodes.math("ADD", turned, nodes.part(whole["shift"], axis)), place.inputs[axis])
+        self._z = nodes.part(place.outputs[0], 2)
+        away = nodes.vector("SUBTRACT", place.outputs[0], whole["middle"])
+        self._away = nodes.vector("SUBTRACT", away, nodes.vector("SCALE", whole["lean"], self._z))
+        self._apart, floor = (nodes.part(whole["levels"], axis) for axis in (0, 1))
+        self._covers = nodes.math("GREATER_THAN", self._z, floor)
 
-def _row(nodes, table, value, apart, row):
-    """The number of the point in a row of the table that is nearest to a value."""
-    place = nodes.new("ShaderNodeCombineXYZ")
-    nodes.link(value, place.inputs[0])
-    nodes.link(nodes.math("MULTIPLY", apart, row), place.inputs[1])
-    return nodes.nearest(table, place.outputs[0])
+    def stored(self, geometry):
+        """The geometry with the attributes of beds. The height is stored first, then the row of the table, as
+        each attribute would follow all of its nodes anew."""
+        nodes = self._nodes
+        name = meshes.PREFIX + "height"
+        geometry = nodes.stored(geometry, name, self.height())
+        height = nodes.named(name, "FLOAT")
+        geometry = nodes.stored(geometry, _ROW, self.row(height), "INT")
+        found = {key: self.of_row(key, nodes.named(_ROW, "INT")) for key in _OF_POINTS}
+        thickness = nodes.math("SUBTRACT", found["top"], found["base"])
+        share = nodes.math("DIVIDE", nodes.math("SUBTRACT", height, found["base"]), thickness)
+        share = nodes.math("MAXIMUM", nodes.math("MINIMUM", share, 1.0), 0.0)
+        geometry = nodes.stored(geometry, filled_beds.BED, found["bed"], "INT")
+        for key, value in (
+            ("height", share),
+            ("thickness", thickness),
+            ("age", nodes.math("SUBTRACT", found["bed"], 1.0)),
+            ("hardness", found["hardness"]),
+        ):
+            geometry = nodes.stored(geometry, meshes.PREFIX + key, value)
+        node = nodes.new("GeometryNodeRemoveAttribute")
+        nodes.link(geometry, node.inputs["Geometry"])
+        next(s for s in node.inputs if s.type == "STRING").default_value = _ROW
+        return node.outputs[0]
+
+    def height(self):
+        """Above the datum, or above the unconformity the elevation."""
+        nodes, whole = self._nodes, self._whole
+        strip = self._nearest(nodes.vector("DOT_PRODUCT", self._away, whole["fault_across"]), 1)
+        throw = self.of_row("throw", strip)
+        plane = nodes.vector("DOT_PRODUCT", self._away, whole["slope"])
+        fold = _fold(nodes, nodes.vector("DOT_PRODUCT", self._away, whole["across"]), whole["wave"])
+        height = nodes.math("SUBTRACT", self._z, nodes.total([plane, fold, throw]))
+        return nodes.mixed(height, self._z, self._covers)
+
+    def row(self, height):
+        """The number of the point of the table that says which bed a height is in."""
+        return self._nearest(height, self._nodes.math("MULTIPLY", self._covers, 2.0))
+
+    def of_row(self, name, row):
+        """What the table says in a point."""
+        return self._nodes.at(self._table, row, self._nodes.named(name, "FLOAT"), "FLOAT")
+
+    def _nearest(self, value, line):
+        """The number of the point in a line of the table that is nearest to a value."""
+        place = self._nodes.new("ShaderNodeCombineXYZ")
+        self._nodes.link(value, place.inputs[0])
+        self._nodes.link(self._nodes.math("MULTIPLY", self._apart, line), place.inputs[1])
+        return self._nodes.nearest(self._table, place.outputs[0])
 
 
 def _fold(nodes, away, wave):

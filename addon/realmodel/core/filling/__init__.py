@@ -7,8 +7,10 @@ hard beds do not protect; `rock_shape` makes meshes to begin with.
 """
 
 from .beds import Beds, lay_beds
+from .divided import divided_at_beds
 from .erosion import DifferentialErosion, eroded_within, kept_of
 from .fill import ITEM, closed_mesh, fill_with_strata, fill_within, without_holes
+from .scree import scree_within
 from .shapes import SHAPES, rock_shape
 from .strata import PALETTES, Strata, hardness_of_beds, rocks_of_beds
 
@@ -20,6 +22,7 @@ __all__ = [
     "DifferentialErosion",
     "Strata",
     "closed_mesh",
+    "divided_at_beds",
     "eroded_within",
     "fill_with_strata",
     "fill_within",
@@ -28,5 +31,6 @@ __all__ = [
     "lay_beds",
     "rock_shape",
     "rocks_of_beds",
+    "scree_within",
     "without_holes",
 ]

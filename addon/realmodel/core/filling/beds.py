@@ -130,13 +130,13 @@ class Beds:
 
     def numbers(self, points: np.ndarray) -> np.ndarray:
         """(N,) int32: the bed that each of the points (N, 3) lies in."""
-        return self._found(points)[0]
+        return self.found(points)[0]
 
     def places(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(N,) int32 the bed that each of the points (N, 3) lies in, (N,) its share of the thickness of the
         bed, from 0 at its base to 1 at its top, and (N,) that thickness. The lowest and the highest bed are
         as thick as the mean of the others, or reach to the end of the box."""
-        bed, height = self._found(points)
+        bed, height = self.found(points)
         base, top = self.bounds()
         thickness = (top - base)[bed]
         return bed, np.clip((height - base[bed]) / thickness, 0.0, 1.0), thickness
@@ -153,7 +153,7 @@ class Beds:
         covers = np.array([self.floor, *self.covers, max(self.high[2], self.floor + mean)])
         return np.concatenate([ends[:-1], covers[:-1]]), np.concatenate([ends[1:], covers[1:]])
 
-    def _found(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def found(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(N,) int32 beds of points, and heights: above the datum, or elevations above the unconformity."""
         plan, z = self.upright(points)[:, :2], points[:, 2]
         height = z - self.datum(plan, self.strips(plan))

@@ -113,7 +113,7 @@ def eroded_within(
         return mesh
     with work.phase(0.0, 0.1, "finding the inside"):
         lattice = Lattice.around(vertices, corners, erosion.faces)
-        inside = _winding(lattice, corners) != 0
+        inside = winding(lattice, corners) != 0
     if not inside.any():
         raise InputRefused("it holds no volume that erosion could see", advice="choose more faces")
     unit = _unit(beds, vertices)
@@ -137,7 +137,7 @@ def _unit(beds: Beds, vertices: np.ndarray) -> float:
     return min(mean, _LARGE * float(size.max()))
 
 
-def _winding(lattice: Lattice, corners: np.ndarray) -> np.ndarray:
+def winding(lattice: Lattice, corners: np.ndarray) -> np.ndarray:
     """(nx, ny, nz) int8: how often the mesh goes around each node, by the triangles that the vertical line
     through it crosses. Decisions in plan are exact; a node above an edge counts as beside it, in the sense of
     a shift by (e, e * e)."""
@@ -238,8 +238,9 @@ def _widened(found: np.ndarray, by: int) -> np.ndarray:
 def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None:
     """Sets the field to that of what is left."""
     inward, spacing = values.inward, lattice.spacing
-    most = min(depth.deepest, _LEFT * float(inward.max()))
-    chosen = np.flatnonzero((inward > 0) & (inward < most + spacing))
+    most = _thickness(lattice, values, math.ceil(depth.deepest / spacing))
+    most *= _LEFT
+    chosen = np.flatnonzero((inward > 0) & (inward < np.minimum(most, depth.deepest) + spacing))
     at = tuple(values.index[chosen].T)
     deep, known = np.zeros(lattice.counts, np.float32), np.zeros(lattice.counts, np.float32)
     with work.phase(0.4, 0.9, "eroding"):
@@ -257,6 +258,30 @@ def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None
     left[np.abs(left) < _ONTO * spacing] = 0.0
     left = np.minimum(left, values.to_kept)  # exactly, so that walls and the base stay where they are
     values.field[all_at] = -np.clip(left, -2.0 * spacing, 2.0 * spacing)
+
+
+def _thickness(lattice: Lattice, values: _Values, by: int) -> np.ndarray:
+    """(N,) the greatest distance from the surface within so many nodes: erosion leaves a part of it, so that
+    thin walls and arches stay."""
+    inward = np.zeros(lattice.counts, np.float32)
+    inward[tuple(values.index.T)] = values.inward
+    for axis in range(3):
+        width = 1
+        while width < by + 1:  # the greatest of so many from each node on, then of those around it
+            step = min(width, by + 1 - width)
+            inward = _at_least(inward, axis, step)
+            width += step
+        inward = np.maximum(inward, np.roll(inward, by, axis))
+    return inward[tuple(values.index.T)].astype(float)
+
+
+def _at_least(field: np.ndarray, axis: int, step: int) -> np.ndarray:
+    """The greater of the value at each node and of that some steps on."""
+    result = field.copy()
+    here = tuple(slice(None, -step) if a == axis else slice(None) for a in range(3))
+    there = tuple(slice(step, None) if a == axis else slice(None) for a in range(3))
+    np.maximum(field[here], field[there], out=result[here])
+    return result
 
 
 def _blurred(field: np.ndarray) -> np.ndarray:
