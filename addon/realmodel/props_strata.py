@@ -154,6 +154,20 @@ VALUES = {
     "roughness": FloatProperty(
         name="Roughness", description="Bays, ribs and bumps", default=1.0, min=0.0, max=2.0
     ),
+    "scree": FloatProperty(
+        name="Scree",
+        description="How high scree lies at the foot of walls. 1: about a third of their height",
+        default=0.0,
+        min=0.0,
+        max=2.0,
+    ),
+    "stones": FloatProperty(
+        name="Stones",
+        description="Density of loose stones on the scree. Viewports show a quarter of them",
+        default=1.0,
+        min=0.0,
+        soft_max=4.0,
+    ),
     "faces": IntProperty(
         name="Faces",
         description="About how many triangles the eroded mesh has. A million takes about 0.5 GB of memory",
@@ -178,7 +192,7 @@ BEDS = (
     ("faults", "throw", "fault_strike"),
     ("unconformity",),
 )
-SHAPE, EROSION = (("base_depth", "close_holes"),), (("strength", "joints", "roughness", "faces"),)
+SHAPE, EROSION = (("base_depth", "close_holes"),), (("strength", "joints", "roughness"), ("scree", "stones", "faces"))
 SOLID = (("masks", "gap", "pegs", "peg_size"),)
 
 

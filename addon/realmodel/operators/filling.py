@@ -123,7 +123,7 @@ class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
         columns = layout.split(factor=0.5)
         left, right = columns.column(), columns.column()
         draw_presets(left, 3, lambda cell, key: cell.prop_enum(self, "preset", key))
-        draw_values(left, self, (*props_strata.SHAPE, ("erosion", *props_strata.EROSION[0])))
+        draw_values(left, self, (*props_strata.SHAPE, ("erosion",), *props_strata.EROSION))
         draw_values(right, self, (*props_strata.BEDS, *props_strata.SOLID))
         if self._problem:
             layout.label(text=self._problem, icon="ERROR")

@@ -10,10 +10,11 @@ same to the last bit.
 import bpy
 import numpy as np
 
-from ...core import BuildFailed
+from ...core import BuildFailed, InputRefused
 from ...core.base.triangles import without_flat
 from ...core.display import polygon_mesh
-from ...core.filling import divided_at_beds, eroded_within, fill_within, kept_of
+from ...core.filling import divided_at_beds, eroded_within, fill_within, kept_of, scree_within
+from ...core.filling.scree import REPOSE
 from ..host.thread_job import ThreadJob
 from ..objects import filled_beds, meshes, placing
 from ..objects.boolean_job import VOLUME
@@ -21,10 +22,14 @@ from ..objects.filled_beds import BED, named
 from ..shading import strata_modifier, strata_values
 
 _EROSION, _SHARE = 0.3, 0.9  # of the progress: where erosion and where filling end
+_COARSER = 3  # times as few faces on an area of scree as on the rock
 
 
 class _StrataJob(ThreadJob):
-    """What erosion and filling share. Raises InputRefused for a shape that cannot be closed."""
+    """What erosion and filling share. warnings: of what was left out, once it is done. Raises InputRefused for
+    a shape that cannot be closed."""
+
+    warnings: tuple[str, ...] | list[str] = ()
 
     def __init__(self, scene, item):
         """item: the object, with its modifier Strata."""
@@ -36,12 +41,29 @@ class _StrataJob(ThreadJob):
         self._beds = beds.reaching(self._mesh[0])
         self._strata = strata_values.strata_of(values, beds.high - beds.low)
         self._erosion = strata_values.erosion_of(values)
-        self._looks = values.rock_looks, values.masks
+        self._has_masks, self._scree = values.masks, values.scree
 
     def _eroded(self, job):
         kept = kept_of(*self._mesh, len(self._shape.triangles))
         with named(self._name):
             return eroded_within(job, self._mesh, kept, self._beds, self._strata, self._erosion)
+
+    def _heaped(self, job, mesh):
+        """The scree of a mesh; nothing where there is none."""
+        if not self._scree:
+            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+        faces = (len(mesh[1]) if self._erosion is None else self._erosion.faces) // _COARSER
+        try:
+            return scree_within(job, mesh, self._scree, REPOSE, self._strata.seed, max(faces, 1000))
+        except InputRefused as error:
+            self.warnings = [*self.warnings, f"no scree: {error.what}"]
+            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+
+    def _local(self, mesh):
+        """A mesh in the coordinates of the object, with its faces outward there."""
+        local = self._shape.to_local(mesh[0]).astype(np.float32)
+        triangles = without_flat(local.astype(np.float64), mesh[1])
+        return local, triangles[:, ::-1] if self._shape.is_mirrored else triangles
 
     def _object(self):
         scene = bpy.data.scenes.get(self._scene)
@@ -55,23 +77,26 @@ class ErosionJob(_StrataJob):
     """Shows the eroded mesh of an object in its modifier. `run` and `finish` return how many faces it has."""
 
     def _work(self, job):
-        vertices, triangles = divided_at_beds(*self._eroded(job), self._beds)
-        local = self._shape.to_local(vertices).astype(np.float32)
-        triangles = without_flat(local.astype(np.float64), triangles)
-        return local, triangles[:, ::-1] if self._shape.is_mirrored else triangles
+        with job.part(0.0, _SHARE):
+            eroded = self._eroded(job)
+        with job.part(_SHARE, 1.0):
+            scree = self._heaped(job, eroded)
+        return [self._local(mesh) for mesh in (divided_at_beds(*eroded, self._beds), scree)]
 
     def _put(self, made):
         obj = self._object()
-        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", *made)
+        (vertices, triangles), (of_scree, others) = made
+        together = np.concatenate([triangles, others + len(vertices)])
+        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", np.concatenate([vertices, of_scree]), together)
+        is_scree = np.arange(len(together)) >= len(triangles)
+        mesh.attributes.new(strata_modifier.SCREE, "BOOLEAN", "FACE").data.foreach_set("value", is_scree)
         strata_modifier.show_eroded(obj, mesh)
-        return len(made[1])
+        return len(together)
 
 
 class FillJob(_StrataJob):
     """Fills an object with its strata. `run` and `finish` return the collection of the beds, which replace
-    earlier ones of the object. warnings: of what was left out, once it is done."""
-
-    warnings = ()
+    earlier ones of the object."""
 
     def _work(self, job):
         mesh, begin = self._mesh, 0.0
@@ -86,15 +111,16 @@ class FillJob(_StrataJob):
             solids = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
             matrix = self._shape.matrix
             solids = [None if shape is None else filled_beds.exposed(shape, matrix) for shape in solids]
-        return model, solids, self._beds.numbers(self._shape.vertices)
+            scree = self._local(self._heaped(job, mesh))
+        return model, solids, scree, self._beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 
     def _put(self, made):
-        model, solids, masks = made
+        model, solids, scree, masks = made
         obj = self._object()
         collection = self._emptied(obj)
-        self.warnings = [warning.text for warning in model.warnings]
+        self.warnings = [*self.warnings, *(warning.text for warning in model.warnings)]
         beds = [pair for pair in zip(model.blocks, solids, strict=True) if pair[0].property]  # without gaps
         digits = len(str(len(beds)))
         for number, (block, shape) in enumerate(beds, 1):
@@ -109,8 +135,13 @@ class FillJob(_StrataJob):
             bed[BED], bed[VOLUME] = number, block.volume
             placing.stand_at(bed, obj)
             collection.objects.link(bed)
+        if len(scree[1]):
+            heap = bpy.data.objects.new(f"{obj.name} Scree", meshes.triangle_mesh(f"{obj.name} Scree", *scree))
+            strata_modifier.put_scree_on(heap, obj)
+            placing.stand_at(heap, obj)
+            collection.objects.link(heap)
         beds = list(collection.objects)
-        if self._looks[1]:
+        if self._has_masks:
             self._add_masks(collection, obj, masks)
         placing.hide(obj)
         placing.select(beds)
@@ -126,7 +157,7 @@ class FillJob(_StrataJob):
             collection = bpy.data.collections.new(f"{obj.name} Strata")
             where.children.link(collection)
             obj.realmodel_strata.beds_in = collection
-        for bed in [bed for bed in collection.objects if BED in bed or BED in bed.data.attributes]:
+        for bed in [item for item in collection.objects if strata_modifier.is_made(item)]:
             bpy.data.meshes.remove(bed.data)  # and its object with it
         return collection
 

@@ -10,6 +10,7 @@ which bed a height is in. Text on the table's object has the same numbers with a
 
 import json
 import math
+import zlib
 from contextlib import contextmanager
 
 import bpy
@@ -22,17 +23,20 @@ from ..host import versions
 from ..host.geometry_nodes import GeometryNodes
 from ..host.nodes import group_once
 from ..objects import filled_beds, materials, meshes, viewports
-from . import looks, strata_values
+from . import looks, scatter, strata_values
 
 NAME = "Strata"
 KEY = "realmodel_strata_group"  # on the group: its version
 ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from 0
+SCREE = "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree, not of a bed; on its object
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
 _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
 _VERSION = 1
 ROCKS = max(map(len, PALETTES.values()))
 _TABLE, _ERODED, _SHOW_ERODED, _SHOW_ROCKS = "Beds", "Eroded Mesh", "Show Erosion", "Show Rocks"
+_SCREE, _STONES, _SIZE = "Scree", "Plants and Stones", "Scatter Size"
+_STONE_SIZE = 0.012  # of the diagonal: a unit of scattered stones
 _NODES = 32  # of a fold to a wavelength, as core.filling.beds has it
 _FAR = 1e30  # the elevation of an unconformity where there is none
 # attributes of the table: of all points the same, and of each point
@@ -148,11 +152,37 @@ def update(item):
         table = bpy.data.objects.new(name, bpy.data.meshes.new(name))
         versions.set_group_input(modifier, _TABLE, table)
     _write(table, beds, shape.matrix, strata)
-    size = float(np.linalg.norm(np.ptp(shape.local, axis=0))) if values.rock_looks else 0.0
-    for number in range(len(PALETTES[strata.palette])):
-        material = _rock_material(strata.palette, number, size)
-        versions.set_group_input(modifier, f"Rock {number + 1}", material)
+    diagonal = float(np.linalg.norm(np.ptp(shape.local, axis=0)))
+    size = diagonal if values.rock_looks else 0.0
+    rocks = PALETTES[strata.palette]
+    for number, (name, color) in enumerate(rocks, 1):
+        versions.set_group_input(modifier, f"Rock {number}", _rock_material(name, color, look_of(name), size))
+    color = "#" + "".join(f"{round(part):02x}" for part in np.mean([_bytes(c) for _, c in rocks], axis=0))
+    versions.set_group_input(modifier, _SCREE, _rock_material("Scree", color, "GRAVEL", size))
+    versions.set_group_input(modifier, scatter.STONE, scatter.item(scatter.STONE))
+    versions.set_group_input(modifier, _STONES, values.stones)
+    versions.set_group_input(modifier, _SIZE, _STONE_SIZE * diagonal)
+    versions.set_group_input(modifier, "Seed", values.seed)
     show_eroded(item, None)
+
+
+def _bytes(color):
+    return [int(color[begin : begin + 2], 16) for begin in (1, 3, 5)]
+
+
+def put_scree_on(heap, item):
+    """Makes a new object the scree of another: its material, and its stones."""
+    heap[SCREE] = True
+    values = np.ones(len(heap.data.polygons), bool)
+    heap.data.attributes.new(SCREE, "BOOLEAN", "FACE").data.foreach_set("value", values)
+    heap.modifiers.new(NAME, "NODES").node_group = modifier_of(item).node_group
+    for name in (_TABLE, _SCREE, scatter.STONE, _STONES, _SIZE, "Seed"):
+        versions.set_group_input(modifier_of(heap), name, versions.group_input(modifier_of(item), name))
+
+
+def is_made(item):
+    """Whether an object was made by filling another."""
+    return filled_beds.BED in item or SCREE in item or filled_beds.BED in item.data.attributes
 
 
 def material_of(item, rock):
@@ -182,19 +212,18 @@ def shows_erosion(item):
     return modifier is not None and bool(versions.group_input(modifier, _SHOW_ERODED))
 
 
-def _rock_material(palette, number, size):
+def _rock_material(name, color, look, size):
     """The material of a rock, one for all objects of about a size. size: of the diagonal, 0: without a
     look."""
-    name, color = PALETTES[palette][number]
     size = 2.0 ** round(math.log2(size)) if size else 0.0
-    key = f"{palette} {number} {size:g}"
+    key = f"{name} {color} {size:g}"
     made = next((m for m in bpy.data.materials if m.get(_MATERIAL) == key and m.library is None), None)
     if made is None:
         made = materials.new_material(name, materials.NO_PROPERTY, color)
         del made[materials.KEY]
         made[_MATERIAL] = key
         if size:
-            looks.apply(made, look_of(name), 1.0, number + 1, size)
+            looks.apply(made, look, 1.0, zlib.crc32(name.encode()) % 1000, size)
     return made
 
 
@@ -273,6 +302,11 @@ def _fill(group):
     versions.add_group_socket(group, _SHOW_ROCKS, "NodeSocketBool")
     for number in range(ROCKS):
         versions.add_group_socket(group, f"Rock {number + 1}", "NodeSocketMaterial")
+    versions.add_group_socket(group, _SCREE, "NodeSocketMaterial")
+    versions.add_group_socket(group, scatter.STONE, "NodeSocketObject")
+    versions.add_group_socket(group, _STONES, "NodeSocketFloat", (0.0, 0.0))
+    versions.add_group_socket(group, _SIZE, "NodeSocketFloatDistance", (1.0, 1e-6))
+    versions.add_group_socket(group, "Seed", "NodeSocketInt", (0, 0))
     nodes = GeometryNodes(group)
     inputs = nodes.new("NodeGroupInput").outputs
     geometry = nodes.either(inputs["Geometry"], nodes.mesh_of(inputs[_ERODED]), inputs[_SHOW_ERODED])
@@ -285,7 +319,12 @@ def _fill(group):
         geometry = nodes.to(
             "GeometryNodeSetMaterial", geometry, Selection=here, Material=inputs[f"Rock {number + 1}"]
         )
-    nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
+    is_scree = nodes.named(SCREE, "BOOLEAN")
+    geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=is_scree, Material=inputs[_SCREE])
+    joined = nodes.new("GeometryNodeJoinGeometry")
+    nodes.link(scatter.on(nodes, inputs, geometry, scatter.STONE, is_scree), joined.inputs[0])
+    nodes.link(geometry, joined.inputs[0])
+    nodes.link(joined.outputs[0], nodes.new("NodeGroupOutput").inputs["Geometry"])
 
 
 class _Beds:
