@@ -200,7 +200,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
 
     strength: FloatProperty(
         name="Strength",
-        description="Strength of the erosion. 1 fits the model",
+        description="Strength of the erosion. At 1 soft beds recede by about half the mean thickness of beds",
         default=1.0,
         min=0.0,
         soft_max=5.0,
@@ -215,15 +215,15 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     wear: FloatProperty(
         name="Edge Wear",
-        description="Wear of edges in the materials, without a finer mesh. Cycles also rounds them. 1 fits "
-        "the model",
+        description="Wear of edges in the materials, without a finer mesh. Cycles also rounds them. At 1 a "
+        "tenth of the mean thickness of beds",
         default=0.5,
         min=0.0,
         soft_max=3.0,
     )
     noise_scale: FloatProperty(
         name="Noise Scale",
-        description="Size of hollows and of eroded beds. 1 fits the model",
+        description="Size of hollows and of eroded layers. 1 fits the thickness of beds",
         default=1.0,
         min=0.001,
         soft_max=10.0,
@@ -247,10 +247,19 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     detail: IntProperty(
         name="Detail",
-        description="Number of subdivisions of each polygon. Each makes four of one",
+        description="Number of subdivisions of each exposed polygon, as long as Most Faces allows. Each makes "
+        "four of one",
         default=2,
         min=0,
         max=weathering.FINEST,
+    )
+    most_faces: IntProperty(
+        name="Most Faces",
+        description="Exposed polygons after subdivision. If Detail makes more, it is lowered",
+        default=1_500_000,
+        min=1,
+        soft_min=10_000,
+        soft_max=20_000_000,
     )
 
     plants: FloatProperty(
@@ -260,16 +269,26 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         min=0.0,
         soft_max=4.0,
     )
+    made: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    def draw(self, _context):
+        self.layout.use_property_split = True
+        for key in type(self).__annotations__:
+            if key != "made":
+                self.layout.prop(self, key)
+        self.layout.label(text=self.made)
 
     def act(self, context):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = _blocks(context)
-        parameters = weathering.Weathering(*values, *covers, self.detail, self.plants, self.wear)
+        detail, faces, size = weathering.cost(items, self.detail, self.most_faces)
+        parameters = weathering.Weathering(*values, *covers, detail, self.plants, self.wear)
         weathering.put_on(context.scene, items, parameters)
-        self.report(
-            {"INFO"}, f"Weathered {counted(len(items), 'block')}; the modifier of each has all settings"
-        )
+        lowered = f", as Most Faces does not allow {self.detail}" if detail < self.detail else ""
+        count = f"{faces / 1e6:.1f} million" if faces >= 1e5 else f"{faces:,}"
+        self.made = f"{count} faces, about {size / 1e9:.1f} GB, Detail {detail}{lowered}"
+        self.report({"INFO"}, f"Weathered {counted(len(items), 'block')}: {self.made}")
 
 
 class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):

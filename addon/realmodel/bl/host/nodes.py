@@ -33,7 +33,7 @@ class Nodes:
 
     def link(self, value, socket):
         """Links or sets an input. value: an output, or the value of the input without a link."""
-        if isinstance(value, (float, int, tuple)):
+        if isinstance(value, (float, int, tuple, str)):
             socket.default_value = value
         else:
             self.tree.links.new(value, socket)

@@ -38,10 +38,15 @@ def exposed(shape, matrix):
     return replace(shape, face_surface=surface, bedding=bedding)
 
 
+def together(item):
+    """The beds of the filled mesh that a bed is of."""
+    items = [item] if not item.users_collection else item.users_collection[0].objects
+    return [bed for bed in items if BED in bed and bed.type == "MESH"]
+
+
 def size(item):
     """The length of the diagonal of the filled mesh that a bed is of, in the object's own coordinates."""
-    together = [item] if not item.users_collection else item.users_collection[0].objects
-    vertices = [meshes.mesh_coordinates(bed.data) for bed in together if BED in bed and bed.type == "MESH"]
+    vertices = [meshes.mesh_coordinates(bed.data) for bed in together(item)]
     places = np.concatenate([[places.min(axis=0), places.max(axis=0)] for places in vertices if len(places)])
     return float(np.linalg.norm(np.ptp(places, axis=0))) or 1.0
 
