@@ -192,7 +192,10 @@ BEDS = (
     ("faults", "throw", "fault_strike"),
     ("unconformity",),
 )
-SHAPE, EROSION = (("base_depth", "close_holes"),), (("strength", "joints", "roughness"), ("scree", "stones", "faces"))
+SHAPE, EROSION = (
+    (("base_depth", "close_holes"),),
+    (("strength", "joints", "roughness"), ("scree", "stones", "faces")),
+)
 SOLID = (("masks", "gap", "pegs", "peg_size"),)
 
 

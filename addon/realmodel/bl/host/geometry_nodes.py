@@ -29,13 +29,14 @@ class GeometryNodes(Nodes):
         node.inputs["Name"].default_value = name
         return of_type(node.outputs, _OUTPUTS[kind])
 
-    def stored(self, geometry, name, value, kind="FLOAT", domain="POINT"):
-        """The geometry with an attribute."""
+    def stored(self, geometry, name, value, domain="POINT", kind=None):
+        """The geometry with an attribute. kind: of its data; None: a vector or a float, as the value is."""
+        is_vector = getattr(value, "type", "") == "VECTOR"
         node = self.new("GeometryNodeStoreNamedAttribute")
-        node.data_type, node.domain = kind, domain
+        node.data_type, node.domain = kind or ("FLOAT_VECTOR" if is_vector else "FLOAT"), domain
         node.inputs["Name"].default_value = name
         self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
-        self.link(value, of_type(node.inputs, _OUTPUTS[kind], "Value"))
+        self.link(value, next(s for s in node.inputs if s.name == "Value" and s.enabled))
         return next(s for s in node.outputs if s.type == "GEOMETRY")
 
     def nearest(self, geometry, place):
@@ -72,7 +73,81 @@ class GeometryNodes(Nodes):
         node.inputs["As Instance"].default_value = False
         return node.outputs["Geometry"]
 
+    def separated(self, geometry, selection):
+        """The selected faces, and the others."""
+        node = self.new("GeometryNodeSeparateGeometry")
+        node.domain = "FACE"
+        self.link(geometry, node.inputs["Geometry"])
+        self.link(selection, node.inputs["Selection"])
+        return node.outputs["Selection"], node.outputs["Inverted"]
+
+    def vector_at(self, index, value):
+        """A vector field of points at the point with a number."""
+        node = self.new("GeometryNodeFieldAtIndex")
+        node.domain, node.data_type = "POINT", "FLOAT_VECTOR"
+        self.link(index, node.inputs["Index"])
+        self.link(value, of_type(node.inputs, "VECTOR"))
+        return of_type(node.outputs, "VECTOR")
+
+    def rotation(self):
+        """The rotation of the object, as Euler angles."""
+        node = self.new("GeometryNodeObjectInfo")
+        self.link(self.of("GeometryNodeSelfObject", 0), node.inputs["Object"])
+        return node.outputs["Rotation"]
+
+    def turned(self, vector):
+        """A vector of the object's coordinates as the world has it, but for the object's scale."""
+        node = self.new("ShaderNodeVectorRotate")
+        node.rotation_type = "EULER_XYZ"
+        self.link(vector, node.inputs["Vector"])
+        self.link(self.rotation(), node.inputs["Rotation"])
+        return node.outputs[0]
+
+    def upright(self, instances):
+        """Instances turned in their places as if the object were not: the inverse of its rotation, axis by
+        axis, as Euler angles have an order."""
+        for axis in (2, 1, 0):
+            angles = self.new("ShaderNodeCombineXYZ")
+            angle = self.math("MULTIPLY", self.part(self.rotation(), axis), -1.0)
+            self.link(angle, angles.inputs[axis])
+            node = self.new("GeometryNodeRotateInstances")
+            for name, value in (
+                ("Instances", instances),
+                ("Rotation", angles.outputs[0]),
+                ("Pivot Point", self.of("GeometryNodeInputPosition", "Position")),
+                ("Local Space", False),
+            ):
+                self.link(value, node.inputs[name])
+            instances = node.outputs[0]
+        return instances
+
+    def random(self, low, high, number):
+        """A random number, or vector, for each point. number: another one has other values."""
+        node = self.new("FunctionNodeRandomValue")
+        kind = "VECTOR" if isinstance(low, tuple) else "VALUE"
+        node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
+        for name, value in (("Min", low), ("Max", high)):
+            self.link(value, next(s for s in node.inputs if s.name == name and s.enabled))
+        self.link(number, node.inputs["Seed"])
+        return of_type(node.outputs, kind)
+
+    def on(self, domain, value):
+        """A number or a vector as a domain has it."""
+        node = self.new("GeometryNodeFieldOnDomain")
+        node.domain = domain
+        node.data_type = "FLOAT_VECTOR" if value.type == "VECTOR" else "FLOAT"
+        kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
+        self.link(value, of_type(node.inputs, kind))
+        return of_type(node.outputs, kind)
+
 
 def of_type(sockets, kind, name=None):
-    """The socket of a type that a node shows."""
-    return next(s for s in sockets if s.type == kind and s.enabled and (name is None or s.name == name))
+    """The socket of a type: before 5.0 nodes have one for each, of which one is in use."""
+    return next(
+        s
+        for s in sockets
+        if s.type == kind
+        and s.enabled
+        and s.name not in ("Exists", "Name", "Index")
+        and (name is None or s.name == name)
+    )

@@ -26,8 +26,8 @@ _COARSER = 3  # times as few faces on an area of scree as on the rock
 
 
 class _StrataJob(ThreadJob):
-    """What erosion and filling share. warnings: of what was left out, once it is done. Raises InputRefused for
-    a shape that cannot be closed."""
+    """What erosion and filling share. warnings: of what was left out, once it is done. Raises InputRefused
+    for a shape that cannot be closed."""
 
     warnings: tuple[str, ...] | list[str] = ()
 
@@ -136,7 +136,9 @@ class FillJob(_StrataJob):
             placing.stand_at(bed, obj)
             collection.objects.link(bed)
         if len(scree[1]):
-            heap = bpy.data.objects.new(f"{obj.name} Scree", meshes.triangle_mesh(f"{obj.name} Scree", *scree))
+            heap = bpy.data.objects.new(
+                f"{obj.name} Scree", meshes.triangle_mesh(f"{obj.name} Scree", *scree)
+            )
             strata_modifier.put_scree_on(heap, obj)
             placing.stand_at(heap, obj)
             collection.objects.link(heap)

@@ -28,7 +28,9 @@ from . import looks, scatter, strata_values
 NAME = "Strata"
 KEY = "realmodel_strata_group"  # on the group: its version
 ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from 0
-SCREE = "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree, not of a bed; on its object
+SCREE = (
+    "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree, not of a bed; on its object
+)
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
 _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
@@ -312,7 +314,7 @@ def _fill(group):
     geometry = nodes.either(inputs["Geometry"], nodes.mesh_of(inputs[_ERODED]), inputs[_SHOW_ERODED])
     beds = _Beds(nodes, nodes.mesh_of(inputs[_TABLE]))
     geometry = beds.stored(geometry)
-    geometry = nodes.stored(geometry, ROCK, beds.of_row("rock", beds.row(beds.height())), "INT", "FACE")
+    geometry = nodes.stored(geometry, ROCK, beds.of_row("rock", beds.row(beds.height())), "FACE", "INT")
     rock = nodes.named(ROCK, "INT")
     for number in range(ROCKS):
         here = nodes.math("MULTIPLY", nodes.math("COMPARE", rock, float(number), 0.5), inputs[_SHOW_ROCKS])
@@ -354,12 +356,12 @@ class _Beds:
         name = meshes.PREFIX + "height"
         geometry = nodes.stored(geometry, name, self.height())
         height = nodes.named(name, "FLOAT")
-        geometry = nodes.stored(geometry, _ROW, self.row(height), "INT")
+        geometry = nodes.stored(geometry, _ROW, self.row(height), kind="INT")
         found = {key: self.of_row(key, nodes.named(_ROW, "INT")) for key in _OF_POINTS}
         thickness = nodes.math("SUBTRACT", found["top"], found["base"])
         share = nodes.math("DIVIDE", nodes.math("SUBTRACT", height, found["base"]), thickness)
         share = nodes.math("MAXIMUM", nodes.math("MINIMUM", share, 1.0), 0.0)
-        geometry = nodes.stored(geometry, filled_beds.BED, found["bed"], "INT")
+        geometry = nodes.stored(geometry, filled_beds.BED, found["bed"], kind="INT")
         for key, value in (
             ("height", share),
             ("thickness", thickness),
@@ -367,10 +369,7 @@ class _Beds:
             ("hardness", found["hardness"]),
         ):
             geometry = nodes.stored(geometry, meshes.PREFIX + key, value)
-        node = nodes.new("GeometryNodeRemoveAttribute")
-        nodes.link(geometry, node.inputs["Geometry"])
-        next(s for s in node.inputs if s.type == "STRING").default_value = _ROW
-        return node.outputs[0]
+        return nodes.to("GeometryNodeRemoveAttribute", geometry, Name=_ROW)
 
     def height(self):
         """Above the datum, or above the unconformity the elevation."""

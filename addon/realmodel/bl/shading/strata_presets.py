@@ -58,10 +58,18 @@ PRESETS = {
 }
 # Of each shape of core.filling.SHAPES its label, its description, and a preset with other values
 SHAPES = {
-    "CLIFF": ("Cliff", "A plateau that ends in a cliff above a slope", {"preset": "CLIFF", "variation": 0.8}),
-    "CANYON": ("Canyon", "A river canyon with a mesa beside it", {"preset": "CANYON"}),
+    "CLIFF": (
+        "Cliff",
+        "A plateau that ends in a cliff above a slope",
+        {"preset": "CLIFF", "variation": 0.8, "scree": 0.7},
+    ),
+    "CANYON": ("Canyon", "A river canyon with a mesa beside it", {"preset": "CANYON", "scree": 0.6}),
     "BOULDER": ("Boulder", "A lump with broken faces", {"preset": "FAULTED", "faults": 1, "beds": 10}),
-    "ARCH": ("Arch", "A wall of rock with an opening", {"preset": "CANYON", "beds": 12, "variation": 0.8}),
+    "ARCH": (
+        "Arch",
+        "A wall of rock with an opening",
+        {"preset": "CANYON", "beds": 12, "variation": 0.8, "scree": 0.3},
+    ),
     "ISLAND": ("Island", "An island with a steep coast and stacks", {"preset": "ISLAND", "beds": 12}),
     "TERRAIN": ("Terrain", "Ridges and valleys", {"preset": "FOLDED", "beds": 20}),
 }

@@ -15,10 +15,12 @@ from .noise import fractal
 
 REPOSE = 34.0  # degrees: of angular stones (Carson 1977, "Angles of repose, angles of shearing resistance and
 # angles of talus slopes")
-_STEEP = 2.0  # a step of the ground by so many times the spacing is a wall
+_STEEP = 1.5  # a step of the ground by so many times the spacing is a wall
 _SHARE = 0.35  # of the height of a wall: that of the scree at its foot
-_AROUND = 0.12  # of the width of the rock: how far away walls supply scree
-_THIN = 0.4  # spacings: thinner scree is left out
+_AROUND = 3  # spacings: within them the ground rises by the height of the wall that supplies scree
+_BEFORE = 10  # spacings: so wide is the ground before a wall at which scree can lie
+_MOST = 0.09  # of the width of the rock: the height of scree at amount 1
+_THIN = 0.4  # spacings: thinner scree is not seen
 
 
 def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int, faces: int) -> Mesh:
@@ -44,8 +46,9 @@ def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int,
             "it has no wall at whose foot scree could lie", advice="choose more scree, or a steeper shape"
         )
     z = lattice.origin[2] + spacing * levels
-    lower = np.where(is_ground, ground - 2.0 * spacing, math.inf)
-    upper = np.where(surface > ground + _THIN * spacing, surface, -math.inf)
+    # It goes on a little into the walls, and its lower side lies in the rock.
+    upper = np.where(is_ground & np.isneginf(surface), _greatest(surface, 0.0), surface)
+    lower = -_greatest(-ground, 0.0) - 2.0 * spacing
     field = np.maximum(z - upper[:, :, None], lower[:, :, None] - z)
     with work.phase(0.8, 1.0, "meshing"):
         return meshed(work, lattice, np.clip(field, -2.0 * spacing, 2.0 * spacing))
@@ -61,16 +64,18 @@ def _heaped(
     seed: int,
 ) -> np.ndarray:
     """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls."""
-    highest, steps = ground, max(int(_AROUND * max(ground.shape)), 2)
-    for _ in range(steps):
+    highest, lowest = ground, ground
+    for _ in range(_AROUND):
         highest = _greatest(highest, 0.0)
-    above, below = _greatest(ground, 0.0) - ground, ground + _greatest(-ground, 0.0)
-    is_foot = (above > _STEEP * spacing) & (below < _STEEP * spacing) & is_ground
+    for _ in range(_BEFORE):
+        lowest = -_greatest(-lowest, 0.0)
+    is_wall = _greatest(ground, 0.0) - ground > _STEEP * spacing
+    is_foot = is_wall & is_ground & (ground - lowest < _BEFORE * slope * spacing)  # no ledge high in a wall
     places = np.stack(np.meshgrid(*map(np.arange, ground.shape), indexing="ij"), axis=-1).reshape(-1, 2)
     places = np.column_stack([places * (6.0 / max(ground.shape)), np.zeros(len(places))])
     uneven = 0.4 + 1.2 * fractal(places, seed + 31).reshape(ground.shape)
-    height = np.where(is_foot, amount * _SHARE * uneven * (highest - ground), 0.0)
-    surface = np.where(is_foot, ground + height, -math.inf)
+    height = np.minimum(_SHARE * (highest - ground), _MOST * spacing * max(ground.shape))
+    surface = np.where(is_foot, ground + amount * uneven * height, -math.inf)
     while True:
         work.check()
         wider = _greatest(surface, slope * spacing)
