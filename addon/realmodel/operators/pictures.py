@@ -46,7 +46,7 @@ class _Lit(Reporting):
     scene_settings: BoolProperty(
         name="Scene Settings",
         description="Replace the world by a sky, choose the render engine, and show colors without a view "
-        "transform. On by default only if the scene has no lights, cameras, world, engine or objects of its own",
+        "transform. On by default only if the scene has no light, camera, world, engine or object of its own",
         options={"SKIP_SAVE"},
     )
 
@@ -269,8 +269,8 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     detail: IntProperty(
         name="Detail",
-        description="Number of subdivisions of each exposed polygon, as long as Most Faces allows. Each makes "
-        "four of one",
+        description="Number of subdivisions of each exposed polygon, fewer if Most Faces is exceeded. Each "
+        "makes four of one",
         default=2,
         min=0,
         max=weathering.FINEST,

@@ -7,7 +7,7 @@ where they stand there, its world, its renderer; or what was added here before, 
 
 import numpy as np
 
-from ..objects import meshes
+from ..objects import meshes, model_tree
 from . import picture
 
 _STARTUP = {  # name, location and rotation of what the startup file has
@@ -41,7 +41,7 @@ def is_empty(scene):
     RealModel and of the startup file."""
     sources = {row.object for rock in scene.realmodel.rocks for row in rock.surfaces}
     for obj in scene.objects:
-        is_ours = obj in sources or any(key.startswith(meshes.PREFIX[:-1]) for key in obj.keys())
+        is_ours = obj in sources or any(key.startswith(model_tree.TAG) for key, _ in obj.items())
         if is_ours or obj.hide_render or obj.type in _NOT_RENDERED:
             continue
         if not (_is_startup_cube(obj) if obj.type not in ("CAMERA", "LIGHT") else _is_of_startup(obj)):

@@ -32,7 +32,9 @@ _MERGED = 0.06  # of the bed thickness: vertices that are nearer to each other b
 _ROOM = 0.4  # of the way through the rock: how far a vertex may go
 _LEAST = 0.05  # of the cosine of the angle by which a face turns
 # The passes that turn faces back: the share of erosion that is left there, and how far around, in strengths
-_EBBING = tuple(zip((0.6, 0.4, 0.2) + (0.0,) * 7, (0.4, 0.6, 0.8, 0.8, 1.0, 1.0, 1.4, 2.0, 4.0, 16.0), strict=True))
+_EBBING = tuple(
+    zip((0.6, 0.4, 0.2) + (0.0,) * 7, (0.4, 0.6, 0.8, 0.8, 1.0, 1.0, 1.4, 2.0, 4.0, 16.0), strict=True)
+)
 _OWN = 0.6  # how much beds of a rock differ in hardness
 _MARGIN = 0.1  # of the strength: how much farther faces between blocks go than exposed ones
 _SKIRT = -3.0  # the surface of faces that are none of the block
@@ -100,7 +102,9 @@ def put_on(scene, items, given):
     """Adds Weathering to blocks, and to beds of filled meshes, or changes its settings."""
     groups = {}
     for obj in items:
-        groups.setdefault(tuple(filled_beds.together(obj)) if filled_beds.BED in obj else None, []).append(obj)
+        groups.setdefault(tuple(filled_beds.together(obj)) if filled_beds.BED in obj else None, []).append(
+            obj
+        )
     for together, members in groups.items():
         if together is None:
             together = [row.object for row in scene.realmodel.results if row.object is not None]
@@ -245,7 +249,9 @@ def _fill(group):
     before, geometry = _worn(nodes, inputs, seen)
     hidden = _pushed(nodes, inputs, hidden, before, geometry)
     geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry, Selection=_is_fine(nodes, inputs))
-    geometry = nodes.stored(geometry, edge_wear.ATTRIBUTE, inputs["Edge Wear"])
+    geometry, hidden = (
+        nodes.stored(part, edge_wear.ATTRIBUTE, inputs["Edge Wear"]) for part in (geometry, hidden)
+    )
     geometry, scattered = _covered(nodes, inputs, geometry, is_top)
     joined = nodes.new("GeometryNodeJoinGeometry")
     for part in (*scattered, hidden, _with_skirt(nodes, inputs, geometry, surface)):
@@ -267,7 +273,9 @@ def _worn(nodes, inputs, seen):
     position = nodes.of("GeometryNodeInputPosition", "Position")
     normal = nodes.of("GeometryNodeInputNormal", "Normal")
     inward = nodes.vector("SCALE", normal, -1.0)
-    distance = nodes.math("MULTIPLY", inputs["Bed Thickness"], nodes.math("MULTIPLY", _is_fine(nodes, inputs), _MERGED))
+    distance = nodes.math(
+        "MULTIPLY", inputs["Bed Thickness"], nodes.math("MULTIPLY", _is_fine(nodes, inputs), _MERGED)
+    )
     seen = nodes.to("GeometryNodeMergeByDistance", seen, Distance=distance)
     seen = nodes.stored(seen, _MOST, _room(nodes, seen, position, inward))
     seen = nodes.stored(seen, _INWARD, inward)
@@ -293,8 +301,8 @@ def _worn(nodes, inputs, seen):
 
 
 def _turned_back(nodes, inputs, geometry, position, normal):
-    """The eroded geometry without faces that are turned over: around them erosion ebbs away, at first a little
-    and nearby, at last wholly and so widely that it cannot turn any."""
+    """The eroded geometry without faces that are turned over. Around them erosion becomes less, at first a
+    little and nearby, at last wholly and so widely that the change cannot turn any."""
     facing, before = (nodes.temporary(name, "FLOAT_VECTOR") for name in (_FACING, _BEFORE))
     least = nodes.math("MULTIPLY", nodes.vector("DOT_PRODUCT", facing, facing), _LEAST)
     is_over = nodes.on("FACE", nodes.math("LESS_THAN", nodes.vector("DOT_PRODUCT", normal, facing), least))
@@ -357,7 +365,8 @@ def _with_skirt(nodes, inputs, geometry, surface):
     inward = nodes.vector("NORMALIZE", nodes.temporary(_INWARD, "FLOAT_VECTOR"))
     reach = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
     reach = nodes.math("MINIMUM", reach, nodes.temporary(_MOST))
-    for name, value in (("Selection", _is_border(nodes)), ("Offset", inward), ("Offset Scale", reach)):
+    border = nodes.math("MULTIPLY", _is_border(nodes), nodes.math("GREATER_THAN", inputs["Strength"], 0.0))
+    for name, value in (("Selection", border), ("Offset", inward), ("Offset Scale", reach)):
         nodes.link(value, node.inputs[name])
     nodes.link(geometry, node.inputs["Mesh"])
     side = node.outputs["Side"]
@@ -396,7 +405,8 @@ def _depth(nodes, inputs, position):
 
 
 def _covered(nodes, inputs, geometry, is_top):
-    """The geometry with grass, and scree on steeper ground, with a ragged border; tufts and stones on them."""
+    """The geometry with grass, and scree on steeper ground, with a ragged border, and instances of tufts and
+    stones on them."""
     position = nodes.of("GeometryNodeInputPosition", "Position")
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, inputs["Noise Scale"]))
     ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
