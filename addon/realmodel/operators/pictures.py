@@ -40,9 +40,26 @@ def set_up_first(scene):
     return True
 
 
-class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
-    """Add a camera, a sun, a sky and a ground for the model and choose the renderer, for Render Image (F12).
-    They replace earlier ones of RealModel. Your own cameras and lights stay"""
+class _Lit(Reporting):
+    """Sets up light and camera, and changes what all of the scene shares only by this box."""
+
+    scene_settings: BoolProperty(
+        name="Scene Settings",
+        description="Replace the world by a sky, choose the render engine, and show colors without a view "
+        "transform. On by default only if the scene has no light, camera, world, engine or object of its own",
+        options={"SKIP_SAVE"},
+    )
+
+    def changes_scene(self, scene):
+        """Whether the box is on; one that nobody has set is on in an empty scene."""
+        if not self.properties.is_property_set("scene_settings"):
+            self.scene_settings = first_picture.is_empty(scene)
+        return self.scene_settings
+
+
+class REALMODEL_OT_set_up_picture(_Lit, bpy.types.Operator):
+    """Add a camera, a sun and a ground for the model, for Render Image (F12). They replace earlier ones of
+    RealModel. World, render engine and view transform change only if Scene Settings is on"""
 
     bl_label = "Light and Camera"
     needs = (a_model_or_beds,)
@@ -74,6 +91,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
 
     def act(self, context):
         scene = context.scene
+        with_scene = self.changes_scene(scene)
         view = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
         picture.set_up(
             scene,
@@ -82,11 +100,13 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
             None if view is None else view[2],
             legend=overlay.legend_shares(scene, _size(scene)),
             sun=(self.sun_azimuth, self.sun_elevation),
+            with_sky=with_scene,
         )
-        picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
+        if with_scene:
+            picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
 
 
-class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
+class REALMODEL_OT_turntable(_Lit, bpy.types.Operator):
     """Set up light and camera, and make the camera go around the model once. Replaces an earlier turntable.
     Render Animation (Ctrl F12) renders it"""
 
@@ -107,8 +127,10 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
         scene = context.scene
         legend = overlay.legend_shares(scene, _size(scene))
         points = viewpoints.model_points(scene, cut=True)
-        animation.turntable(scene, points, _size(scene), self.frames, self.elevation, legend)
-        picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
+        with_scene = self.changes_scene(scene)
+        animation.turntable(scene, points, _size(scene), self.frames, self.elevation, legend, with_scene)
+        if with_scene:
+            picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
         self.report({"INFO"}, f"Frames {scene.frame_start} to {scene.frame_end}")
 
 
@@ -247,8 +269,8 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     detail: IntProperty(
         name="Detail",
-        description="Number of subdivisions of each exposed polygon, as long as Most Faces allows. Each makes "
-        "four of one",
+        description="Number of subdivisions of each exposed polygon, fewer if Most Faces is exceeded. Each "
+        "makes four of one",
         default=2,
         min=0,
         max=weathering.FINEST,

@@ -81,14 +81,6 @@ class GeometryNodes(Nodes):
         self.link(selection, node.inputs["Selection"])
         return node.outputs["Selection"], node.outputs["Inverted"]
 
-    def vector_at(self, index, value):
-        """A vector field of points at the point with a number."""
-        node = self.new("GeometryNodeFieldAtIndex")
-        node.domain, node.data_type = "POINT", "FLOAT_VECTOR"
-        self.link(index, node.inputs["Index"])
-        self.link(value, of_type(node.inputs, "VECTOR"))
-        return of_type(node.outputs, "VECTOR")
-
     def rotation(self):
         """The rotation of the object, as Euler angles."""
         node = self.new("GeometryNodeObjectInfo")

@@ -30,18 +30,19 @@ _STEPS = 5  # of smoothing
 _BEFORE, _INWARD, _FACING, _MOST = (f"realmodel_{name}" for name in ("before", "inward", "facing", "most"))
 _FAR = 1e9  # no limit
 _MERGED = 0.06  # of the bed thickness: vertices that are nearer to each other become one
-_EVEN = 4  # passes that even out how far vertices may go
 _ROOM = 0.4  # of the way through the rock: how far a vertex may go
 _LEAST = 0.05  # of the cosine of the angle by which a face turns
 # The passes that turn faces back: the share of erosion that is left there, and how far around, in strengths
-_EBBING = ((0.6, 0.5), (0.5, 0.7), (0.4, 1.0), (0.2, 1.4), (0.0, 2.0), (0.0, 4.0), (0.0, 8.0), (0.0, 16.0))
+_EBBING = tuple(
+    zip((0.6, 0.4, 0.2) + (0.0,) * 7, (0.4, 0.6, 0.8, 0.8, 1.0, 1.0, 1.4, 2.0, 4.0, 16.0), strict=True)
+)
 _OWN = 0.6  # how much beds of a rock differ in hardness
 _MARGIN = 0.1  # of the strength: how much farther faces between blocks go than exposed ones
 _SKIRT = -3.0  # the surface of faces that are none of the block
 _ALONE = 0.2  # the share of the faces around a triangle that have its cover, itself counted, if no other has
 COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
 # mean thicknesses of beds at 1
-_UNITS = {"Strength": 0.5, "Noise Scale": 1.5, "Bed Thickness": 0.4, "Edge Wear": 0.1}
+_UNITS = {"Strength": 0.5, "Deepest": 1.0, "Noise Scale": 1.5, "Bed Thickness": 0.4, "Edge Wear": 0.1}
 _THICKEST = 1 / 20  # of the diagonal: what counts at most as the thickness of a bed
 _BYTES = 300  # of memory for a polygon
 FINEST = 6
@@ -49,6 +50,7 @@ FINEST = 6
 # name: kind of the socket, default, lowest, highest
 _INPUTS = {
     "Strength": ("NodeSocketFloatDistance", 0.5, 0.0),
+    "Deepest": ("NodeSocketFloatDistance", 1.0, 1e-6),
     "Edge Rounding": ("NodeSocketFloatFactor", 0.6, 0.0, 1.0),
     "Edge Wear": ("NodeSocketFloatDistance", 0.0, 0.0),
     "Noise Scale": ("NodeSocketFloatDistance", 2.0, 1e-6),
@@ -167,6 +169,7 @@ def _values(values, thickness, unit):
     """The inputs of the modifier. thickness: of beds; unit: a texture unit."""
     return {
         "Strength": values.strength * _UNITS["Strength"] * thickness,
+        "Deepest": _UNITS["Deepest"] * thickness,
         "Edge Rounding": values.rounding,
         "Noise Scale": values.noise * _UNITS["Noise Scale"] * thickness,
         "Bed Thickness": values.noise * _UNITS["Bed Thickness"] * thickness,
@@ -247,7 +250,9 @@ def _fill(group):
     before, geometry = _worn(nodes, inputs, seen)
     hidden = _pushed(nodes, inputs, hidden, before, geometry)
     geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry, Selection=_is_fine(nodes, inputs))
-    geometry = nodes.stored(geometry, edge_wear.ATTRIBUTE, inputs["Edge Wear"])
+    geometry, hidden = (
+        nodes.stored(part, edge_wear.ATTRIBUTE, inputs["Edge Wear"]) for part in (geometry, hidden)
+    )
     geometry, scattered = _covered(nodes, inputs, geometry, is_top)
     joined = nodes.new("GeometryNodeJoinGeometry")
     for part in (*scattered, hidden, _with_skirt(nodes, inputs, geometry, surface)):
@@ -273,17 +278,14 @@ def _worn(nodes, inputs, seen):
         "MULTIPLY", inputs["Bed Thickness"], nodes.math("MULTIPLY", _is_fine(nodes, inputs), _MERGED)
     )
     seen = nodes.to("GeometryNodeMergeByDistance", seen, Distance=distance)
-    room = nodes.math("MINIMUM", _room(nodes, seen, position, inward), _bend(nodes, position, normal))
-    seen = nodes.stored(seen, _MOST, room)
-    most = nodes.named(_MOST, "FLOAT")
-    for _ in range(_EVEN):
-        around = nodes.on("POINT", nodes.on("EDGE", most))
-        seen = nodes.stored(seen, _MOST, nodes.math("MINIMUM", most, around))
+    seen = nodes.stored(seen, _MOST, _room(nodes, seen, position, inward))
     seen = nodes.stored(seen, _INWARD, inward)
     geometry = nodes.to("GeometryNodeSubdivideMesh", seen, Level=inputs["Detail"])
     geometry = nodes.stored(geometry, _BEFORE, position)
     geometry = before = nodes.stored(geometry, _FACING, normal, "FACE")
     depth = nodes.math("MULTIPLY", _depth(nodes, inputs, position), inputs["Strength"])
+    deepest = inputs["Deepest"]
+    depth = nodes.math("MULTIPLY", nodes.math("TANH", nodes.math("DIVIDE", depth, deepest)), deepest)
     depth = nodes.math("MINIMUM", depth, nodes.named(_MOST, "FLOAT"))
     shift = nodes.vector("SCALE", nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR")), depth)
     geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=shift)
@@ -300,12 +302,13 @@ def _worn(nodes, inputs, seen):
 
 
 def _turned_back(nodes, inputs, geometry, position, normal):
-    """The eroded geometry without faces that are turned over: around them erosion ebbs away, at first a little
-    and nearby, at last wholly and so widely that it cannot turn any."""
+    """The eroded geometry without faces that are turned over. Around them erosion becomes less, at first a
+    little and nearby, at last wholly and so widely that the change cannot turn any."""
     facing, before = (nodes.named(name, "FLOAT_VECTOR") for name in (_FACING, _BEFORE))
     least = nodes.math("MULTIPLY", nodes.vector("DOT_PRODUCT", facing, facing), _LEAST)
     is_over = nodes.on("FACE", nodes.math("LESS_THAN", nodes.vector("DOT_PRODUCT", normal, facing), least))
     back = nodes.vector("SUBTRACT", before, position)
+    strength = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
     for kept, reach in _EBBING:
         over, _ = nodes.separated(geometry, is_over)
         node = nodes.new("GeometryNodeProximity")
@@ -314,7 +317,7 @@ def _turned_back(nodes, inputs, geometry, position, normal):
         count = nodes.new("GeometryNodeAttributeDomainSize")
         nodes.link(over, count.inputs[0])
         gone = nodes.ramp(node.outputs["Distance"], 0.0, 1.0, 1.0 - kept, 0.0)
-        nodes.link(nodes.math("MULTIPLY", inputs["Strength"], reach), gone.node.inputs["From Max"])
+        nodes.link(nodes.math("MULTIPLY", strength, reach), gone.node.inputs["From Max"])
         gone = nodes.math("MULTIPLY", gone, nodes.math("MINIMUM", count.outputs["Face Count"], 1.0))
         geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=nodes.vector("SCALE", back, gone))
     return geometry
@@ -330,22 +333,6 @@ def _room(nodes, seen, position, inward):
     is_near = nodes.math("MULTIPLY", ray.outputs["Is Hit"], leaves)
     free = nodes.math("MULTIPLY", nodes.math("SUBTRACT", 1.0, is_near), _FAR)
     return nodes.math("MULTIPLY_ADD", ray.outputs["Hit Distance"], _ROOM, free)
-
-
-def _bend(nodes, position, normal):
-    """How far a point of the surface may go where it is convex: a share of the radius. Of its edges the most
-    bent count, as a mean of high powers."""
-    ends = nodes.new("GeometryNodeInputMeshEdgeVertices").outputs
-    first, second = (
-        [nodes.vector_at(ends[f"Vertex Index {number}"], value) for value in (position, normal)]
-        for number in (1, 2)
-    )
-    along, turn = (nodes.vector("SUBTRACT", *pair) for pair in zip(first, second, strict=True))
-    bend = nodes.math(
-        "DIVIDE", nodes.vector("DOT_PRODUCT", along, turn), nodes.vector("DOT_PRODUCT", along, along)
-    )
-    bend = nodes.math("POWER", nodes.math("MAXIMUM", bend, 1.0 / _FAR), 4.0)
-    return nodes.math("DIVIDE", _ROOM, nodes.math("POWER", nodes.on("POINT", nodes.on("EDGE", bend)), 0.25))
 
 
 def _is_border(nodes):
@@ -369,7 +356,7 @@ def _pushed(nodes, inputs, hidden, before, geometry):
 
 
 def _margin(nodes, inputs):
-    return nodes.math("MULTIPLY", inputs["Strength"], _MARGIN)
+    return nodes.math("MULTIPLY", nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"]), _MARGIN)
 
 
 def _with_skirt(nodes, inputs, geometry, surface):
@@ -378,8 +365,10 @@ def _with_skirt(nodes, inputs, geometry, surface):
     node = nodes.new("GeometryNodeExtrudeMesh")
     node.mode = "EDGES"
     inward = nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR"))
-    reach = nodes.math("MINIMUM", inputs["Strength"], nodes.named(_MOST, "FLOAT"))
-    for name, value in (("Selection", _is_border(nodes)), ("Offset", inward), ("Offset Scale", reach)):
+    reach = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+    reach = nodes.math("MINIMUM", reach, nodes.named(_MOST, "FLOAT"))
+    border = nodes.math("MULTIPLY", _is_border(nodes), nodes.math("GREATER_THAN", inputs["Strength"], 0.0))
+    for name, value in (("Selection", border), ("Offset", inward), ("Offset Scale", reach)):
         nodes.link(value, node.inputs[name])
     nodes.link(geometry, node.inputs["Mesh"])
     side = node.outputs["Side"]
@@ -422,7 +411,8 @@ def _depth(nodes, inputs, position):
 
 
 def _covered(nodes, inputs, geometry, is_top):
-    """The geometry with grass, and scree on steeper ground, with a ragged border; tufts and stones on them."""
+    """The geometry with grass, and scree on steeper ground, with a ragged border, and instances of tufts and
+    stones on them."""
     position = nodes.of("GeometryNodeInputPosition", "Position")
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, inputs["Noise Scale"]))
     ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
