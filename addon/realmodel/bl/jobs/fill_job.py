@@ -20,7 +20,7 @@ from ..host.thread_job import ThreadJob
 from ..objects import exaggeration, filled_beds, materials, meshes, placing, shapes
 from ..objects.boolean_job import VOLUME
 from ..objects.filled_beds import BED
-from ..shading import looks
+from ..shading import looks, rock_layers
 
 _SHARE = 0.9  # of the progress that filling takes
 
@@ -160,7 +160,8 @@ class FillJob(ThreadJob):
         if self._has_masks:
             self._add_masks(collection, obj, masks)
         placing.hide(obj)
-        placing.select(beds)
+        placing.select(beds)  # from here on Blender knows where they stand
+        rock_layers.write(scene, beds)
         return collection
 
     def _material(self, rock):

@@ -96,7 +96,7 @@ def put_on(scene, items, given):
         for name, value in _values(given, unit).items():
             versions.set_group_input(modifier, name, value)
         if is_bed:
-            versions.set_group_input(modifier, "Hardness", _hardness_of_bed(obj))
+            versions.set_group_input(modifier, "Hardness", hardness_of_bed(obj))
         obj.pop(HARDNESS, None)
     for material in _rocks(items):
         edge_wear.put_on(material)
@@ -128,7 +128,7 @@ def _values(values, unit):
     }
 
 
-def _hardness_of_bed(obj):
+def hardness_of_bed(obj):
     """That of the look of its rock."""
     names = (slot.material.get(looks.KEY) for slot in obj.material_slots if slot.material)
     return LOOKS[next((look for look in names if look in LOOKS), DEFAULT)].hardness
