@@ -6,10 +6,13 @@ import contextlib
 
 import bpy
 
-from ..objects import model_tree
+from ..objects import filled_beds, model_tree
 from ..project import library_rows, settings
 
-_KEPT = (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.BLOCK, model_tree.PROPERTY)
+_KEPT = (
+    *(model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.BLOCK, model_tree.PROPERTY),
+    filled_beds.BED,
+)
 
 
 class Copies:
