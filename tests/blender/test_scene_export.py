@@ -114,7 +114,9 @@ class SceneExport(PanelCase):
 
     def test_usd(self):
         if not bpy.app.build_options.usd:
-            with unittest.mock.patch.object(scene_export, "Baking", side_effect=AssertionError):  # before that
+            with unittest.mock.patch.object(
+                scene_export, "Baking", side_effect=AssertionError
+            ):  # before that
                 self.refused(ops.export_scene, "cannot write USD", filepath=str(self.folder / "m.usda"))
             self.skipTest("this Blender cannot write USD")
         self.assert_pictured(self.exported("usdc"))

@@ -159,9 +159,9 @@ class FillJob(ThreadJob):
         beds = list(collection.objects)
         if self._has_masks:
             self._add_masks(collection, obj, masks)
+        rock_layers.finish(scene, obj, beds)
         placing.hide(obj)
-        placing.select(beds)  # from here on Blender knows where they stand
-        rock_layers.write(scene, beds)
+        placing.select(beds)
         return collection
 
     def _material(self, rock):

@@ -2,17 +2,21 @@
 """What blocks and beds have for other programs and for Solid shading: a UV map, the color of the rock, and
 values of their vertices."""
 
+import bpy
 import numpy as np
 
-from ...core.display import box_projection
+from ...core.base.work import native_module
+from ...core.display import box_projection, polygon_mesh
 from ...core.display.wetness import wetness
 from ..host import versions
-from ..objects import exaggeration, filled_beds, meshes, model_tree
+from ..objects import exaggeration, filled_beds, meshes, model_tree, shapes
 from ..project import library_rows
 from . import looks, weathering
 
 UV_MAP = "UVMap"  # along the bedding; polygons of different places overlap
 COLOR = "Rock Color"  # a color attribute, the active one
+KEPT = "{} of Mesh"  # the UV map of a filled mesh that has the name of UV_MAP
+_NEAR = 1e-5  # of the size of a mesh: what is farther from it is not its surface
 HARDNESS, WETNESS = "realmodel_hardness", "realmodel_wetness"  # of vertices, from 0 to 1
 
 
@@ -42,6 +46,49 @@ def write(scene, items, size=0.0):
             hardness = weathering.hardness_of(library_rows.find(scene, obj.get(model_tree.PROPERTY)))
         _set(mesh, HARDNESS, "FLOAT", np.full(len(at), hardness, np.float32))
     return size
+
+
+def finish(scene, source, beds):
+    """Gives new beds what `write` does, and on the surface of the mesh that they fill, which is not hidden yet,
+    its smooth shading and UV maps; elsewhere these are along the bedding."""
+    bpy.context.view_layer.update()  # or it would not know where they stand
+    write(scene, beds)
+    with shapes.evaluated_mesh(source, bpy.context.evaluated_depsgraph_get(), all_layers=True) as mesh:
+        polygons = shapes.triangle_polygons(mesh)
+        corners = np.empty(3 * len(polygons), np.int32)
+        mesh.loop_triangles.foreach_get("loops", corners)
+        corners = corners.reshape(-1, 3)
+        smooth = np.empty(len(mesh.polygons), bool)
+        mesh.polygons.foreach_get("use_smooth", smooth)
+        uvs = {layer.name: _uv(layer) for layer in mesh.uv_layers}
+        triangles = meshes.mesh_coordinates(mesh)[shapes.mesh_triangles(mesh)].astype(np.float64)
+    if not uvs and not smooth.any():
+        return
+    near = _NEAR * float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    for bed in beds:
+        offsets, vertices, _ = arrays_of(bed.data)
+        at = meshes.mesh_coordinates(bed.data)[vertices].astype(np.float64)
+        middle = np.add.reduceat(at, offsets[:-1]) / np.diff(offsets)[:, None]
+        nearest, away = native_module().nearest_triangles(triangles, middle)
+        is_kept = away <= near
+        if smooth.any():
+            bed.data.polygons.foreach_set("use_smooth", is_kept & smooth[polygons[nearest]])
+            versions.break_at_flat(bed.data)
+        rows = np.flatnonzero(np.repeat(is_kept, np.diff(offsets)))
+        triangle = np.repeat(nearest, np.diff(offsets))[rows]
+        weights = polygon_mesh.barycentric(np.repeat(at[rows, None], 3, axis=1), triangles[triangle])[:, 0]
+        for name, values in uvs.items():
+            layer = bed.data.uv_layers.new(name=KEPT.format(name) if name == UV_MAP else name, do_init=False)
+            if layer is not None:  # there may be eight
+                made = _uv(bed.data.uv_layers[UV_MAP])
+                made[rows] = polygon_mesh.interpolated(values, corners[triangle], weights)
+                layer.data.foreach_set("uv", made.ravel())
+
+
+def _uv(layer):
+    values = np.empty((len(layer.data), 2), np.float32)
+    layer.data.foreach_get("uv", values.ravel())
+    return values
 
 
 def arrays_of(mesh):

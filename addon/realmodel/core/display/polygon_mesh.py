@@ -447,7 +447,7 @@ def _triangles_of(
     )
     for number, operand in enumerate(operands):
         mask = source == number
-        of.weights[mask] = _barycentric(
+        of.weights[mask] = barycentric(
             intersection.vertices[of.triangles[mask]], operand.vertices[operand.triangles[origin[mask]]]
         )
         polygon[mask] = operand.triangle_polygons[origin[mask]]
@@ -568,7 +568,7 @@ def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -
     return (total if values.dtype.kind == "f" else np.rint(total)).astype(values.dtype)
 
 
-def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(M, 3, 3): the weights [:, i] of the corners of triangles (M, 3, 3) at places [:, i]; at a corner they
     are exactly 1, 0, 0."""
     a, b, c = triangles.transpose(1, 0, 2)
