@@ -5,10 +5,11 @@ values of their vertices."""
 import bpy
 import numpy as np
 
-from ...core.base.work import native_module
+from ...core.base.work import native_module, on_threads
 from ...core.display import box_projection, polygon_mesh
 from ...core.display.wetness import wetness
 from ..host import versions
+from ..host.threads import threads
 from ..objects import exaggeration, filled_beds, meshes, model_tree, shapes
 from ..project import library_rows
 from . import looks, weathering
@@ -49,7 +50,7 @@ def write(scene, items, size=0.0):
 
 
 def finish(scene, source, beds):
-    """Gives new beds what `write` does, and on the surface of the mesh that they fill, which is not hidden yet,
+    """Gives new beds what `write` does, and on the surface of the mesh that they fill, which is still shown,
     its smooth shading and UV maps; elsewhere these are along the bedding."""
     bpy.context.view_layer.update()  # or it would not know where they stand
     write(scene, beds)
@@ -64,25 +65,31 @@ def finish(scene, source, beds):
         triangles = meshes.mesh_coordinates(mesh)[shapes.mesh_triangles(mesh)].astype(np.float64)
     if not uvs and not smooth.any():
         return
-    near = _NEAR * float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    parts = []
     for bed in beds:
         offsets, vertices, _ = arrays_of(bed.data)
         at = meshes.mesh_coordinates(bed.data)[vertices].astype(np.float64)
         middle = np.add.reduceat(at, offsets[:-1]) / np.diff(offsets)[:, None]
-        nearest, away = native_module().nearest_triangles(triangles, middle)
-        is_kept = away <= near
+        parts.append((bed.data, np.diff(offsets), at, middle))
+    middles = np.concatenate([middle for *_, middle in parts])
+    nearest, away = native_module().nearest_triangles(triangles, middles, execution=on_threads(threads()))
+    is_kept = away <= _NEAR * float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    ends = np.cumsum([len(middle) for *_, middle in parts])[:-1]
+    for (mesh, counts, at, _), near, kept in zip(
+        parts, np.split(nearest, ends), np.split(is_kept, ends), strict=True
+    ):
         if smooth.any():
-            bed.data.polygons.foreach_set("use_smooth", is_kept & smooth[polygons[nearest]])
-            versions.break_at_flat(bed.data)
-        rows = np.flatnonzero(np.repeat(is_kept, np.diff(offsets)))
-        triangle = np.repeat(nearest, np.diff(offsets))[rows]
-        weights = polygon_mesh.barycentric(np.repeat(at[rows, None], 3, axis=1), triangles[triangle])[:, 0]
+            mesh.polygons.foreach_set("use_smooth", kept & smooth[polygons[near]])
+            versions.break_at_flat(mesh)
+        rows = np.flatnonzero(np.repeat(kept, counts))
+        triangle = np.repeat(near, counts)[rows]
+        weights = polygon_mesh.barycentric(at[rows, None], triangles[triangle])[:, 0]
         for name, values in uvs.items():
-            layer = bed.data.uv_layers.new(name=KEPT.format(name) if name == UV_MAP else name, do_init=False)
+            layer = mesh.uv_layers.new(name=KEPT.format(name) if name == UV_MAP else name, do_init=False)
             if layer is not None:  # there may be eight
-                made = _uv(bed.data.uv_layers[UV_MAP])
+                made = _uv(mesh.uv_layers[UV_MAP])
                 made[rows] = polygon_mesh.interpolated(values, corners[triangle], weights)
-                layer.data.foreach_set("uv", made.ravel())
+                mesh.uv_layers[layer.name].data.foreach_set("uv", made.ravel())
 
 
 def _uv(layer):
