@@ -46,10 +46,12 @@ def beds(strata):
 
 
 def projected(shape, unit=UNIT):
-    height = shape.bedding.height * shape.bedding.thickness
-    is_bedding = shape.face_surface >= 0
-    arrays = shape.coordinates, shape.offsets, shape.corners, shape.corner_edges
-    return box_projection.project(*arrays, unit, is_bedding, height)
+    bedding = shape.face_surface >= 0, shape.bedding.height * shape.bedding.thickness
+    return box_projection.project(shape.coordinates, arrays(shape), unit, bedding)
+
+
+def arrays(shape):
+    return shape.offsets, shape.corners, shape.corner_edges
 
 
 def singular_values(shape, uv):
@@ -119,7 +121,7 @@ def test_seams_are_where_the_plane_changes():
     made = projected(shape)
     pairs = box_projection.neighbors(shape.offsets, shape.corner_edges)
     assert len(pairs) == len(shape.edges)
-    island = box_projection.islands(made, shape.offsets, shape.corner_edges)
+    island = box_projection.islands(made, arrays(shape))
     same = made.chart[pairs[:, 0]] == made.chart[pairs[:, 1]]
     assert (island[pairs[:, 0]] == island[pairs[:, 1]])[same].all()
     assert len(np.unique(island)) < 0.1 * shape.polygons
@@ -129,7 +131,7 @@ def test_a_mesh_without_bedding_counts_as_level():
     shape = polygon_mesh.of_triangles(
         np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0]], np.float32), np.array([[0, 1, 2]])
     )
-    made = box_projection.project(shape.coordinates, shape.offsets, shape.corners, shape.corner_edges, 2.0)
+    made = box_projection.project(shape.coordinates, arrays(shape), 2.0)
     np.testing.assert_allclose(made.uv, [[0, 0], [1, 0], [0, 1]])
 
 
@@ -138,7 +140,7 @@ def test_islands_lie_side_by_side_in_the_square_at_one_density():
     uvs, numbers, first = [], [], 0
     for shape in shapes:
         made = projected(shape)
-        island = box_projection.islands(made, shape.offsets, shape.corner_edges)
+        island = box_projection.islands(made, arrays(shape))
         uvs.append(made.uv)
         numbers.append(first + np.repeat(island, np.diff(shape.offsets)))
         first += shape.polygons

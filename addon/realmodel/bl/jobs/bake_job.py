@@ -11,15 +11,14 @@ import bpy
 
 from ...core import BuildFailed, Cancelled, InputRefused
 from ...core.base.atomic import Outputs, make_folder
-from ..scene.bake import KINDS, UV_MAP, Baking
+from ..host.thread_job import ThreadJob
+from ..scene.bake import UV_MAP, Baking
 from ..scene.temporary_copies import copied
 from ..shading import rock_layers
 
-_LABELS = {key: label.lower() for key, label, _ in KINDS}
 
-
-class BakeJob:
-    """Has the methods of a ThreadJob. `run` and `finish` return the names of the files.
+class BakeJob(ThreadJob):
+    """`run` and `finish` return the names of the files.
 
     items: mesh objects. folder: of the pictures. kinds, layout, size: as of bake.Baking. is_plain: objects
     get one plain material with the pictures in place of their own, and their modifiers are applied; otherwise
@@ -30,14 +29,13 @@ class BakeJob:
 
     def __init__(self, context, items, folder, kinds, layout, size, is_plain):
         """Raises InputRefused where an object cannot get the UV map."""
-        if not is_plain:
-            for obj in items:
-                if obj.modifiers:
-                    raise InputRefused(
-                        "it has modifiers, which pictures without a new material would not fit",
-                        item=obj.name,
-                        advice="switch Plain Materials on, or apply its modifiers",
-                    )
+        modified = next((obj for obj in items if obj.modifiers), None)
+        if modified is not None and not is_plain:
+            raise InputRefused(
+                "it has modifiers, which pictures without a new material would not fit",
+                item=modified.name,
+                advice="switch Plain Materials on, or apply its modifiers",
+            )
         self._scene, self._names = context.scene.name, [obj.name for obj in items]
         self._folder, self._is_plain = folder, is_plain
         self._place = tempfile.TemporaryDirectory()
@@ -46,33 +44,30 @@ class BakeJob:
         self._is_cancelled = False
 
     def run(self):
-        """Bakes everything now."""
         while not self.hand_over(0.0):
             pass
         return self.finish()
 
-    def start(self):
+    def start(self, is_short=False):
         """Nothing starts before `hand_over`."""
 
     def wait(self):
         """Nothing goes on by itself."""
 
     def state(self):
-        """(fraction done, text)."""
         if not self._steps:
             return 0.0, "laying out UV maps"
         kind, _ = self._steps[min(self._at, len(self._steps) - 1)]
-        return self._at / len(self._steps), f"baking {_LABELS[kind]}"
+        return self._at / len(self._steps), f"baking {kind.lower()}"
 
     def cancel(self):
         self._is_cancelled = True
 
     def leave(self):
-        """Removes the files that nobody has got."""
         self._place.cleanup()
 
     def hand_over(self, _seconds):
-        """Bakes a picture, or some small ones. Returns whether `finish` may be called."""
+        """Bakes a picture, or some small ones."""
         if self._is_cancelled:
             return True
         try:
@@ -92,7 +87,6 @@ class BakeJob:
         return self._at == len(self._steps)
 
     def finish(self):
-        """Puts the pictures into the folder, and the result on the objects. Raises Cancelled."""
         try:
             if self._is_cancelled:
                 raise Cancelled("cancelled")

@@ -213,7 +213,7 @@ class Baking:
             places = meshes.mesh_coordinates(item.data).astype(np.float64) @ matrix.T
             arrays = rock_layers.arrays_of(item.data)
             made = rock_layers.projection(item.data, places, arrays, 1.0)
-            island = box_projection.islands(made, arrays[0], arrays[2])
+            island = box_projection.islands(made, arrays)
             slots = _material_indices(item.data)
             counts = np.diff(arrays[0])
             parts[number] = made.uv, np.repeat(island, counts), np.repeat(slots, counts)

@@ -120,10 +120,8 @@ def _with_hulls(copies, hulls):
             bmesh.ops.transform(shape, matrix=to_first @ item.matrix_world, verts=shape.verts[begin:])
         bmesh.ops.delete(shape, geom=shape.edges, context="EDGES_FACES")
         found = bmesh.ops.convex_hull(shape, input=shape.verts)
-        inside = {*found["geom_interior"], *found["geom_unused"]}
-        bmesh.ops.delete(
-            shape, geom=[part for part in inside if isinstance(part, bmesh.types.BMVert)], context="VERTS"
-        )
+        inside = {*found["geom_interior"], *found["geom_unused"]}.intersection(shape.verts)
+        bmesh.ops.delete(shape, geom=list(inside), context="VERTS")
         name = f"UCX_{items[0].name}_00"
         mesh = bpy.data.meshes.new(name)
         shape.to_mesh(mesh)

@@ -42,6 +42,14 @@ ITEMS = (
 UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
 OCCLUSION = "realmodel_occlusion"  # on the node group of a baked picture
 _GLTF = "glTF Material Output"
+_BETWEEN = {"NORMAL": "ShaderNodeNormalMap", "DISPLACEMENT": "ShaderNodeDisplacement"}
+_INPUTS = {  # that baked pictures go to
+    "COLOR": "Base Color",
+    "ROUGHNESS": "Roughness",
+    "NORMAL": "Color",
+    "OCCLUSION": "Occlusion",
+    "DISPLACEMENT": "Height",
+}
 SIZE = "Texture Size"  # the node that says how large a texture unit is
 _FLAT_LAMINAE = 0.03  # how many times longer than thick laminae are, inverted
 _GROOVE = 0.07  # texture units: half the width of a groove or a crack
@@ -104,26 +112,21 @@ def show_pictures(material, images):
     for kind, image in images.items():
         node = nodes.new("ShaderNodeTexImage")
         node.image = image
-        picture = node.outputs["Color"]
-        if kind == "COLOR":
-            nodes.link(picture, shader.inputs["Base Color"])
-        elif kind == "ROUGHNESS":
-            nodes.link(picture, shader.inputs["Roughness"])
-        elif kind == "NORMAL":
-            normal = nodes.new("ShaderNodeNormalMap")
-            nodes.link(picture, normal.inputs["Color"])
-            nodes.link(normal.outputs["Normal"], shader.inputs["Normal"])
-        elif kind == "OCCLUSION":
-            group = nodes.new("ShaderNodeGroup")
-            group.node_tree = group_once("ShaderNodeTree", _GLTF, OCCLUSION, _fill_occlusion_group)
-            nodes.link(picture, group.inputs["Occlusion"])
+        if kind == "OCCLUSION":
+            to = nodes.new("ShaderNodeGroup")
+            to.node_tree = group_once("ShaderNodeTree", _GLTF, OCCLUSION, _fill_occlusion_group)
+        elif kind in _BETWEEN:
+            to = nodes.new(_BETWEEN[kind])
         else:
-            displacement = nodes.new("ShaderNodeDisplacement")
-            displacement.inputs["Scale"].default_value = 2.0 * heights
-            nodes.link(picture, displacement.inputs["Height"])
+            to = shader
+        nodes.link(node.outputs["Color"], to.inputs[_INPUTS[kind]])
+        if kind == "NORMAL":
+            nodes.link(to.outputs["Normal"], shader.inputs["Normal"])
+        elif kind == "DISPLACEMENT":
+            to.inputs["Scale"].default_value = 2.0 * heights
             if "NORMAL" not in images:  # Cycles would count the relief twice
                 output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-                nodes.link(displacement.outputs[0], output.inputs["Displacement"])
+                nodes.link(to.outputs[0], output.inputs["Displacement"])
 
 
 def _fill_occlusion_group(group):

@@ -112,8 +112,9 @@ def projection(mesh, places, arrays, size):
     surface = _values(mesh, meshes.FACE_SURFACE, np.int32)
     height, thickness = (_values(mesh, meshes.PREFIX + name, np.float32) for name in ("height", "thickness"))
     is_known = surface is not None and height is not None and thickness is not None
-    bedding = (surface >= 0, height * thickness) if is_known else ()
-    return box_projection.project(places, *arrays, size, *bedding)
+    return box_projection.project(
+        places, arrays, size, (surface >= 0, height * thickness) if is_known else None
+    )
 
 
 def set_uv(mesh, name, uv):
@@ -166,9 +167,5 @@ def _values(mesh, name, dtype):
 
 def _set(mesh, name, kind, values):
     """An attribute of the vertices of a mesh."""
-    attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.domain, attribute.data_type) != ("POINT", kind):
-        mesh.attributes.remove(attribute)
-        attribute = None
-    attribute = attribute or mesh.attributes.new(name, kind, "POINT")
+    attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, "POINT")
     attribute.data.foreach_set("value", values)

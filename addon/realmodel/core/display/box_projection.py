@@ -20,8 +20,9 @@ STEEPEST = 1.5  # the most that a length is drawn out, and so the inverse cosine
 _SIDES = 8  # upright planes; their poles are _SIDES and _SIDES + 1
 _CELLS = 6  # along each axis of the box of a block, in each of which the bedding has one direction
 _TURN = math.radians(30.0)  # between the directions of bedding that count as different ones
-_ROUNDS = 3  # of letting polygons follow their neighbors
 _BASE = 1e-6  # of the height of a bed: what is lower lies on its base
+_ANGLES = [2.0 * math.pi * number / _SIDES for number in range(_SIDES)]
+_WAYS = np.array([*((math.cos(a), math.sin(a), 0.0) for a in _ANGLES), (0, 0, 1.0), (0, 0, -1.0)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,47 +34,44 @@ class Projection:
     chart: np.ndarray
 
 
+Arrays = tuple[np.ndarray, np.ndarray, np.ndarray]  # as of PolygonMesh: offsets, corners, corner_edges
+
+
 def project(
-    places: np.ndarray,
-    offsets: np.ndarray,
-    corners: np.ndarray,
-    corner_edges: np.ndarray,
-    unit: float,
-    is_bedding: np.ndarray | None = None,
-    height: np.ndarray | None = None,
+    places: np.ndarray, mesh: Arrays, unit: float, bedding: tuple[np.ndarray, np.ndarray] | None = None
 ) -> Projection:
-    """UV coordinates of a mesh. places: (V, 3). offsets: (F + 1,), corners: (C,), corner_edges: (C,), as of
-    polygon_mesh.PolygonMesh. unit: the length of a UV unit. is_bedding: (F,) bool, the polygons on the top or
-    the base of a bed; without any, bedding is level. height: (C,) of a corner in its bed, 0 at the base."""
+    """UV coordinates of a mesh. places: (V, 3). unit: the length of a UV unit. bedding: (F,) bool, the
+    polygons on top or base of a bed, and (C,) the heights of corners in the bed; None: it is level."""
+    offsets, corners, corner_edges = mesh
     at = places[corners].astype(np.float64)
     first = offsets[:-1]
     area = area_vectors(at, offsets)
     size = norm(area)
-    normal = area / np.maximum(size, np.finfo(float).tiny)[:, None]
-    which, frames = _frames(at[first], area, size, is_bedding)
-    east, north, up = (dot(normal, frames[which, axis]) for axis in range(3))
-    side = np.rint(np.arctan2(north, east) * (_SIDES / (2.0 * math.pi))).astype(np.int64) % _SIDES
-    ways = _directions()
-    upright = east * ways[side, 0] + north * ways[side, 1]
-    plane = np.where(np.abs(up) >= upright, np.where(up >= 0, _SIDES, _SIDES + 1), side)
+    which, frames = _frames(
+        at[first], area, size, np.zeros(len(size), bool) if bedding is None else bedding[0]
+    )
     pairs = neighbors(offsets, corner_edges)
     pairs = pairs[which[pairs[:, 0]] == which[pairs[:, 1]]]
-    plane = _calmed(plane, pairs, np.column_stack([east, north, up]))
+    along = [dot(area, frames[which, axis]) for axis in range(3)]
+    # by the mean direction with the neighbors, if that suits: rough rock would have a seam at each face
+    (a, b), count = pairs.T, len(area)
+    wide = _planes(
+        [3.0 * part + np.bincount(a, part[b], count) + np.bincount(b, part[a], count) for part in along]
+    )
+    suits = sum(along[axis] * _WAYS[wide, axis] for axis in range(3)) * STEEPEST > size
+    plane = np.where(suits, wide, _planes(along))
     chart = (which * (_SIDES + 2) + plane).astype(np.int32)
     counts = np.diff(offsets)
-    base = None if height is None else height < _BASE * float(height.max(initial=0.0))
+    low = np.zeros(len(at), bool) if bedding is None else bedding[1] < _BASE * bedding[1].max(initial=0.0)
     uv = np.empty((len(corners), 2), np.float32)
     of_corner = np.repeat(chart, counts)
     for number in np.unique(chart).tolist():
-        frame, facing = frames[number // (_SIDES + 2)], number % (_SIDES + 2)
-        across, along = _axes(frame, facing)
+        frame, facing = divmod(number, _SIDES + 2)
+        axes = _axes(frames[frame], facing)
+        base = at[low & (np.repeat(which, counts) == frame)] if facing < _SIDES else at[:0]
         rows = np.flatnonzero(of_corner == number)
-        begin = 0.0
-        if base is not None and facing < _SIDES:
-            low = at[base & (np.repeat(which, counts) == number // (_SIDES + 2))]
-            begin = float(dot(low, along).mean()) if len(low) else 0.0
-        uv[rows, 0] = dot(at[rows], across) / unit
-        uv[rows, 1] = (dot(at[rows], along) - begin) / unit
+        uv[rows, 0] = dot(at[rows], axes[0]) / unit
+        uv[rows, 1] = (dot(at[rows], axes[1]) - (dot(base, axes[1]).mean() if len(base) else 0.0)) / unit
     return Projection(uv, chart)
 
 
@@ -94,50 +92,29 @@ def neighbors(offsets: np.ndarray, corner_edges: np.ndarray) -> np.ndarray:
     return np.column_stack([face[order[is_pair]], face[order[is_pair + 1]]])
 
 
-def _directions() -> np.ndarray:
-    """(8, 2) of the normals of upright planes."""
-    angle = np.arange(_SIDES) * (2.0 * math.pi / _SIDES)
-    return np.column_stack([cos(angle), sin(angle)])
-
-
 def _axes(frame: np.ndarray, plane: int) -> tuple[np.ndarray, np.ndarray]:
     """The directions of u and v in a plane, not mirrored seen from outside."""
     east, north, up = frame
     if plane >= _SIDES:
         return (east if plane == _SIDES else -east), north
-    x, y = _directions()[plane]
+    x, y, _ = _WAYS[plane]
     return x * north - y * east, up
 
 
-def _calmed(plane: np.ndarray, pairs: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The planes where polygons follow most of their neighbors, as far as they are not drawn out too much.
-    normal: (F, 3) along the axes of their frames."""
-    ways = np.zeros((_SIDES + 2, 3))
-    ways[:_SIDES, :2] = _directions()
-    ways[_SIDES:, 2] = 1.0, -1.0
-    a, b = np.concatenate([pairs, pairs[:, ::-1]]).T
-    around = np.bincount(a, minlength=len(plane))
-    for _ in range(_ROUNDS):
-        differs = plane[a] != plane[b]
-        votes = np.sort(a[differs] * (_SIDES + 2) + plane[b[differs]])
-        key, count = np.unique(votes, return_counts=True)
-        face, wanted = np.divmod(key, _SIDES + 2)
-        chosen = 2 * count > around[face]  # at most one plane has more than half
-        face, wanted = face[chosen], wanted[chosen]
-        suits = dot(normal[face], ways[wanted]) * STEEPEST > 1.0
-        if not suits.any():
-            break
-        plane = plane.copy()
-        plane[face[suits]] = wanted[suits]
-    return plane
+def _planes(along: list[np.ndarray]) -> np.ndarray:
+    """(F,) the plane that each polygon faces most. along: (F,) the parts of its normal in its frame."""
+    east, north, up = along
+    side = np.rint(np.arctan2(north, east) * (_SIDES / (2.0 * math.pi))).astype(np.int64) % _SIDES
+    upright = east * _WAYS[side, 0] + north * _WAYS[side, 1]
+    return np.where(np.abs(up) >= upright, np.where(up >= 0, _SIDES, _SIDES + 1), side)
 
 
 def _frames(
-    places: np.ndarray, area: np.ndarray, size: np.ndarray, is_bedding: np.ndarray | None
+    places: np.ndarray, area: np.ndarray, size: np.ndarray, is_bedding: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(F,) the frame of each polygon, and frames (K, 3, 3): directions along the strike of the bedding, up
     its dip, and at right angles to it. Beds that are bent have several."""
-    chosen = np.zeros(len(size), bool) if is_bedding is None else is_bedding & (size > 0)
+    chosen = is_bedding & (size > 0)
     if not chosen.any():
         return np.zeros(len(size), np.int64), np.eye(3)[None]
     axis = _main_axis(area[chosen], size[chosen])
@@ -182,9 +159,9 @@ def _turned(frame: np.ndarray, first: float, second: float) -> np.ndarray:
     return np.array([way - dot(way, up) * middle for way in (east, north)] + [up])
 
 
-def islands(projection: Projection, offsets: np.ndarray, corner_edges: np.ndarray) -> np.ndarray:
+def islands(projection: Projection, mesh: Arrays) -> np.ndarray:
     """(F,) int32: one number for all polygons of a chart that hang together."""
-    pairs = np.ascontiguousarray(neighbors(offsets, corner_edges), np.int32)
+    pairs = np.ascontiguousarray(neighbors(mesh[0], mesh[2]), np.int32)
     return native_module().cell_components(pairs, projection.chart)
 
 

@@ -13,12 +13,7 @@ _TINY = np.finfo(float).tiny
 
 
 def wetness(
-    places: np.ndarray,
-    offsets: np.ndarray,
-    corners: np.ndarray,
-    edges: np.ndarray,
-    low: float,
-    high: float,
+    places: np.ndarray, offsets: np.ndarray, corners: np.ndarray, edges: np.ndarray, low: float, high: float
 ) -> np.ndarray:
     """(V,) float32 from 0, dry, to 1, of the vertices (V, 3) of a mesh; y is north. edges: (E, 2). low, high:
     elevations of the lowest and the highest place of all meshes that belong together.
@@ -30,10 +25,10 @@ def wetness(
     area = np.repeat(area_vectors(places[corners], offsets), np.diff(offsets), axis=0)
     count = len(places)
     normal = np.column_stack([np.bincount(corners, part, count) for part in area.T])
-    normal /= np.maximum(norm(normal), _TINY)[:, None]
+    normal = normal / np.maximum(norm(normal), _TINY)[:, None]
     a, b = edges.T
     way = places[b] - places[a]
-    way /= np.maximum(norm(way), _TINY)[:, None]
+    way = way / np.maximum(norm(way), _TINY)[:, None]
     rise = np.bincount(a, dot(way, normal[a]), count) - np.bincount(b, dot(way, normal[b]), count)
     degree = np.bincount(edges.ravel(), minlength=count)
     hollow = np.clip(_HOLLOW * rise / np.maximum(degree, 1), 0.0, 1.0) * (0.5 + 0.5 * normal[:, 1])
