@@ -90,7 +90,7 @@ class REALMODEL_OT_bake_looks(InBackground, bpy.types.Operator):
     )
     maps: maps_menu({"COLOR", "ROUGHNESS", "NORMAL"})
     layout: layout_menu("OBJECT")
-    picture_size: picture_size(2048)
+    picture_size: picture_size(1024)
     plain_materials: BoolProperty(
         name="Plain Materials",
         description="Replace the procedural materials by one with the pictures, and apply modifiers",

@@ -39,12 +39,11 @@ LAYOUTS = (
 # of each kind: the pass, and samples of a pixel
 _PASSES = {
     "COLOR": ("DIFFUSE", 2),
-    "ROUGHNESS": ("ROUGHNESS", 2),
-    "NORMAL": ("NORMAL", 4),
-    "OCCLUSION": ("AO", 32),
+    "ROUGHNESS": ("ROUGHNESS", 1),
+    "NORMAL": ("NORMAL", 2),
+    "OCCLUSION": ("AO", 16),
     "DISPLACEMENT": ("EMIT", 2),
 }
-_WITH_RELIEF = ("NORMAL", "DISPLACEMENT")
 _GAP = 4.0  # pixels between islands; half of it is filled from either side
 _MOST_GAPS = 0.25  # of the width of a picture, where there are many islands
 _AT_ONCE = 1 << 25  # pixels that are baked together
@@ -261,10 +260,9 @@ class Baking:
 def _to_bake(material, kind, image):
     """A copy of a material that is baked to an image."""
     made = material.copy()
-    if kind not in _WITH_RELIEF:
-        looks.level(made)
     if kind == "DISPLACEMENT":
         looks.show_height(made)
+    looks.reduce(made, kind)
     node = made.node_tree.nodes.new("ShaderNodeTexImage")
     node.image = image
     made.node_tree.nodes.active = node

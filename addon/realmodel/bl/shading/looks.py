@@ -91,10 +91,13 @@ def apply(material, look, scale, seed, diagonal):
     material[KEY] = look
 
 
-def level(material):
-    """Removes the bump mapping of a material that has a look."""
+def reduce(material, kind):
+    """Removes what a picture does not show from the shader of a material: it takes long to compute. kind: one
+    of scene.bake.KINDS."""
+    shown = {"COLOR": "Base Color", "ROUGHNESS": "Roughness", "NORMAL": "Normal"}
+    hidden = {*shown.values()} - {shown.get(kind)}
     for link in list(material.node_tree.links):
-        if link.to_socket.name == "Normal" and link.to_node.type == "BSDF_PRINCIPLED":
+        if link.to_node.type == "BSDF_PRINCIPLED" and link.to_socket.name in hidden:
             material.node_tree.links.remove(link)
 
 
