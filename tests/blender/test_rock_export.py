@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Beds of filled meshes in files of other programs, which are imported into Blender again."""
 
-import unittest
+import unittest.mock
 
 import bpy
 import numpy as np
@@ -140,6 +140,27 @@ class RockExport(PanelCase):
         found = self.exported("usdc", layout="OBJECT")
         self.assert_shapes({item.parent.name if item.parent else name: item for name, item in found.items()})
         self.assert_pictures(found, ["Base Color", "Roughness", "Normal"])
+
+    def exported_after_baking(self, ending):
+        """The pictures come into the file, or beside it, from the folder where Bake Looks has put them."""
+        textures = self.folder / "textures"
+        ops.bake_looks(directory=str(textures), picture_size=SIZE, plain_materials=True)
+        with unittest.mock.patch.object(scene_export.Baking, "make", side_effect=AssertionError):
+            found = self.exported(ending)
+        self.assert_pictures(found, ["Base Color", "Roughness", "Normal"])
+        beside = sorted(path.name for path in self.folder.glob("A_Bed_*.png"))
+        self.assertEqual(beside, [] if ending == "glb" else sorted(path.name for path in textures.iterdir()))
+
+    def test_what_was_baked_before_is_not_baked_again(self):
+        self.exported_after_baking("fbx")
+
+    def test_what_was_baked_before_in_gltf(self):
+        self.exported_after_baking("glb")
+
+    def test_what_was_baked_before_in_usd(self):
+        if not bpy.app.build_options.usd:
+            self.skipTest("this Blender cannot write USD")
+        self.exported_after_baking("usdc")
 
     def test_levels_of_detail_and_hulls(self):
         found = self.exported("fbx", bake_looks=False, levels_of_detail=True, collision="EACH")

@@ -13,32 +13,27 @@ from ..core import InputRefused
 from ..core.base.errors import counted
 from .reporting import InBackground, Reporting, a_model_or_beds, not_building, object_mode
 
-
-def maps_menu(default):
-    return EnumProperty(
-        name="Maps",
-        description="Pictures to bake. Shift-click chooses several",
-        items=bake.KINDS,
-        options={"ENUM_FLAG"},
-        default=default,
-    )
+MAPS = EnumProperty(
+    name="Maps",
+    description="Pictures to bake. Shift-click chooses several",
+    items=bake.KINDS,
+    options={"ENUM_FLAG"},
+    default={"COLOR", "ROUGHNESS", "NORMAL"},
+)
+PICTURE_SIZE = IntProperty(
+    name="Picture Size",
+    description="Width of the pictures in pixels",
+    default=1024,
+    min=64,
+    soft_min=512,
+    soft_max=8192,
+    max=16384,
+)
 
 
 def layout_menu(default):
     return EnumProperty(
         name="Pictures", description="What shares pictures", items=bake.LAYOUTS, default=default
-    )
-
-
-def picture_size(default):
-    return IntProperty(
-        name="Picture Size",
-        description="Width of the pictures in pixels",
-        default=default,
-        min=64,
-        soft_min=512,
-        soft_max=8192,
-        max=16384,
     )
 
 
@@ -88,9 +83,9 @@ class REALMODEL_OT_bake_looks(InBackground, bpy.types.Operator):
         subtype="DIR_PATH",
         default="//textures",
     )
-    maps: maps_menu({"COLOR", "ROUGHNESS", "NORMAL"})
+    maps: MAPS
     layout: layout_menu("OBJECT")
-    picture_size: picture_size(1024)
+    picture_size: PICTURE_SIZE
     plain_materials: BoolProperty(
         name="Plain Materials",
         description="Replace the procedural materials by one with the pictures, and apply modifiers",

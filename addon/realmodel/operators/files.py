@@ -24,7 +24,7 @@ from ..core.base.errors import BuildWarning
 from ..core.exporters import MESH, MODEL, REPORT
 from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.report import model_report
-from .baking import layout_menu, maps_menu, picture_size
+from .baking import MAPS, PICTURE_SIZE, layout_menu
 from .reporting import (
     InBackground,
     Reporting,
@@ -306,9 +306,9 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
         description="Write textures of looks to pictures; otherwise materials have the color of the property",
         default=True,
     )
-    maps: maps_menu({"COLOR", "ROUGHNESS", "NORMAL"})
+    maps: MAPS
     layout: layout_menu("MATERIAL")
-    picture_size: picture_size(1024)
+    picture_size: PICTURE_SIZE
     levels_of_detail: BoolProperty(
         name="Levels of Detail",
         description="Write each object three times, with all its polygons, 30 % and 10 % of them, named "

@@ -67,16 +67,12 @@ class Baking:
         self._groups, self._uvs, self._gap = [], [], 1.0
 
     def prepare(self, scene, copies):
-        """Lays the polygons of copies out. Raises InputRefused where nothing can be baked."""
-        items = copies.items
-        self._groups = self._grouped(items)
-        if not self._groups:
-            return
-        if not versions.cycles_available(scene):
-            raise InputRefused(
-                "this Blender has no Cycles, which bakes looks", advice="switch Bake Looks off"
-            )
-        self._lay_out(items)
+        """Lays the polygons of copies out. Raises InputRefused where this Blender cannot bake."""
+        self._groups = self._grouped(copies.items)
+        if self._groups and not versions.cycles_available(scene):
+            what = "this Blender has no Cycles, which bakes looks"
+            raise InputRefused(what, advice="switch Bake Looks off")
+        self._lay_out(copies.items)
 
     @property
     def steps(self):
@@ -96,7 +92,7 @@ class Baking:
         for item, uv in zip(copies.items, self._uvs, strict=True):
             mesh = item.data
             if uv is None:
-                continue
+                continue  # nothing of it is baked
             if len(uv) != len(mesh.loops):
                 raise InputRefused("it has changed while it was baked", item=item.name, advice="bake again")
             others = {layer.name: _uv(layer) for layer in mesh.uv_layers if layer.name != UV_MAP}
@@ -200,9 +196,10 @@ class Baking:
         return list(groups.values())
 
     def _is_baked(self, material):
-        if self._layout == "MATERIAL":
-            return material is not None and material.get(looks.KEY, "FLAT") != "FLAT"
-        return material is not None and material.node_tree is not None
+        # not those with pictures, such as baked ones, which would be looked up in the new UV map
+        if material is None or material.node_tree is None or pictures(material):
+            return False
+        return self._layout != "MATERIAL" or material.get(looks.KEY, "FLAT") != "FLAT"
 
     def _lay_out(self, items):
         """The UV maps of the objects."""
@@ -255,6 +252,12 @@ class Baking:
                 use_selected_to_active=False,
                 use_split_materials=False,
             )
+
+
+def pictures(material):
+    """The nodes of a material that have an image."""
+    nodes = () if material is None or material.node_tree is None else material.node_tree.nodes
+    return [node for node in nodes if node.type == "TEX_IMAGE" and node.image is not None]
 
 
 def _to_bake(material, kind, image):

@@ -6,6 +6,8 @@ Other programs cannot read the nodes of a look (looks.py), so looks are baked (b
 from temporary copies with the names of the objects; afterward the scene is as before.
 """
 
+import contextlib
+import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +20,7 @@ from ...core.base.atomic import Outputs, writable_target
 from ...core.base.formats import Format, by_ending
 from ..display import bodies
 from ..objects import filled_beds, model_tree
-from .bake import Baking
+from .bake import Baking, pictures
 from .temporary_copies import copied, select
 
 HULLS = (  # items of an enum
@@ -77,12 +79,33 @@ def write(context, items, path, choices):
                 shown += _with_levels(copies)
             shown += _with_hulls(copies, choices.hulls)
             select(context.view_layer, shown)
-            file_format.write(str(target))
+            with _pictures_in(folder, copies):
+                file_format.write(str(target))
         for made in sorted(folder.iterdir()):
             if file_format.write is _write_gltf and made != target:
                 continue  # packed pictures
             with outputs.file(path.parent / made.name) as file:
                 file.write(made.read_bytes())
+
+
+@contextlib.contextmanager
+def _pictures_in(folder, copies):
+    """For a while the pictures of copies, which Bake Looks may have put elsewhere, are in a folder."""
+    before = []
+    try:
+        materials = {material for item in copies.items for material in item.data.materials}
+        for image in {node.image for material in materials for node in pictures(material)}:
+            file = Path(bpy.path.abspath(image.filepath))
+            if file.is_file() and file.parent != folder:
+                there = folder / file.name
+                there = there.with_stem(f"{len(before)}_{file.stem}") if there.exists() else there
+                shutil.copyfile(file, there)
+                before.append((image, image.filepath_raw))
+                image.filepath_raw = str(there)
+        yield
+    finally:
+        for image, path in before:
+            image.filepath_raw = path
 
 
 def _with_levels(copies):
