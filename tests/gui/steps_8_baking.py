@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bake Looks: Esc between two pictures leaves the scene as it was; OK gives the beds a plain material, and one
-step of undo takes it away."""
+"""Bake Looks: Esc between two pictures leaves the scene as it was; OK gives the beds a plain material, and
+one step of undo takes it away."""
+
+import shutil
 
 import bpy
 from steps_1_panel import idle
@@ -32,6 +34,7 @@ def escape_while_baking(walk):
     """The status bar names the map; the scene is as it was between pictures and after Esc."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield walk.redrawn(2)
+    shutil.rmtree(walk.folder / "baked", ignore_errors=True)  # of a walk before
     boulder()
     bpy.ops.realmodel.fill_with_strata(beds=4)
     bpy.ops.ed.undo_push(message="filled")

@@ -67,7 +67,7 @@ class BakeJob(ThreadJob):
         self._place.cleanup()
 
     def hand_over(self, _seconds):
-        """Bakes a picture, or some small ones."""
+        """Bakes a picture."""
         if self._is_cancelled:
             return True
         try:

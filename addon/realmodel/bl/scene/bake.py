@@ -46,7 +46,6 @@ _PASSES = {
 }
 _GAP = 4.0  # pixels between islands; half of it is filled from either side
 _MOST_GAPS = 0.25  # of the width of a picture, where there are many islands
-_AT_ONCE = 1 << 25  # pixels that are baked together
 
 
 @dataclass(eq=False)
@@ -76,10 +75,8 @@ class Baking:
 
     @property
     def steps(self):
-        """(kind, groups) that are baked together."""
-        count = max(1, _AT_ONCE // self._size**2)
-        parts = [self._groups[begin : begin + count] for begin in range(0, len(self._groups), count)]
-        return [(kind, part) for kind in self._kinds for part in parts]
+        """(kind, group) of each picture."""
+        return [(kind, group) for kind in self._kinds for group in self._groups]
 
     def path(self, group, kind):
         """The file of a picture."""
@@ -103,37 +100,31 @@ class Baking:
                 mesh.uv_layers.new(name=name, do_init=False).data.foreach_set("uv", values)
 
     def make(self, context, copies, step):
-        """Bakes one of `steps` to files; copies have been fitted, and have their materials again after it."""
-        kind, groups = step
-        made, before, images = [], [], []
+        """Bakes one of `steps` to its file. Copies have been fitted; they have their materials again after it."""
+        kind, group = step
+        is_exact = kind == "DISPLACEMENT"
+        image = bpy.data.images.new(group.name, self._size, self._size, float_buffer=is_exact)
+        if kind != "COLOR":
+            image.colorspace_settings.name = "Non-Color"
+        new, before = {}, []
         try:
-            for group in groups:
-                is_exact = kind == "DISPLACEMENT"
-                image = bpy.data.images.new(group.name, self._size, self._size, float_buffer=is_exact)
-                images.append(image)
-                if kind != "COLOR":
-                    image.colorspace_settings.name = "Non-Color"
-                new = {}
-                for number, slots in group.users:
-                    slot_materials = copies.items[number].data.materials
-                    for slot in slots:
-                        material = slot_materials[slot]
-                        before.append((slot_materials, slot, material))
-                        if material not in new:
-                            new[material] = _to_bake(material, kind, image)
-                            made.append(new[material])
-                        slot_materials[slot] = new[material]
-            numbers = sorted({number for group in groups for number, _ in group.users})
-            temporary_copies.select(context.view_layer, [copies.items[number] for number in numbers])
+            for number, slots in group.users:
+                of_object = copies.items[number].data.materials
+                for slot in slots:
+                    material = of_object[slot]
+                    before.append((of_object, slot, material))
+                    if material not in new:
+                        new[material] = _to_bake(material, kind, image)
+                    of_object[slot] = new[material]
+            temporary_copies.select(context.view_layer, [copies.items[number] for number, _ in group.users])
             self._bake(context.scene, kind)
-            for group, image in zip(groups, images, strict=True):
-                image.filepath_raw = str(self.path(group, kind))
-                image.file_format = "OPEN_EXR" if is_exact else "PNG"
-                image.save()
+            image.filepath_raw = str(self.path(group, kind))
+            image.file_format = "OPEN_EXR" if is_exact else "PNG"
+            image.save()
         finally:
-            for slot_materials, slot, material in reversed(before):
-                slot_materials[slot] = material
-            bpy.data.batch_remove([*made, *images])
+            for of_object, slot, material in before:
+                of_object[slot] = material
+            bpy.data.batch_remove([*new.values(), image])
 
     def show(self, copies, folder, same_names=False):
         """Gives copies materials with the pictures, which are in a folder by now. same_names: they have the
@@ -175,7 +166,7 @@ class Baking:
 
     def files(self):
         """The names of all files."""
-        return [self.path(group, kind).name for kind in self._kinds for group in self._groups]
+        return [self.path(group, kind).name for kind, group in self.steps]
 
     def _grouped(self, items):
         groups = {}
