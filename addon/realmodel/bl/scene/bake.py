@@ -92,7 +92,11 @@ class Baking:
                 continue  # nothing of it is baked
             if len(uv) != len(mesh.loops):
                 raise InputRefused("it has changed while it was baked", item=item.name, advice="bake again")
-            others = {layer.name: _uv(layer) for layer in mesh.uv_layers if layer.name != UV_MAP}
+            others = {
+                layer.name: rock_layers.uv_of(layer).ravel()
+                for layer in mesh.uv_layers
+                if layer.name != UV_MAP
+            }
             while len(mesh.uv_layers):
                 mesh.uv_layers.remove(mesh.uv_layers[0])
             rock_layers.set_uv(mesh, UV_MAP, uv)
@@ -100,7 +104,7 @@ class Baking:
                 mesh.uv_layers.new(name=name, do_init=False).data.foreach_set("uv", values)
 
     def make(self, context, copies, step):
-        """Bakes one of `steps` to its file. Copies have been fitted; they have their materials again after it."""
+        """Bakes one of `steps` to its file. Copies have been fitted; they keep their materials."""
         kind, group = step
         is_exact = kind == "DISPLACEMENT"
         image = bpy.data.images.new(group.name, self._size, self._size, float_buffer=is_exact)
@@ -272,12 +276,6 @@ def _material_indices(mesh):
     indices = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("material_index", indices)
     return indices
-
-
-def _uv(layer):
-    values = np.empty(2 * len(layer.data), np.float32)
-    layer.data.foreach_get("uv", values)
-    return values
 
 
 @contextlib.contextmanager

@@ -61,9 +61,10 @@ def finish(scene, source, beds):
         corners = corners.reshape(-1, 3)
         smooth = np.empty(len(mesh.polygons), bool)
         mesh.polygons.foreach_get("use_smooth", smooth)
-        uvs = {layer.name: _uv(layer) for layer in mesh.uv_layers}
-        triangles = meshes.mesh_coordinates(mesh)[shapes.mesh_triangles(mesh)].astype(np.float64)
-    if not uvs and not smooth.any():
+        uvs = {layer.name: uv_of(layer) for layer in mesh.uv_layers}
+        vertices = versions.corner_vertices(mesh)[corners]
+        triangles = meshes.mesh_coordinates(mesh)[vertices].astype(np.float64)
+    if not beds or not (uvs or smooth.any()):
         return
     parts = []
     for bed in beds:
@@ -87,12 +88,13 @@ def finish(scene, source, beds):
         for name, values in uvs.items():
             layer = mesh.uv_layers.new(name=KEPT.format(name) if name == UV_MAP else name, do_init=False)
             if layer is not None:  # there may be eight
-                made = _uv(mesh.uv_layers[UV_MAP])
+                made = uv_of(mesh.uv_layers[UV_MAP])
                 made[rows] = polygon_mesh.interpolated(values, corners[triangle], weights)
                 mesh.uv_layers[layer.name].data.foreach_set("uv", made.ravel())
 
 
-def _uv(layer):
+def uv_of(layer):
+    """(C, 2) float32 of a UV map."""
     values = np.empty((len(layer.data), 2), np.float32)
     layer.data.foreach_get("uv", values.ravel())
     return values
