@@ -151,8 +151,9 @@ class Bake(Rock):
                 ending = "exr" if kind == "DISPLACEMENT" else "png"
                 shown[kind], size = pixels(folder / f"{stem}_{kind.lower()}.{ending}")
                 self.assertEqual(size, (SIZE, SIZE))
-            inside = shown["NORMAL"][:, 2] > 0.3  # a pixel of the mesh: normals point outward
-            self.assertGreater(inside.mean(), 0.3)
+            inside = shown["ROUGHNESS"][:, 0] > 0.0
+            self.assertTrue(0.3 < inside.mean() < 1.0)
+            self.assertGreater(shown["NORMAL"][inside, 2].min(), 0.3)  # outward
             color = shown["COLOR"][inside, :3].mean(axis=0)
             self.assertGreater(color.min(), 0.02)
             self.assertGreater(shown["NORMAL"][inside, :2].std(), 0.003)
@@ -190,6 +191,16 @@ class Bake(Rock):
             self.assertEqual(bed.data.uv_layers[0].name, "Baked")
             self.assertTrue(bed.data.uv_layers["Baked"].active_render)
             self.assertIn("UVMap", bed.data.uv_layers)
+
+    def test_faces_between_beds_have_a_quarter_of_the_density(self):
+        beds = self.filled(cube("A"), beds=3, dip=0.0)
+        ops.bake_looks(directory=str(self.folder), maps={"COLOR"}, layout="ATLAS", picture_size=SIZE)
+        for bed in beds:
+            space, flat = areas(bed.data, coordinates(bed.data), uv_of(bed.data, "Baked"))
+            density = np.sqrt(flat / space)
+            hidden = attribute(bed.data, "realmodel_surface", np.int32) >= 0
+            np.testing.assert_allclose(density[hidden], 0.25 * density[~hidden].mean(), rtol=1e-3)
+            np.testing.assert_allclose(density[~hidden], density[~hidden].mean(), rtol=1e-3)
 
     def test_weathered_beds_are_applied(self):
         beds = self.filled(cube("A"), beds=2, dip=0.0)

@@ -163,3 +163,16 @@ def test_islands_lie_side_by_side_in_the_square_at_one_density():
         begin += len(shape.corners)
     density = np.concatenate(densities)
     assert density.max() / density.min() <= 1.5
+
+
+def test_a_box_has_no_slanting_planes():
+    """Small faces beside large ones around a corner keep their own plane."""
+    corners = np.array([(x, y, z) for x in (0, 4.0) for y in (0, 3.0) for z in (0, 2.0)])
+    sides = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+    sides += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    model = fill_with_strata(corners, sides, Strata(beds=7, variation=1.0))
+    for shape in polygon_mesh.of_blocks(model, np.zeros(3)):
+        made = projected(shape)
+        assert set(made.chart.tolist()) == {0, 2, 4, 6, 8, 9}
+        values, _ = singular_values(shape, made.uv)
+        np.testing.assert_allclose(values, 1 / UNIT, rtol=1e-3)

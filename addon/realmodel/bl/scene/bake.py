@@ -15,7 +15,7 @@ import numpy as np
 from ...core import InputRefused
 from ...core.display import box_projection
 from ..host import versions
-from ..objects import meshes
+from ..objects import filled_beds, meshes
 from ..shading import looks, rock_layers
 from . import temporary_copies
 
@@ -45,6 +45,7 @@ _PASSES = {
     "DISPLACEMENT": ("EMIT", 2),
 }
 _GAP = 4.0  # pixels between islands; half of it is filled from either side
+_HIDDEN = 0.25  # of the density of other faces: that of faces between two beds, which are seldom seen
 _MOST_GAPS = 0.25  # of the width of a picture, where there are many islands
 
 
@@ -204,6 +205,11 @@ class Baking:
             places = meshes.mesh_coordinates(item.data).astype(np.float64) @ matrix.T
             arrays = rock_layers.arrays_of(item.data)
             made = rock_layers.projection(item.data, places, arrays, 1.0)
+            surface = rock_layers.values_of(item.data, meshes.FACE_SURFACE, np.int32)
+            if filled_beds.BED in item and surface is not None:
+                is_hidden = surface >= 0  # between two beds
+                density = np.where(np.repeat(is_hidden, np.diff(arrays[0])), _HIDDEN, 1.0)[:, None]
+                made = box_projection.Projection(made.uv * density, 2 * made.chart + is_hidden)
             island = box_projection.islands(made, arrays)
             slots = _material_indices(item.data)
             counts = np.diff(arrays[0])

@@ -111,8 +111,10 @@ def arrays_of(mesh):
 def projection(mesh, places, arrays, size):
     """The box_projection.Projection of a mesh. places: (V, 3) of its vertices in the scene; arrays: as of
     `arrays_of`."""
-    surface = _values(mesh, meshes.FACE_SURFACE, np.int32)
-    height, thickness = (_values(mesh, meshes.PREFIX + name, np.float32) for name in ("height", "thickness"))
+    surface = values_of(mesh, meshes.FACE_SURFACE, np.int32)
+    height, thickness = (
+        values_of(mesh, meshes.PREFIX + name, np.float32) for name in ("height", "thickness")
+    )
     is_known = surface is not None and height is not None and thickness is not None
     return box_projection.project(
         places, arrays, size, (surface >= 0, height * thickness) if is_known else None
@@ -158,7 +160,8 @@ def _set_color(mesh, material):
     mesh.color_attributes.active_color_index = mesh.color_attributes.render_color_index = number
 
 
-def _values(mesh, name, dtype):
+def values_of(mesh, name, dtype):
+    """(N,) of an attribute, or None where there is none."""
     attribute = mesh.attributes.get(name)
     if attribute is None:
         return None

@@ -20,6 +20,7 @@ STEEPEST = 1.5  # the most that a length is drawn out, and so the inverse cosine
 _SIDES = 8  # upright planes; their poles are _SIDES and _SIDES + 1
 _CELLS = 6  # along each axis of the box of a block, in each of which the bedding has one direction
 _TURN = math.radians(30.0)  # between the directions of bedding that count as different ones
+_LEVEL = 1.0 - 1e-6  # cosine of the dip of beds that have no strike
 _BASE = 1e-6  # of the height of a bed: what is lower lies on its base
 _ANGLES = [2.0 * math.pi * number / _SIDES for number in range(_SIDES)]
 _WAYS = np.array([*((math.cos(a), math.sin(a), 0.0) for a in _ANGLES), (0, 0, 1.0), (0, 0, -1.0)])
@@ -53,13 +54,14 @@ def project(
     pairs = neighbors(offsets, corner_edges)
     pairs = pairs[which[pairs[:, 0]] == which[pairs[:, 1]]]
     along = [dot(area, frames[which, axis]) for axis in range(3)]
-    # by the mean direction with the neighbors, if that suits: rough rock would have a seam at each face
+    # as a neighbor, if the mean direction with all of them suits: rough rock would have a seam at each face
     (a, b), count = pairs.T, len(area)
-    wide = _planes(
-        [3.0 * part + np.bincount(a, part[b], count) + np.bincount(b, part[a], count) for part in along]
-    )
-    suits = sum(along[axis] * _WAYS[wide, axis] for axis in range(3)) * STEEPEST > size
-    plane = np.where(suits, wide, _planes(along))
+    wide = _planes([part + np.bincount(a, part[b], count) + np.bincount(b, part[a], count) for part in along])
+    plane = _planes(along)
+    suits = np.zeros(count, bool)
+    suits[np.append(a[plane[b] == wide[a]], b[plane[a] == wide[b]])] = True
+    suits &= sum(along[axis] * _WAYS[wide, axis] for axis in range(3)) * STEEPEST > size
+    plane = np.where(suits, wide, plane)
     chart = (which * (_SIDES + 2) + plane).astype(np.int32)
     counts = np.diff(offsets)
     low = np.zeros(len(at), bool) if bedding is None else bedding[1] < _BASE * bedding[1].max(initial=0.0)
@@ -118,8 +120,9 @@ def _frames(
     if not chosen.any():
         return np.zeros(len(size), np.int64), np.eye(3)[None]
     axis = _main_axis(area[chosen], size[chosen])
-    east = np.array([-axis[1], axis[0], 0.0])
-    east = east / norm(east) if norm(east) > 1e-6 else np.array([1.0, 0.0, 0.0])
+    east = np.array([-axis[1], axis[0], 0.0]) if axis[2] < _LEVEL else np.array([1.0, 0.0, 0.0])
+    east = east - dot(east, axis) * axis
+    east = east / norm(east)
     whole = np.array([east, np.cross(axis, east), axis])
     low, extent = places.min(axis=0), np.ptp(places, axis=0)
     steps = np.minimum(
