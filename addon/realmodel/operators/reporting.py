@@ -262,6 +262,7 @@ class InBackground(Reporting):
             return {"PASS_THROUGH"}
         try:
             if not self._job.hand_over(_SLICE):
+                self._show_progress(context)
                 return {"PASS_THROUGH"}
             self._leave(context)
             self.tell_done(self._job.finish())
