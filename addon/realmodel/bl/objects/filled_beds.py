@@ -22,6 +22,12 @@ def of_scene(scene):
     return [obj for obj in scene.objects if obj.type == "MESH" and BED in obj and VOLUME in obj]
 
 
+def shown(scene):
+    """The beds, and the meshes with strata that are not hidden behind theirs."""
+    has_strata = (obj for obj in scene.objects if obj.type == "MESH" and obj.realmodel_strata.is_shown)
+    return [*of_scene(scene), *(obj for obj in has_strata if not obj.hide_render)]
+
+
 def exposed(shape, matrix):
     """The shape of a bed (PolygonMesh) with what was the surface of the filled mesh as walls, and as ground
     where that is rather level: looks and weathering go by this. matrix: (4, 4) from its coordinates to the

@@ -61,6 +61,7 @@ def put_on(item):
         modifier = item.modifiers.new(NAME, "NODES")
         modifier.node_group = group_once("GeometryNodeTree", NAME, KEY, _fill, _VERSION)
         versions.set_group_input(modifier, _SHOW_ROCKS, True)
+        item.realmodel_strata.is_shown = True
     return modifier
 
 
@@ -71,6 +72,7 @@ def take_off(item):
         return
     made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED)]
     item.modifiers.remove(modifier)
+    item.realmodel_strata.is_shown = False
     for obj in made:
         if obj is not None and obj.users == 0:
             bpy.data.meshes.remove(obj.data)  # and its object with it
