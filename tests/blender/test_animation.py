@@ -135,7 +135,7 @@ class Stages(Case):
         render.resolution_x, render.resolution_y = 96, 60
         self.settings.view.show_legend = False
         ops.animate_stages(frames=1)
-        ops.turntable(frames=5)
+        ops.turntable(frames=5, scene_settings=True)
         self.scene.objects["RealModel Ground"].hide_render = True
         self.scene.cycles.samples, self.scene.cycles.use_denoising = 1, False
         render.film_transparent, render.image_settings.color_mode = True, "RGB"

@@ -142,17 +142,57 @@ class Render(PanelCase):
 
 
 class SetUp(PanelCase):
+    def scene_settings(self):
+        scene = self.scene
+        return scene.world, scene.render.engine, scene.view_settings.view_transform
+
+    def test_only_an_empty_scene_gets_a_world_and_a_renderer_unasked(self):
+        def mesh():
+            self.scene.collection.objects.link(bpy.data.objects.new("tree", bpy.data.meshes.new("tree")))
+
+        def lamp():
+            lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "SUN"))
+            self.scene.collection.objects.link(lamp)
+
+        def world():
+            self.scene.world = bpy.data.worlds.new("mine")
+
+        def engine():
+            self.scene.render.engine = "BLENDER_WORKBENCH"
+
+        def transform():
+            self.scene.view_settings.view_transform = "Raw"
+
+        def nothing():
+            pass
+
+        for own in (mesh, lamp, world, engine, transform, nothing):
+            for operator in (ops.set_up_picture, ops.turntable):
+                with self.subTest(own.__name__):
+                    bpy.ops.wm.read_homefile(use_factory_startup=True)
+                    built_scene.write_model(self.scene, build(two_rocks()))
+                    own()
+                    before = self.scene_settings()
+                    operator()
+                    self.assertEqual(self.scene_settings() == before, own is not nothing)
+                    self.assertTrue(any(picture.KEY in item for item in self.scene.objects))
+                    operator(scene_settings=True)
+                    self.assertIn(picture.KEY, self.scene.world)
+                    self.assertEqual(self.scene_settings()[1:], ("CYCLES", "Standard"))
+
     def test_camera_and_sun_for_the_next_render(self):
         batch.write_scene(build(two_rocks()))
         own = bpy.data.objects.new("mine", bpy.data.cameras.new("mine"))
         self.scene.collection.objects.link(own)
-        self.scene.camera, world = own, self.scene.world
+        self.scene.camera = own
+        before = self.scene_settings()
         ops.set_up_picture(view="MODEL")
         camera = self.scene.camera
         self.assertNotEqual(camera, own)
         self.assertIn("mine", self.scene.objects)
-        self.assertNotEqual(self.scene.world, world)
-        ops.set_up_picture(view="MODEL")
+        self.assertEqual(self.scene_settings(), before)
+        ops.set_up_picture(view="MODEL", scene_settings=True)
+        self.assertNotEqual(self.scene_settings()[0], before[0])
         self.assertEqual(self.scene.camera, camera)
         self.assertEqual(len([o for o in self.scene.objects if o.type in ("CAMERA", "LIGHT")]), 3)
         before = inventory()

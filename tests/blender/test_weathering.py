@@ -5,7 +5,8 @@ import math
 
 import bpy
 import numpy as np
-from mathutils import Vector
+from mathutils import Vector, noise
+from mathutils.bvhtree import BVHTree
 from panel_case import PanelCase, ops, raise_by, select, stack
 from realmodel.bl.host import versions
 from realmodel.bl.objects import meshes
@@ -23,6 +24,11 @@ class Counting(bpy.types.RenderEngine):
             if each.is_instance:
                 name = each.object.data.name
                 self.counts[name] = self.counts.get(name, 0) + 1
+
+
+def polygons_of(item):
+    """The vertices and polygons of a mesh without modifiers."""
+    return meshes.mesh_coordinates(item.data).tolist(), [tuple(p.vertices) for p in item.data.polygons]
 
 
 class Weathering(PanelCase):
@@ -70,11 +76,50 @@ class Weathering(PanelCase):
             middle = np.abs(low[:, :2] - plain[0][:, :2].mean(axis=0)).max(axis=1)
             inside = (middle < 40.0) & (np.abs(low[:, 2] - level) < 1.0)
             self.assertGreater(np.count_nonzero(inside), 20)
-            self.assertLess(np.abs(low[inside, 2] - level).max(), 1e-3)
+            self.assertLess(np.abs(low[inside, 2] - level).max(), 0.01)
         self.assertFalse(self.block(1).modifiers[0].show_in_editmode)
         ops.weathering_remove()
         self.assertEqual(len(self.evaluated(1)[0]), len(plain[0]))
         self.refused(ops.weathering_remove, "no block is weathered")
+
+    def test_only_what_is_seen_is_subdivided_and_within_a_budget(self):
+        def polygons():
+            mesh = self.block(1).evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+            surface = meshes.values(mesh, "realmodel_surface", np.int32)
+            return np.count_nonzero(surface == -1), np.count_nonzero((surface != -1) & (surface != -3))
+
+        bpy.context.view_layer.update()
+        seen, hidden = polygons()
+        corners = sum(
+            p.loop_total
+            for p, a in zip(
+                self.block(1).data.polygons,
+                self.block(1).data.attributes["realmodel_surface"].data,
+                strict=True,
+            )
+            if a.value == -1
+        )
+        ops.weathering(detail=3)
+        self.assertEqual(polygons(), (16 * corners, hidden))
+        ops.weathering(detail=3, most_faces=3000)
+        found = versions.group_input(weathering.modifier_of(self.block(1)), "Detail")
+        self.assertLess(found, 3)
+        self.assertEqual(polygons(), (corners * 4 ** (found - 1), hidden))
+        ops.weathering(detail=3, most_faces=1)
+        self.assertEqual(polygons(), (seen, hidden))
+
+    def test_lengths_are_those_of_the_beds(self):
+        found = {}
+        for beds in (10, 20):
+            bpy.ops.mesh.primitive_cube_add(size=20.0, location=(500.0 * beds, 0.0, 10.0))
+            ops.fill_with_strata(beds=beds, dip=0.0, palette="COAL")
+            chosen = list(bpy.context.selected_objects)
+            ops.weathering()
+            found[beds] = versions.group_input(weathering.modifier_of(chosen[0]), "Strength")
+        self.assertAlmostEqual(
+            found[10] / found[20], 1.75, delta=0.3
+        )  # a bed is a 20th of the diagonal at most
+        self.assertAlmostEqual(found[20], 0.5, delta=0.15)
 
     def test_sheets_between_blocks_do_not_stick_out(self):
         """Polygons are smaller here than what is worn away."""
@@ -223,12 +268,13 @@ class Weathering(PanelCase):
         plain, corners = [self.evaluated(n)[0] for n in (1, 2)], len(self.block(2).data.vertices)
         select(self.block(2))
         ops.weathering(strength=0.0, detail=0, wear=2.0, grass_slope=0.0, scree_slope=0.0)
-        np.testing.assert_allclose(self.evaluated(2)[0], plain[1], atol=1e-5)
+        places = [{tuple(place) for place in found.tolist()} for found in (self.evaluated(2)[0], plain[1])]
+        self.assertEqual(*places)
         self.assertEqual(len(plain[1]), corners)
         worn = self.block(2).evaluated_get(bpy.context.evaluated_depsgraph_get()).data
         values = np.array([v.value for v in worn.attributes[edge_wear.ATTRIBUTE].data])
-        unit = looks.diagonal(self.scene) / looks.UNITS
-        np.testing.assert_allclose(values, 2.0 * unit, rtol=1e-5)
+        thickness = looks.diagonal(self.scene) / 20  # at most: the blocks are thicker
+        np.testing.assert_allclose(values, 0.2 * thickness, rtol=1e-5)
         self.assertNotIn(edge_wear.ATTRIBUTE, self.block(2).data.attributes)
         self.assertEqual([edge_wear.has(material) for material in materials], [False, True])
         ops.rock_looks(look="GRANITE")
@@ -243,6 +289,82 @@ class Weathering(PanelCase):
         self.assertFalse(edge_wear.has(materials[1]))
         seen = next(node for node in tree.nodes if node.type == "MIX")
         self.assertTrue(all(s.is_linked for s in seen.inputs if s.name in "AB" and s.enabled))
+
+    def exposed(self, items):
+        """(F, 3) normals of all exposed polygons, evaluated."""
+        bpy.context.view_layer.update()
+        found = []
+        for item in items:
+            mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+            is_top = meshes.values(mesh, "realmodel_is_top", bool)
+            surface = meshes.values(mesh, "realmodel_surface", np.int32)
+            normals = np.empty(3 * len(mesh.polygons), np.float32)
+            mesh.polygons.foreach_get("normal", normals)
+            found.append(normals.reshape(-1, 3)[is_top | (surface == -1)])
+        return np.concatenate(found)
+
+    def filled(self, rough, **settings):
+        """The beds of a body whose surface is rough."""
+        body = bpy.context.object
+        for vertex in body.data.vertices:
+            place = vertex.co.copy()
+            vertex.co *= 1.0 + rough * (noise.noise(0.35 * place) + 0.3 * noise.noise(1.5 * place))
+        ops.fill_with_strata(rock_looks=False, **settings)
+        return list(bpy.context.selected_objects)
+
+    def sphere(self):
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4, radius=10.0)
+        return self.filled(0.25, beds=8)
+
+    def cow(self):
+        """A body with a head and four legs."""
+        parts = [((0, 0, 9), (6, 3, 3)), ((7, 0, 11), (2, 1.5, 2)), ((9, 0, 10.5), (1.5, 1, 1))]
+        parts += [((x, y, 4), (1, 1, 5)) for x in (-4, 4) for y in (-2, 2)]
+        for place, scale in parts:
+            bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=12, location=place, scale=scale)
+        made = [item for item in self.scene.objects if item.name.startswith("Sphere")]
+        select(*made)
+        bpy.ops.object.join()
+        remesh = bpy.context.object.modifiers.new("Remesh", "REMESH")
+        remesh.mode, remesh.voxel_size = "VOXEL", 0.7
+        bpy.ops.object.modifier_apply(modifier="Remesh")
+        return self.filled(0.02, beds=10, dip=0.3)
+
+    def example(self):
+        ops.open_sample(sample="castle_hill")
+        return [row.object for row in self.model.results]
+
+    def test_no_face_is_turned_over(self):
+        for body in (self.sphere, self.cow, self.example):
+            items = body()
+            select(*items)
+            ops.weathering(strength=0.0, rounding=0.0)
+            before = self.exposed(items)
+            for strength in (1.0, 5.0, 20.0):
+                with self.subTest(body.__name__, strength=strength):
+                    ops.weathering(strength=strength)
+                    after = self.exposed(items)
+                    self.assertEqual(len(after), len(before))
+                    self.assertFalse(np.count_nonzero((after * before).sum(axis=1) < 0.0))
+                    self.assertGreater(
+                        np.count_nonzero(np.abs(after - before).max(axis=1) > 0.01), len(after) / 4
+                    )
+
+    def test_no_crack_is_seen_between_beds(self):
+        items = self.sphere()
+        ops.weathering(detail=2)
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        worn = [BVHTree.FromObject(item, depsgraph) for item in items]
+        plain = [BVHTree.FromPolygons(*polygons) for polygons in map(polygons_of, items)]
+        deepest = versions.group_input(weathering.modifier_of(items[0]), "Deepest")
+        for away in np.random.default_rng(5).normal(size=(3000, 3)):
+            away = Vector(away).normalized()
+            first = [
+                min(hit[3] for tree in trees if (hit := tree.ray_cast(30.0 * away, -away))[0] is not None)
+                for trees in (plain, worn)
+            ]
+            self.assertLess(first[1] - first[0], 1.5 * deepest)
 
     def rendered(self, item):
         """(48, 48, 3) of the western end of a block's southern wall; its edge is at column 8."""

@@ -40,9 +40,26 @@ def set_up_first(scene):
     return True
 
 
-class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
-    """Add a camera, a sun, a sky and a ground for the model and choose the renderer, for Render Image (F12).
-    They replace earlier ones of RealModel. Your own cameras and lights stay"""
+class _Lit(Reporting):
+    """Sets up light and camera, and changes what all of the scene shares only by this box."""
+
+    scene_settings: BoolProperty(
+        name="Scene Settings",
+        description="Replace the world by a sky, choose the render engine, and show colors without a view "
+        "transform. On by default only if the scene has no light, camera, world, engine or object of its own",
+        options={"SKIP_SAVE"},
+    )
+
+    def changes_scene(self, scene):
+        """Whether the box is on; one that nobody has set is on in an empty scene."""
+        if not self.properties.is_property_set("scene_settings"):
+            self.scene_settings = first_picture.is_empty(scene)
+        return self.scene_settings
+
+
+class REALMODEL_OT_set_up_picture(_Lit, bpy.types.Operator):
+    """Add a camera, a sun and a ground for the model, for Render Image (F12). They replace earlier ones of
+    RealModel. World, render engine and view transform change only if Scene Settings is on"""
 
     bl_label = "Light and Camera"
     needs = (a_model_or_beds,)
@@ -74,6 +91,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
 
     def act(self, context):
         scene = context.scene
+        with_scene = self.changes_scene(scene)
         view = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
         picture.set_up(
             scene,
@@ -82,11 +100,13 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
             None if view is None else view[2],
             legend=overlay.legend_shares(scene, _size(scene)),
             sun=(self.sun_azimuth, self.sun_elevation),
+            with_sky=with_scene,
         )
-        picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
+        if with_scene:
+            picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
 
 
-class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
+class REALMODEL_OT_turntable(_Lit, bpy.types.Operator):
     """Set up light and camera, and make the camera go around the model once. Replaces an earlier turntable.
     Render Animation (Ctrl F12) renders it"""
 
@@ -107,8 +127,10 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
         scene = context.scene
         legend = overlay.legend_shares(scene, _size(scene))
         points = viewpoints.model_points(scene, cut=True)
-        animation.turntable(scene, points, _size(scene), self.frames, self.elevation, legend)
-        picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
+        with_scene = self.changes_scene(scene)
+        animation.turntable(scene, points, _size(scene), self.frames, self.elevation, legend, with_scene)
+        if with_scene:
+            picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
         self.report({"INFO"}, f"Frames {scene.frame_start} to {scene.frame_end}")
 
 
@@ -191,7 +213,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
 
     strength: FloatProperty(
         name="Strength",
-        description="Strength of the erosion. 1 fits the model",
+        description="Strength of the erosion. At 1 soft beds recede by about half the mean thickness of beds",
         default=1.0,
         min=0.0,
         soft_max=5.0,
@@ -206,15 +228,15 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     wear: FloatProperty(
         name="Edge Wear",
-        description="Wear of edges in the materials, without a finer mesh. Cycles also rounds them. 1 fits "
-        "the model",
+        description="Wear of edges in the materials, without a finer mesh. Cycles also rounds them. At 1 a "
+        "tenth of the mean thickness of beds",
         default=0.5,
         min=0.0,
         soft_max=3.0,
     )
     noise_scale: FloatProperty(
         name="Noise Scale",
-        description="Size of hollows and of eroded beds. 1 fits the model",
+        description="Size of hollows and of eroded layers. 1 fits the thickness of beds",
         default=1.0,
         min=0.001,
         soft_max=10.0,
@@ -238,10 +260,19 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     )
     detail: IntProperty(
         name="Detail",
-        description="Number of subdivisions of each polygon. Each makes four of one",
+        description="Number of subdivisions of each exposed polygon, fewer if Most Faces is exceeded. Each "
+        "makes four of one",
         default=2,
         min=0,
         max=weathering.FINEST,
+    )
+    most_faces: IntProperty(
+        name="Most Faces",
+        description="Exposed polygons after subdivision. If Detail makes more, it is lowered",
+        default=1_500_000,
+        min=1,
+        soft_min=10_000,
+        soft_max=20_000_000,
     )
 
     plants: FloatProperty(
@@ -251,16 +282,26 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         min=0.0,
         soft_max=4.0,
     )
+    made: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    def draw(self, _context):
+        self.layout.use_property_split = True
+        for key in type(self).__annotations__:
+            if key != "made":
+                self.layout.prop(self, key)
+        self.layout.label(text=self.made)
 
     def act(self, context):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = rocks(context)
-        parameters = weathering.Weathering(*values, *covers, self.detail, self.plants, self.wear)
+        detail, faces, size = weathering.cost(items, self.detail, self.most_faces)
+        parameters = weathering.Weathering(*values, *covers, detail, self.plants, self.wear)
         weathering.put_on(context.scene, items, parameters)
-        self.report(
-            {"INFO"}, f"Weathered {counted(len(items), 'block')}; the modifier of each has all settings"
-        )
+        lowered = f", as Most Faces does not allow {self.detail}" if detail < self.detail else ""
+        count = f"{faces / 1e6:.1f} million" if faces >= 1e5 else f"{faces:,}"
+        self.made = f"{count} faces, about {size / 1e9:.1f} GB, Detail {detail}{lowered}"
+        self.report({"INFO"}, f"Weathered {counted(len(items), 'block')}: {self.made}")
 
 
 class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):

@@ -33,7 +33,7 @@ class Nodes:
 
     def link(self, value, socket):
         """Links or sets an input. value: an output, or the value of the input without a link."""
-        if isinstance(value, (float, int, tuple)):
+        if isinstance(value, (float, int, tuple, str)):
             socket.default_value = value
         else:
             self.tree.links.new(value, socket)
@@ -59,6 +59,10 @@ class Nodes:
     def about(self, value, strength):
         """A value from 0 to 1 around 0, times a strength."""
         return self.math("MULTIPLY", self.math("SUBTRACT", value, 0.5), strength)
+
+    def mixed(self, low, high, share):
+        """Between two values, at a share of the way."""
+        return self.math("MULTIPLY_ADD", self.math("SUBTRACT", high, low), share, low)
 
     def total(self, values):
         total = values[0] if values else 0.0

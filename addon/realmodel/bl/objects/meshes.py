@@ -100,7 +100,7 @@ def holds(mesh, shape):
         np.array_equal(mesh_coordinates(mesh), shape.coordinates)
         and np.array_equal(versions.corner_vertices(mesh), shape.corners)
         and _holds(mesh, FACE_COMPARTMENT, shape.face_compartment)
-        and all(_holds(mesh, PREFIX + name, values) for name, values in _bedding(shape))
+        and all(_holds(mesh, PREFIX + name, wanted) for name, wanted in _bedding(shape))
     )
 
 
@@ -110,24 +110,28 @@ def _bedding(shape):
 
 
 def _holds(mesh, name, wanted):
-    attribute = mesh.attributes.get(name)
-    if wanted is None or attribute is None:
-        return wanted is None and attribute is None
-    values = np.empty(len(attribute.data), wanted.dtype)
-    attribute.data.foreach_get("value", values)
-    return np.array_equal(values, wanted)
+    if wanted is None or name not in mesh.attributes:
+        return wanted is None and name not in mesh.attributes
+    return np.array_equal(values(mesh, name, wanted.dtype), wanted)
+
+
+def values(mesh, name, dtype):
+    """The values of an attribute of numbers."""
+    found = np.empty(len(mesh.attributes[name].data), dtype)
+    mesh.attributes[name].data.foreach_get("value", found)
+    return found
 
 
 def _fill(mesh, shape):
     versions.fill_mesh(mesh, shape)
-    for name, values in ((FACE_SURFACE, shape.face_surface), (FACE_COMPARTMENT, shape.face_compartment)):
-        if values is not None and len(values):
+    for name, given in ((FACE_SURFACE, shape.face_surface), (FACE_COMPARTMENT, shape.face_compartment)):
+        if given is not None and len(given):
             attribute = mesh.attributes.new(name, "INT", "FACE")
-            attribute.data.foreach_set("value", values)
-    for name, values in _bedding(shape):
-        if values is not None and len(values):
+            attribute.data.foreach_set("value", given)
+    for name, given in _bedding(shape):
+        if given is not None and len(given):
             attribute = mesh.attributes.new(PREFIX + name, *BEDDING[name])
-            attribute.data.foreach_set("value", values)
+            attribute.data.foreach_set("value", given)
 
 
 def mesh_coordinates(mesh):

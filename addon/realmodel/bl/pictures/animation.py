@@ -21,13 +21,14 @@ _STAGE = "realmodel.stage"
 _SECTORS = 32  # of the circles that the camera is to see
 
 
-def turntable(scene, points, size, frames, elevation, legend=(0.0, 0.0)):
+def turntable(scene, points, size, frames, elevation, legend=(0.0, 0.0), with_sky=True):
     """Sets up camera and light, and rotates the camera around a model once, counter-clockwise from above.
 
     points: (N, 3) that the picture is to show. size: (width, height) of the picture. frames: of one turn.
-    elevation: of the camera, radians. legend: as for `picture.set_up`. Returns the empty that rotates.
+    elevation: of the camera, radians. legend, with_sky: as for `picture.set_up`. Returns the empty that
+    rotates.
     """
-    camera = picture.set_up(scene, points, size, legend=legend)
+    camera = picture.set_up(scene, points, size, legend=legend, with_sky=with_sky)
     points = np.asarray(points, np.float64)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     rotation = view_rotation(elevation=elevation)

@@ -7,7 +7,7 @@ where they stand there, its world, its renderer; or what was added here before, 
 
 import numpy as np
 
-from ..objects import meshes
+from ..objects import meshes, model_tree
 from . import picture
 
 _STARTUP = {  # name, location and rotation of what the startup file has
@@ -18,6 +18,8 @@ _STARTUP = {  # name, location and rotation of what the startup file has
 _STARTUP_WORLD = "World"
 _STARTUP_SKY = (0.050876, 0.050876, 0.050876, 1.0, 1.0)  # its color and strength
 _STARTUP_ENGINE = "BLENDER_EEVEE"  # how its name begins in each version
+_PLAIN_TRANSFORMS = ("Filmic", "AgX", "Standard")  # of the startup file, by version, and of a picture
+_NOT_RENDERED = ("EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
 
 
 def is_free(scene):
@@ -31,9 +33,23 @@ def is_free(scene):
         return camera in picture_objects and _same(
             camera.get(picture.UNASKED, ()), _numbers(scene, picture_objects)
         )
-    world = scene.world
-    is_startup_sky = world is None or (world.name == _STARTUP_WORLD and _same(_sky(world), _STARTUP_SKY))
-    return is_startup_sky and scene.render.engine.startswith(_STARTUP_ENGINE)
+    return _is_startup_world(scene.world) and scene.render.engine.startswith(_STARTUP_ENGINE)
+
+
+def is_empty(scene):
+    """Whether a scene has no light, camera, world, renderer, view transform or rendered object but those of
+    RealModel and of the startup file."""
+    sources = {row.object for rock in scene.realmodel.rocks for row in rock.surfaces}
+    for obj in scene.objects:
+        is_ours = obj in sources or any(key.startswith(model_tree.TAG) for key, _ in obj.items())
+        if is_ours or obj.hide_render or obj.type in _NOT_RENDERED:
+            continue
+        if not (_is_startup_cube(obj) if obj.type not in ("CAMERA", "LIGHT") else _is_of_startup(obj)):
+            return False
+    has_picture = any(picture.KEY in obj for obj in scene.objects)
+    is_plain = _is_startup_world(scene.world) or picture.KEY in scene.world
+    is_plain &= has_picture or scene.render.engine.startswith(_STARTUP_ENGINE)
+    return is_plain and scene.view_settings.view_transform in _PLAIN_TRANSFORMS
 
 
 def keep(scene):
@@ -44,6 +60,10 @@ def keep(scene):
     for obj in scene.objects:
         if obj not in picture_objects and (obj.type == "LIGHT" or _is_startup_cube(obj)):
             obj.hide_render = True
+
+
+def _is_startup_world(world):
+    return world is None or (world.name == _STARTUP_WORLD and _same(_sky(world), _STARTUP_SKY))
 
 
 def _is_of_startup(obj):

@@ -48,7 +48,9 @@ TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture
 FLATTEST = 0.12
 
 
-def set_up(scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH, SUN_ELEVATION)):
+def set_up(
+    scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH, SUN_ELEVATION), with_sky=True
+):
     """Adds a camera, light, sky and ground to a scene, or updates those that it added before. Cameras and
     lights of the user stay.
 
@@ -56,7 +58,7 @@ def set_up(scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH,
     whose view the camera takes; without one it sees all points. legend: the shares of the picture's width and
     height that a legend takes in the lower left corner, where the camera shows no point. sun: its azimuth and
     elevation, radians; None: a lamp beside the camera, a uniform sky and no ground, so that faces toward the
-    camera have their own color.
+    camera have their own color. with_sky: whether the world is replaced.
     """
     _remove_turntable(scene)
     camera = _own(scene, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
@@ -82,7 +84,8 @@ def set_up(scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH,
         lamp.data.color = LOW_SUN + (1.0 - LOW_SUN) * min(1.0, max(0.0, sun[1]) / SUN_ELEVATION)
         lamp.rotation_euler = towards(*sun).to_track_quat("Z", "Y").to_euler()
         _put_ground(scene, points, 10.0 * (away + reach))
-    _set_sky(scene, *((1.0, 1.0, 1.0), 0.4) if sun is None else (SKY_COLOR, SKY_STRENGTH))
+    if with_sky:
+        _set_sky(scene, *((1.0, 1.0, 1.0), 0.4) if sun is None else (SKY_COLOR, SKY_STRENGTH))
     return camera
 
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from ...core.project.looks import DEFAULT, LOOKS
 from ..host import versions
-from ..host.nodes import Nodes, group_once
+from ..host.geometry_nodes import GeometryNodes
+from ..host.nodes import group_once
 from ..objects import filled_beds, materials, meshes
 from ..project import library_rows
 from . import edge_wear, looks, scatter
@@ -23,17 +24,33 @@ from . import edge_wear, looks, scatter
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 6
+_VERSION = 7
 _STEPS = 5  # of smoothing
+# attributes while the nodes work: where a vertex was and where it goes, how a face faced, how far one may go
+_BEFORE, _INWARD, _FACING, _MOST = (f"realmodel_{name}" for name in ("before", "inward", "facing", "most"))
+_FAR = 1e9  # no limit
+_MERGED = 0.06  # of the bed thickness: vertices that are nearer to each other become one
+_ROOM = 0.4  # of the way through the rock: how far a vertex may go
+_LEAST = 0.05  # of the cosine of the angle by which a face turns
+# The passes that turn faces back: the share of erosion that is left there, and how far around, in strengths
+_EBBING = tuple(
+    zip((0.6, 0.4, 0.2) + (0.0,) * 7, (0.4, 0.6, 0.8, 0.8, 1.0, 1.0, 1.4, 2.0, 4.0, 16.0), strict=True)
+)
+_OWN = 0.6  # how much beds of a rock differ in hardness
+_MARGIN = 0.1  # of the strength: how much farther faces between blocks go than exposed ones
+_SKIRT = -3.0  # the surface of faces that are none of the block
 _ALONE = 0.2  # the share of the faces around a triangle that have its cover, itself counted, if no other has
 COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
-# texture units (looks) at 1
-_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6, "Edge Wear": 1.0}
+# mean thicknesses of beds at 1
+_UNITS = {"Strength": 0.5, "Deepest": 1.0, "Noise Scale": 1.5, "Bed Thickness": 0.4, "Edge Wear": 0.1}
+_THICKEST = 1 / 20  # of the diagonal: what counts at most as the thickness of a bed
+_BYTES = 300  # of memory for a polygon
 FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
 _INPUTS = {
     "Strength": ("NodeSocketFloatDistance", 0.5, 0.0),
+    "Deepest": ("NodeSocketFloatDistance", 1.0, 1e-6),
     "Edge Rounding": ("NodeSocketFloatFactor", 0.6, 0.0, 1.0),
     "Edge Wear": ("NodeSocketFloatDistance", 0.0, 0.0),
     "Noise Scale": ("NodeSocketFloatDistance", 2.0, 1e-6),
@@ -84,23 +101,63 @@ class Weathering:
 
 def put_on(scene, items, given):
     """Adds Weathering to blocks, and to beds of filled meshes, or changes its settings."""
-    group, of_model = _group(), looks.diagonal(scene) / looks.UNITS
+    groups = {}
     for obj in items:
-        is_bed = filled_beds.BED in obj
-        unit = filled_beds.size(obj) / looks.UNITS if is_bed else of_model
-        modifier = modifier_of(obj)
-        if modifier is None:
-            modifier = obj.modifiers.new(NAME, "NODES")
-            modifier.show_in_editmode = False
-        modifier.node_group = group
-        for name, value in _values(given, unit).items():
-            versions.set_group_input(modifier, name, value)
-        if is_bed:
-            versions.set_group_input(modifier, "Hardness", hardness_of_bed(obj))
-        obj.pop(HARDNESS, None)
+        groups.setdefault(tuple(filled_beds.together(obj)) if filled_beds.BED in obj else None, []).append(
+            obj
+        )
+    for together, members in groups.items():
+        if together is None:
+            together = [row.object for row in scene.realmodel.results if row.object is not None]
+            size = looks.diagonal(scene)
+        else:
+            size = filled_beds.size(members[0])
+        values = _values(given, _thickness(together, size), size / looks.UNITS)
+        for obj in members:
+            _set(obj, values)
     for material in _rocks(items):
         edge_wear.put_on(material)
     follow(scene)
+
+
+def _set(obj, values):
+    """Sets the inputs of the modifier of a block, which is added if there is none."""
+    modifier = modifier_of(obj)
+    if modifier is None:
+        modifier = obj.modifiers.new(NAME, "NODES")
+        modifier.show_in_editmode = False
+    modifier.node_group = _group()
+    for name, value in values.items():
+        versions.set_group_input(modifier, name, value)
+    if filled_beds.BED in obj:
+        versions.set_group_input(modifier, "Hardness", hardness_of_bed(obj))
+    obj.pop(HARDNESS, None)
+
+
+def _exposed(obj):
+    """(C,) bool: the corners of a block on its exposed polygons."""
+    mesh = obj.data
+    starts = versions.polygon_starts(mesh)
+    is_top = meshes.values(mesh, meshes.PREFIX + "is_top", bool)
+    surface = meshes.values(mesh, meshes.FACE_SURFACE, np.int32)
+    return np.repeat(is_top | (surface == -1), np.diff(starts, append=len(mesh.loops)))
+
+
+def _thickness(items, size):
+    """The mean thickness of beds where blocks are exposed. size: the diagonal of all."""
+    parts = [meshes.values(obj.data, meshes.PREFIX + "thickness", np.float32)[_exposed(obj)] for obj in items]
+    found = np.concatenate([part[part > 0.0] for part in parts])
+    return min(float(found.mean(dtype=np.float64)) if len(found) else math.inf, _THICKEST * size)
+
+
+def cost(items, wanted, most):
+    """The number of subdivisions, at most the one wanted, that makes no more exposed polygons than `most`,
+    and how many polygons and bytes of memory these are, about."""
+    corners = sum(int(np.count_nonzero(_exposed(obj))) for obj in items)
+    polygons = sum(len(obj.data.polygons) for obj in items)
+    detail = next((level for level in range(wanted, 0, -1) if corners * 4 ** (level - 1) <= most), 0)
+    exposed = corners * 4 ** (detail - 1) if detail else corners // 4
+    return detail, exposed, (exposed + polygons) * _BYTES
 
 
 def _rocks(items):
@@ -108,14 +165,15 @@ def _rocks(items):
     return {slot.material for obj in items for slot in obj.material_slots if slot.material is not None}
 
 
-def _values(values, unit):
-    """The inputs of the modifier. unit: a texture unit."""
+def _values(values, thickness, unit):
+    """The inputs of the modifier. thickness: of beds; unit: a texture unit."""
     return {
-        "Strength": values.strength * _UNITS["Strength"] * unit,
+        "Strength": values.strength * _UNITS["Strength"] * thickness,
+        "Deepest": _UNITS["Deepest"] * thickness,
         "Edge Rounding": values.rounding,
-        "Noise Scale": values.noise * _UNITS["Noise Scale"] * unit,
-        "Bed Thickness": values.noise * _UNITS["Bed Thickness"] * unit,
-        "Edge Wear": values.wear * _UNITS["Edge Wear"] * unit,
+        "Noise Scale": values.noise * _UNITS["Noise Scale"] * thickness,
+        "Bed Thickness": values.noise * _UNITS["Bed Thickness"] * thickness,
+        "Edge Wear": values.wear * _UNITS["Edge Wear"] * thickness,
         "Seed": values.seed,
         "Grass Slope": values.grass,
         "Scree Slope": values.scree,
@@ -183,49 +241,167 @@ def _fill(group):
     versions.add_group_socket(group, "Geometry", "NodeSocketGeometry")
     for name, (kind, *values) in _INPUTS.items():
         versions.add_group_socket(group, name, kind, values)
-    nodes = _Nodes(group)
+    nodes = GeometryNodes(group)
     inputs = nodes.new("NodeGroupInput").outputs
-    geometry = nodes.to("GeometryNodeSubdivideMesh", inputs["Geometry"], Level=inputs["Detail"])
-    is_top = nodes.named("is_top", "BOOLEAN")
-    surface = nodes.named("surface", "INT")
+    is_top = nodes.named(meshes.PREFIX + "is_top", "BOOLEAN")
+    surface = nodes.named(meshes.PREFIX + "surface", "INT")
     exposed = nodes.math("MAXIMUM", is_top, nodes.math("COMPARE", surface, -1.0, 0.5))
-    at_points = nodes.on("FACE", exposed)  # at a point the share of its faces
-    worn = nodes.math("GREATER_THAN", at_points, 0.0)
-    position = nodes.of("GeometryNodeInputPosition", "Position")
-    part = nodes.to("GeometryNodeSeparateGeometry", geometry, Selection=exposed)
-    part.node.domain = "FACE"
-    depth = nodes.math("MULTIPLY", _depth(nodes, inputs, position), inputs["Strength"])
-    inward = nodes.vector("SCALE", nodes.of("GeometryNodeInputNormal", "Normal"), -1.0)
-    # Each vertex goes at least as far inwards as the exposed point beside it: else faces between blocks would
-    # stick out of the walls that fell back.
-    place, inward, depth = nodes.nearest(part, position, (position, inward, depth))
-    reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
-    push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
-    geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=nodes.vector("SCALE", inward, push))
-    is_fine = nodes.math("GREATER_THAN", inputs["Detail"], 0.5)  # coarse polygons would lose their shape
-    rounding = nodes.math("MULTIPLY", inputs["Edge Rounding"], is_fine)
-    for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
-        middle = nodes.on("POINT", nodes.on("EDGE", position))
-        shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), rounding)
-        geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
-    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry, Selection=is_fine)
-    geometry = nodes.stored(geometry, edge_wear.ATTRIBUTE, inputs["Edge Wear"])
-    geometry = _covered(nodes, inputs, geometry, is_top, position)
+    seen, hidden = nodes.separated(inputs["Geometry"], exposed)
+    before, geometry = _worn(nodes, inputs, seen)
+    hidden = _pushed(nodes, inputs, hidden, before, geometry)
+    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry, Selection=_is_fine(nodes, inputs))
+    geometry, hidden = (
+        nodes.stored(part, edge_wear.ATTRIBUTE, inputs["Edge Wear"]) for part in (geometry, hidden)
+    )
+    geometry, scattered = _covered(nodes, inputs, geometry, is_top)
+    joined = nodes.new("GeometryNodeJoinGeometry")
+    for part in (*scattered, hidden, _with_skirt(nodes, inputs, geometry, surface)):
+        nodes.link(part, joined.inputs[0])
+    geometry = joined.outputs[0]
+    for name in (_BEFORE, _INWARD, _FACING, _MOST):
+        geometry = nodes.to("GeometryNodeRemoveAttribute", geometry, Name=name)
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
 
 
+def _is_fine(nodes, inputs):
+    """Whether polygons are subdivided; coarse ones would lose their shape."""
+    return nodes.math("GREATER_THAN", inputs["Detail"], 0.5)
+
+
+def _worn(nodes, inputs, seen):
+    """The exposed faces, subdivided, before and after erosion. Vertices move along the normals of the mesh as
+    it was: those of subdivided polygons would be flat within each polygon and break at its edges."""
+    position = nodes.of("GeometryNodeInputPosition", "Position")
+    normal = nodes.of("GeometryNodeInputNormal", "Normal")
+    inward = nodes.vector("SCALE", normal, -1.0)
+    distance = nodes.math(
+        "MULTIPLY", inputs["Bed Thickness"], nodes.math("MULTIPLY", _is_fine(nodes, inputs), _MERGED)
+    )
+    seen = nodes.to("GeometryNodeMergeByDistance", seen, Distance=distance)
+    seen = nodes.stored(seen, _MOST, _room(nodes, seen, position, inward))
+    seen = nodes.stored(seen, _INWARD, inward)
+    geometry = nodes.to("GeometryNodeSubdivideMesh", seen, Level=inputs["Detail"])
+    geometry = nodes.stored(geometry, _BEFORE, position)
+    geometry = before = nodes.stored(geometry, _FACING, normal, "FACE")
+    depth = nodes.math("MULTIPLY", _depth(nodes, inputs, position), inputs["Strength"])
+    deepest = inputs["Deepest"]
+    depth = nodes.math("MULTIPLY", nodes.math("TANH", nodes.math("DIVIDE", depth, deepest)), deepest)
+    depth = nodes.math("MINIMUM", depth, nodes.named(_MOST, "FLOAT"))
+    shift = nodes.vector("SCALE", nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR")), depth)
+    geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=shift)
+    rounding = nodes.math("MULTIPLY", inputs["Edge Rounding"], _is_fine(nodes, inputs))
+    # Along its border alone the exposed part keeps meeting its neighbors, which have the same border.
+    weight = nodes.math("MULTIPLY_ADD", _is_border(nodes), 1e3, 1.0)
+    weighted = nodes.vector("SCALE", nodes.on("EDGE", position), weight)
+    whole = nodes.math("DIVIDE", 1.0, nodes.on("POINT", nodes.on("EDGE", weight)))
+    middle = nodes.vector("SCALE", nodes.on("POINT", nodes.on("EDGE", weighted)), whole)
+    shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), rounding)
+    for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
+        geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=shift)
+    return before, _turned_back(nodes, inputs, geometry, position, normal)
+
+
+def _turned_back(nodes, inputs, geometry, position, normal):
+    """The eroded geometry without faces that are turned over. Around them erosion becomes less, at first a
+    little and nearby, at last wholly and so widely that the change cannot turn any."""
+    facing, before = (nodes.named(name, "FLOAT_VECTOR") for name in (_FACING, _BEFORE))
+    least = nodes.math("MULTIPLY", nodes.vector("DOT_PRODUCT", facing, facing), _LEAST)
+    is_over = nodes.on("FACE", nodes.math("LESS_THAN", nodes.vector("DOT_PRODUCT", normal, facing), least))
+    back = nodes.vector("SUBTRACT", before, position)
+    strength = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+    for kept, reach in _EBBING:
+        over, _ = nodes.separated(geometry, is_over)
+        node = nodes.new("GeometryNodeProximity")
+        nodes.link(nodes.to("GeometryNodeSetPosition", over, Position=before), node.inputs[0])
+        nodes.link(before, node.inputs["Source Position"])
+        count = nodes.new("GeometryNodeAttributeDomainSize")
+        nodes.link(over, count.inputs[0])
+        gone = nodes.ramp(node.outputs["Distance"], 0.0, 1.0, 1.0 - kept, 0.0)
+        nodes.link(nodes.math("MULTIPLY", strength, reach), gone.node.inputs["From Max"])
+        gone = nodes.math("MULTIPLY", gone, nodes.math("MINIMUM", count.outputs["Face Count"], 1.0))
+        geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=nodes.vector("SCALE", back, gone))
+    return geometry
+
+
+def _room(nodes, seen, position, inward):
+    """How far a point of the surface may go: a share of the way through the rock to the other side."""
+    ray = nodes.new("GeometryNodeRaycast")
+    nodes.link(seen, next(s for s in ray.inputs if s.type == "GEOMETRY"))
+    for name, value in (("Source Position", position), ("Ray Direction", inward), ("Ray Length", _FAR)):
+        nodes.link(value, ray.inputs[name])
+    leaves = nodes.math("GREATER_THAN", nodes.vector("DOT_PRODUCT", ray.outputs["Hit Normal"], inward), 0.0)
+    is_near = nodes.math("MULTIPLY", ray.outputs["Is Hit"], leaves)
+    free = nodes.math("MULTIPLY", nodes.math("SUBTRACT", 1.0, is_near), _FAR)
+    return nodes.math("MULTIPLY_ADD", ray.outputs["Hit Distance"], _ROOM, free)
+
+
+def _is_border(nodes):
+    """Whether an edge is one of a single face."""
+    return nodes.math("COMPARE", nodes.of("GeometryNodeInputMeshEdgeNeighbors", 0), 1.0, 0.5)
+
+
+def _pushed(nodes, inputs, hidden, before, geometry):
+    """The faces between blocks, each vertex at least as far inwards as the exposed point beside it: else they
+    would stick out of the walls that fell back. A margin is for the roughness of what is subdivided."""
+    position = nodes.of("GeometryNodeInputPosition", "Position")
+    taken = [nodes.named(name, "FLOAT_VECTOR") for name in (_BEFORE, _INWARD)]
+    index = nodes.nearest(before, position)
+    place, inward, worn = (nodes.at(geometry, index, value, "FLOAT_VECTOR") for value in (*taken, position))
+    inward = nodes.vector("NORMALIZE", inward)
+    depth = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", worn, place), inward)
+    depth = nodes.math("MULTIPLY_ADD", nodes.math("GREATER_THAN", depth, 0.0), _margin(nodes, inputs), depth)
+    reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
+    push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
+    return nodes.to("GeometryNodeSetPosition", hidden, Offset=nodes.vector("SCALE", inward, push))
+
+
+def _margin(nodes, inputs):
+    return nodes.math("MULTIPLY", nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"]), _MARGIN)
+
+
+def _with_skirt(nodes, inputs, geometry, surface):
+    """The exposed faces with a strip inwards from their border: the side of a ledge over rock that is worn
+    farther."""
+    node = nodes.new("GeometryNodeExtrudeMesh")
+    node.mode = "EDGES"
+    inward = nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR"))
+    reach = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+    reach = nodes.math("MINIMUM", reach, nodes.named(_MOST, "FLOAT"))
+    border = nodes.math("MULTIPLY", _is_border(nodes), nodes.math("GREATER_THAN", inputs["Strength"], 0.0))
+    for name, value in (("Selection", border), ("Offset", inward), ("Offset Scale", reach)):
+        nodes.link(value, node.inputs[name])
+    nodes.link(geometry, node.inputs["Mesh"])
+    side = node.outputs["Side"]
+    outer = nodes.math("SUBTRACT", 1.0, side)
+    is_top = nodes.math("MULTIPLY", nodes.named(meshes.PREFIX + "is_top", "BOOLEAN"), outer)
+    surface = nodes.math("MULTIPLY_ADD", nodes.math("SUBTRACT", surface, _SKIRT), outer, _SKIRT)
+    geometry = nodes.stored(node.outputs["Mesh"], meshes.PREFIX + "is_top", is_top, "FACE", "BOOLEAN")
+    geometry = nodes.stored(geometry, meshes.FACE_SURFACE, surface, "FACE", "INT")
+    return nodes.to("GeometryNodeSetMaterialIndex", geometry, **{"Selection": side, "Material Index": 0})
+
+
 def _depth(nodes, inputs, position):
-    """The depth of erosion, about 0 to 2: larger and uneven in soft rock; by layers in bedded rock."""
-    soft = nodes.math("SUBTRACT", 1.0, inputs["Hardness"])
+    """The depth of erosion, about 0 to 2: larger and uneven in soft rock; of each bed its own, and by layers
+    within it."""
+    age = nodes.named(meshes.PREFIX + "age", "FLOAT")
+    own = nodes.new("ShaderNodeTexWhiteNoise")
+    own.noise_dimensions = "1D"
+    nodes.link(nodes.math("MULTIPLY_ADD", inputs["Seed"], 31.7, age), own.inputs["W"])
+    soft = nodes.math("SUBTRACT", nodes.about(own.outputs["Value"], _OWN), inputs["Hardness"])
+    soft = nodes.math("MAXIMUM", nodes.math("ADD", soft, 1.0), 0.0)
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, inputs["Noise Scale"]))
     shift = nodes.new("ShaderNodeCombineXYZ")
     for axis, step in enumerate((12.7, 7.3, 31.1)):
         nodes.link(nodes.math("MULTIPLY", inputs["Seed"], step), shift.inputs[axis])
     place = nodes.vector("ADD", place, shift.outputs[0])
     uneven = nodes.ramp(nodes.noise(place, 1.0, 4.0), 0.25, 0.75, 0.0, 1.0)
-    above = nodes.math("MULTIPLY", nodes.named("height", "FLOAT"), nodes.named("thickness", "FLOAT"))
+    above = nodes.math(
+        "MULTIPLY",
+        nodes.named(meshes.PREFIX + "height", "FLOAT"),
+        nodes.named(meshes.PREFIX + "thickness", "FLOAT"),
+    )
     above = nodes.math("DIVIDE", above, inputs["Bed Thickness"])
-    above = nodes.math("ADD", above, nodes.math("MULTIPLY", nodes.named("age", "FLOAT"), 7.3))
+    above = nodes.math("ADD", above, nodes.math("MULTIPLY", age, 7.3))
     beds = nodes.new("ShaderNodeCombineXYZ")
     nodes.link(nodes.math("ADD", above, shift.outputs[0]), beds.inputs[2])
     layered = nodes.ramp(nodes.noise(beds.outputs[0], 1.0, 1.0), 0.35, 0.65, 0.0, 1.0)
@@ -234,8 +410,10 @@ def _depth(nodes, inputs, position):
     return nodes.math("ADD", level, nodes.math("MULTIPLY", rest, nodes.math("ADD", soft, 0.35)))
 
 
-def _covered(nodes, inputs, geometry, is_top, position):
-    """Grass, and scree on steeper ground, with a ragged border; tufts and stones on them."""
+def _covered(nodes, inputs, geometry, is_top):
+    """The geometry with grass, and scree on steeper ground, with a ragged border, and instances of tufts and
+    stones on them."""
+    position = nodes.of("GeometryNodeInputPosition", "Position")
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, inputs["Noise Scale"]))
     ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
     up = nodes.part(nodes.turned(nodes.of("GeometryNodeInputNormal", "Normal")), 2)
@@ -249,108 +427,4 @@ def _covered(nodes, inputs, geometry, is_top, position):
         here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", around, _ALONE))
         geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=inputs[name])
         scattered.append((thing, here))
-    joined = nodes.new("GeometryNodeJoinGeometry")
-    for thing, here in scattered:
-        nodes.link(scatter.on(nodes, inputs, geometry, thing, here), joined.inputs[0])
-    nodes.link(geometry, joined.inputs[0])
-    return joined.outputs[0]
-
-
-class _Nodes(Nodes):
-    """Makes nodes of a geometry node tree."""
-
-    def to(self, kind, geometry, **given):
-        """The geometry that a node makes of another. given: its inputs by their names."""
-        node = self.new(kind)
-        self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
-        for name, value in given.items():
-            self.link(value, node.inputs[name])
-        return next(s for s in node.outputs if s.type == "GEOMETRY")
-
-    def named(self, name, kind):
-        """An attribute of blocks."""
-        node = self.new("GeometryNodeInputNamedAttribute")
-        node.data_type = kind
-        node.inputs["Name"].default_value = meshes.PREFIX + name
-        return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
-
-    def stored(self, geometry, name, value):
-        """The geometry with a number for each of its points."""
-        node = self.new("GeometryNodeStoreNamedAttribute")
-        node.data_type, node.domain = "FLOAT", "POINT"
-        node.inputs["Name"].default_value = name
-        self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
-        self.link(value, _of_type(node.inputs, "VALUE"))
-        return next(s for s in node.outputs if s.type == "GEOMETRY")
-
-    def nearest(self, geometry, place, values):
-        """The values of fields at the point of a geometry that is nearest to a position."""
-        nearest_node = self.new("GeometryNodeSampleNearest")
-        self.link(geometry, next(s for s in nearest_node.inputs if s.type == "GEOMETRY"))
-        self.link(place, nearest_node.inputs["Sample Position"])
-        sampled = []
-        for value in values:
-            node = self.new("GeometryNodeSampleIndex")
-            kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
-            node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
-            self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
-            self.link(value, _of_type(node.inputs, kind))
-            self.link(nearest_node.outputs["Index"], node.inputs["Index"])
-            sampled.append(_of_type(node.outputs, kind))
-        return sampled
-
-    def rotation(self):
-        """The rotation of the object, as Euler angles."""
-        node = self.new("GeometryNodeObjectInfo")
-        self.link(self.of("GeometryNodeSelfObject", 0), node.inputs["Object"])
-        return node.outputs["Rotation"]
-
-    def turned(self, vector):
-        """A vector of the object's coordinates as the world has it, but for the object's scale."""
-        node = self.new("ShaderNodeVectorRotate")
-        node.rotation_type = "EULER_XYZ"
-        self.link(vector, node.inputs["Vector"])
-        self.link(self.rotation(), node.inputs["Rotation"])
-        return node.outputs[0]
-
-    def upright(self, instances):
-        """Instances turned in their places as if the object were not: the inverse of its rotation, axis by
-        axis, as Euler angles have an order."""
-        for axis in (2, 1, 0):
-            angles = self.new("ShaderNodeCombineXYZ")
-            angle = self.math("MULTIPLY", self.part(self.rotation(), axis), -1.0)
-            self.link(angle, angles.inputs[axis])
-            node = self.new("GeometryNodeRotateInstances")
-            for name, value in (
-                ("Instances", instances),
-                ("Rotation", angles.outputs[0]),
-                ("Pivot Point", self.of("GeometryNodeInputPosition", "Position")),
-                ("Local Space", False),
-            ):
-                self.link(value, node.inputs[name])
-            instances = node.outputs[0]
-        return instances
-
-    def random(self, low, high, number):
-        """A random number, or vector, for each point. number: another one has other values."""
-        node = self.new("FunctionNodeRandomValue")
-        kind = "VECTOR" if isinstance(low, tuple) else "VALUE"
-        node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
-        for name, value in (("Min", low), ("Max", high)):
-            self.link(value, next(s for s in node.inputs if s.name == name and s.enabled))
-        self.link(number, node.inputs["Seed"])
-        return _of_type(node.outputs, kind)
-
-    def on(self, domain, value):
-        """A number or a vector as a domain has it."""
-        node = self.new("GeometryNodeFieldOnDomain")
-        node.domain = domain
-        node.data_type = "FLOAT_VECTOR" if value.type == "VECTOR" else "FLOAT"
-        kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
-        self.link(value, _of_type(node.inputs, kind))
-        return _of_type(node.outputs, kind)
-
-
-def _of_type(sockets, kind):
-    """The socket of a type: before 5.0 nodes have one for each, of which one is in use."""
-    return next(s for s in sockets if s.type == kind and s.enabled and s.name != "Exists")
+    return geometry, [scatter.on(nodes, inputs, geometry, thing, here) for thing, here in scattered]
