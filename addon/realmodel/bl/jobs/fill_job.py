@@ -143,9 +143,9 @@ class FillJob(_StrataJob):
             placing.stand_at(heap, obj)
             collection.objects.link(heap)
         beds = list(collection.objects)
-        rock_layers.finish(bpy.data.scenes[self._scene], obj, [bed for bed in beds if BED in bed])
         if self._has_masks:
             self._add_masks(collection, obj, masks)
+        rock_layers.finish(bpy.data.scenes[self._scene], obj, [bed for bed in beds if BED in bed])
         placing.hide(obj)
         placing.select(beds)
         return collection
