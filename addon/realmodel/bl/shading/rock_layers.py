@@ -12,7 +12,7 @@ from ..host import versions
 from ..host.threads import threads
 from ..objects import exaggeration, filled_beds, meshes, model_tree, shapes
 from ..project import library_rows
-from . import looks, weathering
+from . import looks, strata_modifier, weathering
 
 UV_MAP = "UVMap"  # along the bedding; polygons of different places overlap
 COLOR = "Rock Color"  # a color attribute, the active one
@@ -54,7 +54,10 @@ def finish(scene, source, beds):
     its smooth shading and UV maps; elsewhere these are along the bedding."""
     bpy.context.view_layer.update()  # or it would not know where they stand
     write(scene, beds)
-    with shapes.evaluated_mesh(source, bpy.context.evaluated_depsgraph_get(), all_layers=True) as mesh:
+    with (
+        strata_modifier.without_erosion(source) as depsgraph,
+        shapes.evaluated_mesh(source, depsgraph, all_layers=True) as mesh,
+    ):
         polygons = shapes.triangle_polygons(mesh)
         corners = np.empty(3 * len(polygons), np.int32)
         mesh.loop_triangles.foreach_get("loops", corners)

@@ -118,18 +118,19 @@ def beds_of(item):
 
 def base_shape(item, matrix=None):
     """The shape of an object without erosion, filled_beds.FilledShape. Raises InputRefused."""
-    with _without_erosion(item) as depsgraph:
+    with without_erosion(item) as depsgraph:
         return filled_beds.FilledShape.of(item, depsgraph, matrix)
 
 
 def base_mesh(item):
     """A new mesh datablock of an object without erosion, with all attributes."""
-    with _without_erosion(item) as depsgraph:
+    with without_erosion(item) as depsgraph:
         return bpy.data.meshes.new_from_object(item.evaluated_get(depsgraph))
 
 
 @contextmanager
-def _without_erosion(item):
+def without_erosion(item):
+    """For a while an object is evaluated without erosion; yields the dependency graph."""
     modifier = modifier_of(item)
     was_shown = shows_erosion(item)
     if was_shown:
