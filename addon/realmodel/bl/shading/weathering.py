@@ -135,17 +135,22 @@ def _set(obj, values):
 
 def _exposed(obj):
     """(C,) bool: the corners of a block on its exposed polygons."""
-    mesh = obj.data
-    starts = versions.polygon_starts(mesh)
-    is_top = meshes.values(mesh, meshes.PREFIX + "is_top", bool)
-    surface = meshes.values(mesh, meshes.FACE_SURFACE, np.int32)
-    return np.repeat(is_top | (surface == -1), np.diff(starts, append=len(mesh.loops)))
+    mesh, names = obj.data, (meshes.PREFIX + "is_top", meshes.FACE_SURFACE, meshes.PREFIX + "thickness")
+    if not all(name in mesh.attributes for name in names):  # without polygons, or of an earlier version
+        return np.zeros(len(mesh.loops), bool)
+    is_top, surface = (meshes.values(mesh, *each) for each in zip(names[:2], (bool, np.int32), strict=True))
+    return np.repeat(is_top | (surface == -1), np.diff(versions.polygon_starts(mesh), append=len(mesh.loops)))
 
 
 def _thickness(items, size):
     """The mean thickness of beds where blocks are exposed. size: the diagonal of all."""
-    parts = [meshes.values(obj.data, meshes.PREFIX + "thickness", np.float32)[_exposed(obj)] for obj in items]
-    found = np.concatenate([part[part > 0.0] for part in parts])
+    found = np.zeros(0, np.float32)
+    for obj in items:
+        if (exposed := _exposed(obj)).any():
+            found = np.append(
+                found, meshes.values(obj.data, meshes.PREFIX + "thickness", found.dtype)[exposed]
+            )
+    found = found[found > 0.0]
     return min(float(found.mean(dtype=np.float64)) if len(found) else math.inf, _THICKEST * size)
 
 
