@@ -31,14 +31,24 @@ def register():
         from .core.base.packages import explanation
 
         raise RuntimeError(explanation(ImportError()))
-    from . import handlers, operators, preferences, props, ui
+    from . import handlers, operators, preferences, props, props_strata, ui
     from .bl import display
     from .bl.field import shown
     from .bl.overlay import viewport
 
     done = []
     try:
-        for part in (preferences, props, operators, ui, display, shown, viewport.handler, handlers):
+        for part in (
+            preferences,
+            props,
+            props_strata,
+            operators,
+            ui,
+            display,
+            shown,
+            viewport.handler,
+            handlers,
+        ):
             part.register()
             done.append(part)
     except BaseException:
@@ -63,12 +73,12 @@ def register_for_batch():
 def unregister():
     """Called by Blender when the add-on is disabled; nothing stays: no class, property, handler, timer."""
     _at_exit(False)
-    from . import handlers, operators, preferences, props, ui
+    from . import handlers, operators, preferences, props, props_strata, ui
     from .bl import display
     from .bl.field import shown
     from .bl.overlay import viewport
 
-    for part in (handlers, viewport.handler, shown, display, ui, operators, props, preferences):
+    for part in (handlers, viewport.handler, shown, display, ui, operators, props_strata, props, preferences):
         part.unregister()
 
 

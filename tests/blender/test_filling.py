@@ -11,13 +11,25 @@ from boolean_case import ball, cube
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from panel_case import PanelCase, ops, select, sheet
-from realmodel.bl.jobs.fill_job import FilledShape, FillJob
-from realmodel.bl.jobs.fill_preview import FillPreview, divided
-from realmodel.core import Cancelled, Strata
+from realmodel.bl.jobs.fill_job import FillJob
+from realmodel.bl.objects.filled_beds import FilledShape
+from realmodel.bl.shading import strata_modifier, strata_presets
+from realmodel.core import Cancelled
 
 
 def shape_of(item):
     return FilledShape.of(item, bpy.context.evaluated_depsgraph_get())
+
+
+def evaluated(item):
+    return item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+
+
+def numbers_of(mesh, name="realmodel_bed", dtype=np.int32):
+    attribute = mesh.attributes[name]
+    values = np.empty(len(attribute.data), dtype)
+    attribute.data.foreach_get("value", values)
+    return values
 
 
 class Filling(PanelCase):
@@ -81,7 +93,7 @@ class Filling(PanelCase):
         array.relative_offset_displace = (2.0, 0.0, 0.0)
         beds = self.filled(item, beds=3, dip=0.0)
         self.assertAlmostEqual(sum(bed["realmodel_volume"] for bed in beds), 16.0)
-        self.assertEqual(len(item.modifiers), 1)
+        self.assertEqual([modifier.name for modifier in item.modifiers], ["Array", "Strata"])
 
     def test_a_terrain_down_to_a_base(self):
         item = sheet("Hills", lambda x, y: 10 + 5 * math.sin(x / 9) * math.cos(y / 11), n=16)
@@ -145,40 +157,152 @@ class Filling(PanelCase):
         bpy.context.view_layer.update()
         self.assertEqual(shape_of(item).vertices.tobytes(), plain.tobytes())
 
-    def test_the_preview_leaves_nothing(self):
-        item = ball("A")
-        select(item)
-        before = inventory()
-        shape = shape_of(item)
-        preview = FillPreview(item, shape)
-        preview.show(Strata(beds=6, dip=20), 0.5)
-        copy = bpy.data.objects["Strata Preview"]
-        rows = {polygon.material_index for polygon in copy.data.polygons}
-        self.assertGreater(len(rows), 2)
-        corners = coordinates(copy.data)
-        self.assertTrue(25_000 < len(copy.data.polygons) <= 100_000, "fine enough for thin beds")
-        self.assertTrue((corners.min(axis=0) == coordinates(item.data).min(axis=0)).all())
-        self.assertTrue(item.hide_get())
-        preview.show(Strata(beds=6, dip=20, palette="cliff"), 0.5)
-        preview.remove()
-        self.assertEqual(inventory(), before)
-        self.assertFalse(item.hide_get())
-        self.assertTrue(item.select_get())
+    def test_the_modifier_and_the_solid_agree(self):
+        """In a turned, mirrored and scaled object, after it was moved and sculpted."""
+        for preset in ("ISLAND", "FOLDED", "OVERTURNED", "FAULTED"):
+            with self.subTest(preset):
+                item = ball(preset, 2.0, (5.0, 1.0, -3.0), n=32)
+                item.scale, item.rotation_euler = (1.0, -2.0, 0.5), (0.3, 0.1, -0.4)
+                select(item)
+                ops.strata_preset(preset=preset)
+                item.location.x += 2.0
+                item.rotation_euler.z += 1.0
+                item.data.vertices[0].co *= 1.4
+                shown = evaluated(item)
+                beds, matrix = strata_modifier.beds_of(item)
+                random = np.random.default_rng(1)
+                item.data.vertices.foreach_set("co", random.uniform(-1.0, 1.0, 3 * len(item.data.vertices)))
+                item.data.update()
+                shown = evaluated(item)
+                places = coordinates(shown).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
+                same = beds.numbers(places) + 1 == numbers_of(shown)
+                self.assertGreater(same.mean(), 0.999, "but within rounding of a boundary")
+                self.assertGreater(len(set(numbers_of(shown).tolist())), 4)
+                _, share, thickness = beds.places(places)
+                self.assertLess(
+                    np.abs(share - numbers_of(shown, "realmodel_height", np.float32))[same].max(), 2e-3
+                )
+                self.assertTrue(
+                    np.allclose(
+                        thickness[same], numbers_of(shown, "realmodel_thickness", np.float32)[same], 1e-3
+                    )
+                )
 
-    def test_the_preview_divides_the_tall_triangles_of_walls(self):
-        wall = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 40.0]])
-        ground = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-        vertices = np.concatenate([wall, *[ground] * 30_000])
-        vertices, triangles = divided(vertices, np.arange(len(vertices)).reshape(-1, 3))
-        edges = np.roll(vertices[triangles], -1, axis=1) - vertices[triangles]
-        self.assertLess(np.linalg.norm(edges, axis=2).max(), 3.0)
-        self.assertLessEqual(len(triangles), 100_000)
+    def test_beds_stay_while_the_mesh_is_sculpted_and_fit_again(self):
+        item = ball("A", 2.0, n=32)
+        select(item)
+        ops.strata_preset(preset="CANYON")
+        before = numbers_of(evaluated(item))
+        top = int(coordinates(item.data)[:, 2].argmax())
+        item.data.vertices[top].co.z += 3.0
+        item.data.update()
+        after = numbers_of(evaluated(item))
+        self.assertEqual(np.flatnonzero(before != after).tolist(), [] if before[top] == after[top] else [top])
+        ops.strata_fit()
+        self.assertGreater((numbers_of(evaluated(item)) != after).mean(), 0.5)
+
+    def test_values_of_the_object_change_what_is_shown(self):
+        item = ball("A", 2.0, n=32)
+        select(item)
+        ops.strata_preset(preset="CLIFF")
+        item.realmodel_strata.beds = 5
+        self.assertEqual(set(numbers_of(evaluated(item)).tolist()), {1, 2, 3, 4, 5})
+        rocks = {slot.name for slot in evaluated(item).materials if slot is not None}
+        self.assertIn("Chalk", rocks)
+        item.realmodel_strata.palette = "COAL"
+        rocks = {slot.name for slot in evaluated(item).materials if slot is not None}
+        self.assertIn("Coal", rocks)
+        item.realmodel_strata.dip = 0.5
+        item.realmodel_strata.fold_amplitude, item.realmodel_strata.fold_wavelength = 0.2, 1e-5
+        self.assertIn("too narrow", item.realmodel_strata.problem)
+        item.realmodel_strata.fold_wavelength = 0.5
+        self.assertEqual(item.realmodel_strata.problem, "")
+        self.assertEqual(len(item.material_slots), 0, "the materials of the mesh stay")
+        ops.strata_remove()
+        self.assertEqual(len(item.modifiers), 0)
+        self.assertFalse([obj for obj in bpy.data.objects if "Table" in obj.name])
+        self.refused(ops.strata_remove, "the active object has no strata")
+
+    def test_a_copy_has_beds_of_its_own_once_they_change(self):
+        item = ball("A", 2.0, n=32)
+        select(item)
+        ops.strata_preset(preset="CANYON")
+        other = item.copy()
+        other.data = item.data.copy()
+        bpy.context.collection.objects.link(other)
+        other.realmodel_strata.beds = 3
+        self.assertEqual(numbers_of(evaluated(other)).max(), 3)
+        self.assertEqual(numbers_of(evaluated(item)).max(), 24)
+
+    def test_a_second_fill_replaces_the_first(self):
+        item = ball("A", 2.0, n=32)
+        first = {bed.name for bed in self.filled(item, beds=7)}
+        ops.strata_edit()
+        self.assertFalse(item.hide_get() or item.hide_render)
+        self.assertTrue(all(bpy.data.objects[name].hide_get() for name in first))
+        item.realmodel_strata.beds = 4
+        before = inventory()
+        ops.fill_with_strata(use_dialog=False)
+        beds = item.realmodel_strata.beds_in.objects
+        self.assertEqual([bed.name for bed in beds], [f"A Bed {n}" for n in range(1, 5)])
+        self.assertEqual(len(bpy.data.collections["A Strata"].objects), 4)
+        self.assertNotEqual(inventory(), before)
+
+    def test_erosion_is_shown_and_made_solid(self):
+        item = ball("A", 2.0, n=32)
+        item.rotation_euler = (0.2, 0.3, 0.1)
+        item.scale.x = -1.0
+        select(item)
+        ops.strata_preset(preset="CANYON")
+        item.realmodel_strata.faces = 5000
+        before = coordinates(item.data)
+        ops.strata_erode()
+        shown = evaluated(item)
+        self.assertGreater(len(shown.polygons), 1500)
+        self.assertEqual(coordinates(item.data).tobytes(), before.tobytes())
+        left = abs(volume(shown))
+        lost = left / abs(volume(item.data))
+        self.assertTrue(0.3 < lost < 0.99, lost)
+        self.assertGreater(volume(shown) * volume(item.data), 0, "faces look outward as before")
+        ops.fill_with_strata(use_dialog=False)
+        beds = item.realmodel_strata.beds_in.objects
+        self.assertTrue(all(not open_edges(bed.data) for bed in beds))
+        self.assertAlmostEqual(sum(abs(volume(bed.data)) for bed in beds) / left, 1.0, places=4)
+        ops.strata_edit()
+        self.assertFalse(strata_modifier.shows_erosion(item))
+
+    def test_rocks_of_the_add_menu(self):
+        for kind in strata_presets.SHAPES:
+            ops.strata_rock_add(kind=kind, size=4.0, seed=2, faces=4000)
+            item = bpy.context.active_object
+            self.assertEqual(item.type, "MESH")
+            self.assertTrue(2.0 < item.dimensions.x < 4.5)
+            self.assertGreater(len(set(numbers_of(evaluated(item)).tolist())), 4)
+            self.assertTrue(strata_modifier.shows_erosion(item))
+
+    def test_holes_are_closed_on_request(self):
+        item = ball("A", 2.0, n=32)
+        select(item)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="DESELECT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for number in (40, 41, 700):
+            item.data.polygons[number].select = True
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.delete(type="FACE")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.refused(ops.fill_with_strata, "A: it is open, for example near .* close it")
+        beds = self.filled(item, close_holes=True, beds=4)
+        self.assertTrue(all(not open_edges(bed.data) for bed in beds))
 
     def test_cancelled_and_refused_work_leaves_everything_as_it_was(self):
         item = ball("A", n=64)
         select(item)
         before = inventory()
-        job = FillJob(self.scene, shape_of(item), Strata(beds=40, dip=20), 0.5)
+        ops.strata_preset(preset="FOLDED")
+        item.realmodel_strata.beds = 40
+        before = inventory()
+        job = FillJob(self.scene, item)
         job.start()
         job.cancel()
         job.wait()

@@ -33,15 +33,15 @@ def tab_panels():
     return sorted((cls for cls in of_tab if cls.is_registered), key=lambda cls: hasattr(cls, "bl_parent_id"))
 
 
-def open_the_tab(walk):
-    """N opens the sidebar, a click its tab."""
-    drawn, draw_in = [], start.REALMODEL_PT_start.draw_in
+def found_tab(walk, panel, method):
+    """N opens the sidebar, a click the tab of a panel, which is known by a method that draws it."""
+    drawn, before = [], getattr(panel, method)
 
     def draw(self, *arguments):
         drawn.append(True)
-        draw_in(self, *arguments)
+        before(self, *arguments)
 
-    start.REALMODEL_PT_start.draw_in = draw
+    setattr(panel, method, draw)
     walk.over_viewport()
     walk.key("ESC")
     yield walk.redrawn()
@@ -54,10 +54,15 @@ def open_the_tab(walk):
         yield walk.redrawn()
         if drawn:
             break
-    assert drawn, "the tab RealModel was not found"
-    start.REALMODEL_PT_start.draw_in = draw_in
+    setattr(panel, method, before)
+    assert drawn, f"the tab {panel.bl_category} was not found"
     walk.over_viewport()
     yield walk.redrawn()
+
+
+def open_the_tab(walk):
+    """N opens the sidebar, a click its tab."""
+    yield from found_tab(walk, start.REALMODEL_PT_start, "draw_in")
     walk.shot("empty")
 
 

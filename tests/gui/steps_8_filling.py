@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fill with Strata: the dialog with its preview, Esc, OK, and one step of undo."""
+"""Strata: the dialog with the beds on the mesh, Esc, OK, one step of undo, and the tab with its steps."""
 
 import bpy
 import numpy as np
 from realmodel.bl.host import thumbnails
 from realmodel.bl.objects import meshes
-from realmodel.bl.shading import strata_presets
-from steps_1_panel import idle
+from realmodel.bl.shading import strata_modifier, strata_presets
+from realmodel.ui import start, strata
+from steps_1_panel import found_tab, idle
 from steps_3_import import invoked
 
 
@@ -38,22 +39,23 @@ def _boulder(n=48):
 
 
 def preview_and_cancel(walk):
-    """The dialog shows the strata on a copy; Esc leaves the scene as it was."""
+    """The dialog shows the strata on the mesh; Esc leaves the scene as it was."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield walk.redrawn(2)
     item = _boulder()
-    known = len(bpy.data.objects), len(bpy.data.materials)
+    known = len(bpy.data.objects)
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.fill_with_strata)
     yield walk.redrawn(4)
-    assert "Strata Preview" in bpy.data.objects and item.hide_get()
+    assert strata_modifier.beds_of(item) is not None
     icons = {thumbnails.icon("filling.jpg", number) for number in range(7)}
     assert len(icons) == 7 and 0 not in icons
     walk.shot("fill_preview")
     walk.key("ESC")
-    yield lambda: "Strata Preview" not in bpy.data.objects
+    yield lambda: not bpy.data.objects["Boulder"].modifiers
+    item = bpy.data.objects["Boulder"]
     assert not item.hide_get() and item.select_get()
-    assert known == (len(bpy.data.objects), len(bpy.data.materials))
+    assert known == len(bpy.data.objects)
 
 
 def fill_and_undo(walk):
@@ -76,16 +78,49 @@ def fill_and_undo(walk):
     yield walk.redrawn(2)
     walk.shot("filled")
     beds = bpy.data.collections["Boulder Strata"].objects
-    assert len(beds) == 14 and "Strata Preview" not in bpy.data.objects
+    assert len(beds) == 14
     assert bpy.data.objects["Boulder"].hide_get()
     assert bpy.context.scene.camera.name == "RealModel Camera"
     walk.key("Z", ctrl=True)
     yield lambda: "Boulder Strata" not in bpy.data.collections
-    assert not bpy.data.objects["Boulder"].hide_get()
+    assert not bpy.data.objects["Boulder"].hide_get() and not bpy.data.objects["Boulder"].modifiers
     assert not any(item.name.startswith(("Boulder Bed", "RealModel")) for item in bpy.data.objects)
     scene = bpy.context.scene
     assert startup == (scene.camera.name, scene.world.name, scene.render.engine)
     yield walk.redrawn(2)
 
 
-STEPS = (preview_and_cancel, fill_and_undo)
+def steps_of_the_tab(walk):
+    """A rock of the Add menu, other beds, erosion and solids, in the tab Strata."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.strata_rock_add, kind="ARCH", size=4.0, faces=40_000)
+    yield lambda: "Strata Arch" in bpy.data.objects
+    item = bpy.data.objects["Strata Arch"]
+    assert strata_modifier.shows_erosion(item)
+    yield from found_tab(walk, strata.REALMODEL_PT_strata_shape, "draw_step")
+    invoked(walk, bpy.ops.view3d.view_selected)
+    yield walk.redrawn(4)
+    walk.shot("strata_tab")
+    yield from found_tab(walk, start.REALMODEL_PT_start, "draw_in")
+    item.realmodel_strata.beds = 6
+    yield walk.redrawn(2)
+    item = bpy.data.objects["Strata Arch"]
+    assert not strata_modifier.shows_erosion(item), "other beds erode otherwise"
+    invoked(walk, bpy.ops.realmodel.strata_erode)
+    yield idle
+    yield walk.redrawn(2)
+    assert strata_modifier.shows_erosion(bpy.data.objects["Strata Arch"])
+    invoked(walk, bpy.ops.realmodel.fill_with_strata, use_dialog=False)
+    yield lambda: "Strata Arch Strata" in bpy.data.collections and idle()
+    yield walk.redrawn(3)
+    walk.shot("strata_solid")
+    assert bpy.data.objects["Strata Arch"].hide_get()
+    bpy.ops.realmodel.strata_edit()
+    assert not bpy.data.objects["Strata Arch"].hide_get()
+
+
+STEPS = (preview_and_cancel, fill_and_undo, steps_of_the_tab)

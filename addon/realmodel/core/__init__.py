@@ -16,7 +16,7 @@ from .cells.blocks import Block, BlockBoundary
 from .exporters import save_mesh
 from .exporters.report import Report
 from .fields import Lattice, ScalarField
-from .filling import Strata, fill_with_strata
+from .filling import DifferentialErosion, Strata, fill_with_strata, rock_shape
 from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
@@ -73,6 +73,7 @@ __all__ = [
     "Contour",
     "CrossValidation",
     "Cut",
+    "DifferentialErosion",
     "DipFile",
     "Dips",
     "Erosion",
@@ -157,6 +158,7 @@ __all__ = [
     "read_boreholes",
     "read_mesh",
     "read_points",
+    "rock_shape",
     "save_mesh",
     "triangulate_polygon",
 ]

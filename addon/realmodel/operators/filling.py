@@ -1,27 +1,43 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Strata in any mesh object, with a preview while values are dragged."""
-
-import math
+"""Strata in any mesh object: the modifier that shows them, erosion, and the beds as solids."""
 
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from .. import props_strata
 from ..bl.host import thumbnails
-from ..bl.jobs.fill_job import FilledShape, FillJob
-from ..bl.jobs.fill_preview import FillPreview
+from ..bl.jobs.fill_job import ErosionJob, FillJob
+from ..bl.objects import meshes, placing
 from ..bl.objects.boolean_job import VOLUME
-from ..bl.shading import strata_presets
-from ..bl.shading.strata_presets import PRESETS
-from ..core import RealModelError, Strata
+from ..bl.shading import strata_modifier, strata_presets
+from ..bl.shading.strata_presets import PRESETS, SHAPES
+from ..core import RealModelError, rock_shape
 from ..core.base.errors import counted
-from ..core.filling import PALETTES
-from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, RECUMBENT, STEEPEST, UPRIGHT
 from .pictures import by_hand, set_up_first
-from .reporting import InBackground, not_building, object_mode
+from .reporting import InBackground, Reporting, not_building, object_mode
 
 _PICTURE_SIZE = 3.0  # in heights of a button
-_WIDTH = 360  # of the dialog, in units of the interface
+_WIDTH = 640  # of the dialog, in units of the interface
+
+
+def a_mesh(context):
+    obj = context.active_object
+    if obj is None or obj.type != "MESH":
+        return "the active object is no mesh; make the object that is to be filled active"
+    return None
+
+
+def some_strata(context):
+    obj = context.active_object
+    if obj is None or obj.type != "MESH" or strata_modifier.modifier_of(obj) is None:
+        return "the active object has no strata; choose a preset first (Strata, Beds)"
+    return None
+
+
+def _preset_items(has_none):
+    none = (("NONE", "None", "The values below"),) if has_none else ()
+    return (*none, *((key, name, f"Values for {name.lower()} strata") for key, (name, _) in PRESETS.items()))
 
 
 def _set_preset(self, _context):
@@ -29,169 +45,73 @@ def _set_preset(self, _context):
         setattr(self, name, value)
 
 
-def _a_mesh(context):
-    obj = context.active_object
-    if obj is None or obj.type != "MESH":
-        return "the active object is no mesh; make the object that is to be filled active"
-    return None
+class _OfStrata(InBackground):
+    """An operator whose work is a job of the active object's strata."""
+
+    def shown(self, context):
+        """The active object, with its modifier. Raises RealModelError."""
+        obj = context.active_object
+        if strata_modifier.beds_of(obj) is None:
+            strata_modifier.update(obj)
+        return obj
 
 
-def _share(name, description, default=0.0, most=10.0, soft=1.0):
-    return FloatProperty(
-        name=name, description=description, default=default, min=0.0, max=most, soft_max=soft, precision=3
-    )
-
-
-def _azimuth(name, description, default=0.0):
-    return FloatProperty(
-        name=name,
-        description=f"{description}, clockwise from north, the Y axis",
-        subtype="ANGLE",
-        default=math.radians(default),
-        soft_min=-2 * math.pi,
-        soft_max=2 * math.pi,
-    )
-
-
-class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
+class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
     """Fill the active mesh with strata. Each bed is a closed object with its own rock; together the beds
     equal the mesh, which is hidden. An open mesh with one elevation at each position is filled down to a
-    base. Esc cancels"""
+    base. Beds that were made of the mesh before are replaced. Esc cancels"""
 
     bl_label = "Fill with Strata"
     bl_options = {"REGISTER", "UNDO", "PRESET"}
-    needs = (not_building, object_mode, _a_mesh)
+    needs = (not_building, object_mode, a_mesh)
 
-    preset: EnumProperty(
-        name="Preset",
-        description="Initial values. A choice replaces the values below",
-        items=(
-            ("NONE", "None", "The values below"),
-            *((key, name, f"Values for {name.lower()} strata") for key, (name, _) in PRESETS.items()),
+    __annotations__ = {
+        "preset": EnumProperty(
+            name="Preset",
+            description="Initial values. A choice replaces the values below",
+            items=_preset_items(True),
+            default="NONE",
+            update=_set_preset,
+            options={"SKIP_SAVE"},
         ),
-        default="NONE",
-        update=_set_preset,
-        options={"SKIP_SAVE"},
-    )
-    beds: IntProperty(name="Beds", description="Number", default=12, min=2, max=MOST_BEDS, soft_max=60)
-    thickness: _share(
-        "Thickness",
-        "Mean thickness of a bed, as a share of the height of the mesh. 0: the beds fill it. Otherwise the "
-        "lowest and the highest bed fill the rest",
-    )
-    variation: FloatProperty(
-        name="Variation",
-        description="How much the beds differ in thickness",
-        subtype="FACTOR",
-        default=0.5,
-        min=0.0,
-        max=1.0,
-    )
-    dip: FloatProperty(
-        name="Dip",
-        description="Dip of the beds, before they are folded",
-        subtype="ANGLE",
-        default=math.radians(10),
-        min=0.0,
-        max=math.radians(STEEPEST),
-    )
-    dip_direction: _azimuth("Dip Direction", "Direction of the dip", 120.0)
-    fold_amplitude: _share("Fold Amplitude", "As a share of the height of the mesh; 0: no folds", soft=0.5)
-    fold_wavelength: _share("Fold Wavelength", "As a share of the width of the mesh; 0: no folds", 0.5)
-    fold_axis: _azimuth("Fold Axis", "Direction of the fold axes", 30.0)
-    axial_dip: FloatProperty(
-        name="Axial Dip",
-        description="Dip of the axial planes of folds: 90 upright, 10 recumbent. Folds lean to the right "
-        "of their axis. Faults then strike at right angles to it",
-        subtype="ANGLE",
-        default=math.radians(UPRIGHT),
-        min=math.radians(RECUMBENT),
-        max=math.radians(UPRIGHT),
-    )
-    faults: IntProperty(name="Faults", description="Number", default=0, min=0, max=MOST_FAULTS, soft_max=10)
-    throw: _share("Throw", "Throw of each fault, as a share of the height of the mesh", 0.1, soft=0.5)
-    fault_strike: _azimuth("Fault Strike", "Direction of the faults, which are vertical", 20.0)
-    unconformity: FloatProperty(
-        name="Unconformity",
-        description="Fraction of the height at which flat beds cover truncated ones. 0: none",
-        subtype="FACTOR",
-        default=0.0,
-        min=0.0,
-        max=0.95,
-    )
-    gap: _share(
-        "Gap",
-        "Gap between beds, and between the two sides of a fault, for a print in parts, as a share of the "
-        "height",
-        soft=0.05,
-    )
-    pegs: IntProperty(
-        name="Pegs",
-        description="Largest number of square pegs on each bed. Their holes in the next bed are wider by "
-        "the gap on each side",
-        default=0,
-        min=0,
-        max=MOST_PEGS,
-        soft_max=6,
-    )
-    peg_size: _share("Peg Size", "Width of a peg, as a share of the height of the mesh", 0.1, soft=0.3)
-    base_depth: _share(
-        "Base Depth",
-        "For an open mesh: depth of the base below its lowest point, as a share of its height or of a "
-        "tenth of its width",
-        0.5,
-    )
-    palette: EnumProperty(
-        name="Palette",
-        description="Rocks of the beds",
-        items=tuple(
-            (key.upper(), key.title(), ", ".join(name for name, _ in rocks))
-            for key, rocks in PALETTES.items()
+        "use_dialog": BoolProperty(
+            name="Dialog",
+            description="Ask for the values first. Otherwise those of the object are taken",
+            default=True,
+            options={"HIDDEN", "SKIP_SAVE"},
         ),
-    )
-    rock_looks: BoolProperty(
-        name="Rock Looks",
-        description="Give the rocks procedural textures. Otherwise they have plain colors",
-        default=True,
-    )
-    masks: BoolProperty(
-        name="Bed Masks",
-        description="Add a hidden copy of the mesh. Its vertices have attributes: the number of their bed, "
-        "and a mask of each bed, 0 or 1",
-    )
-    seed: IntProperty(name="Seed", description="Other thicknesses, rocks, folds and faults", min=0)
+        **props_strata.VALUES,
+    }
 
-    _preview = None
     _preset = None  # that the preview shows
-    _shape = None
+    _before = None  # the values that the object had before the dialog, None without strata
+    _name = ""
     _filling = None
     _is_asked = False
     _problem = ""
 
     def invoke(self, context, event):
         obj = context.active_object
+        self._take_values(obj)
         preset = strata_presets.of_item(obj)
         if preset is not None and not self.properties.is_property_set("preset"):
             self.preset = preset
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        try:
-            self._shape = FilledShape.of(obj, context.evaluated_depsgraph_get())
-            self._shape.closed(self.base_depth)
-            self._preview, self._preset = FillPreview(obj, self._shape), self.preset
-            self._show()
-        except RealModelError as error:
-            self._end_preview()
-            return self._refused(context, error)
-        self._is_asked = True
+        if not self.use_dialog:
+            return super().invoke(context, event)
+        has_strata = strata_modifier.modifier_of(obj) is not None
+        self._before = props_strata.values_of(obj.realmodel_strata) if has_strata else None
+        self._name, self._is_asked, self._preset = obj.name, True, self.preset
+        self._show()
         if context.area is not None and context.area.type == "VIEW_3D":
-            # The dialog opens around the mouse: at the left it does not hide the preview in the middle.
-            half = round(0.6 * _WIDTH * context.preferences.system.ui_scale)
+            # The dialog opens around the mouse: at the left it does not hide the object in the middle.
+            half = round(0.55 * _WIDTH * context.preferences.system.ui_scale)
             context.window.cursor_warp(context.area.x + half, context.area.y + context.area.height // 2)
         return context.window_manager.invoke_props_dialog(self, width=_WIDTH)
 
     def check(self, _context):
-        if self._preview is not None:
+        if self._is_asked:
             if self.preset != self._preset:  # its update, which sets the others, comes only after this
                 self._preset = self.preset
                 _set_preset(self, _context)
@@ -200,48 +120,41 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     def draw(self, _context):
         layout = self.layout
-        layout.label(text="Preset")
-        grid = layout.grid_flow(row_major=True, columns=4, even_columns=True)
-        for number, key in enumerate(PRESETS):
-            cell = grid.column(align=True)
-            cell.template_icon(
-                icon_value=thumbnails.icon(strata_presets.PICTURES, number), scale=_PICTURE_SIZE
-            )
-            cell.prop_enum(self, "preset", key)
-        layout.use_property_split = True
-        groups = (
-            ("palette", "rock_looks", "seed"),
-            ("beds", "thickness", "variation", "dip", "dip_direction"),
-            ("fold_amplitude", "fold_wavelength", "fold_axis", "axial_dip"),
-            ("faults", "throw", "fault_strike"),
-            ("unconformity", "base_depth", "masks"),
-            ("gap", "pegs", "peg_size"),
-        )
-        for names in groups:
-            column = layout.column(align=True)
-            for name in names:
-                column.prop(self, name)
+        columns = layout.split(factor=0.5)
+        left, right = columns.column(), columns.column()
+        draw_presets(left, 3, lambda cell, key: cell.prop_enum(self, "preset", key))
+        draw_values(left, self, (*props_strata.SHAPE, ("erosion",), *props_strata.EROSION))
+        draw_values(right, self, (*props_strata.BEDS, *props_strata.SOLID))
         if self._problem:
             layout.label(text=self._problem, icon="ERROR")
 
     def execute(self, context):
-        self._end_preview()
         if self._is_asked:
             self._is_asked = False
             return super().invoke(context, None)
+        self._take_values(context.active_object)
         return super().execute(context)
 
     def cancel(self, context):
-        self._end_preview()
+        if self._is_asked:
+            self._is_asked = False
+            obj = bpy.data.objects.get(self._name)
+            if obj is not None and self._before is None:
+                strata_modifier.take_off(obj)
+            elif obj is not None:
+                strata_modifier.set_values(obj, self._before)
         super().cancel(context)
 
     def begin(self, context):
-        shape = self._shape
-        self._shape = None
-        if shape is None:
-            shape = FilledShape.of(context.active_object, context.evaluated_depsgraph_get())
-        strata = self._strata(shape.closed(self.base_depth)[0])
-        self._filling = FillJob(context.scene, shape, strata, self.base_depth, self.rock_looks, self.masks)
+        obj = context.active_object
+        had_strata = strata_modifier.modifier_of(obj) is not None
+        try:
+            props_strata.copy(self, obj)
+            self._filling = FillJob(context.scene, self.shown(context))
+        except RealModelError:
+            if not had_strata:
+                strata_modifier.take_off(obj)
+            raise
         return self._filling
 
     def tell_done(self, result):
@@ -252,49 +165,166 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         renders = "; F12 renders them" if has_picture else ""
         self.report({"INFO"}, f"{counted(beds, 'bed')}: see {result.name}{renders}")
 
+    def _take_values(self, obj):
+        """Values that are not given are those of the object, where it has strata."""
+        if obj is None or strata_modifier.modifier_of(obj) is None:
+            return
+        for name in props_strata.VALUES:
+            if not self.properties.is_property_set(name) and self.preset == "NONE":
+                setattr(self, name, getattr(obj.realmodel_strata, name))
+
     def _show(self):
-        """Shows the strata, or says why they cannot be made."""
+        """Shows the strata on the object, or says why they cannot be made."""
         self._problem = ""
+        obj = bpy.data.objects.get(self._name)
         try:
-            vertices, _ = self._shape.closed(self.base_depth)
-            self._preview.show(self._strata(vertices), self.base_depth)
+            props_strata.copy(self, obj)
+            if strata_modifier.modifier_of(obj) is None:
+                strata_modifier.update(obj)
         except RealModelError as error:
             self._problem = str(error)
 
-    def _end_preview(self):
-        if self._preview is not None:
-            self._preview.remove()
-            self._preview = None
 
-    def _strata(self, vertices):
-        """core.Strata for a mesh of this size."""
-        size = np.ptp(vertices, axis=0)
-        height, width = float(size[2]), float(size[:2].max())
-        return Strata(
-            beds=self.beds,
-            thickness=self.thickness * height,
-            variation=self.variation,
-            dip=min(math.degrees(self.dip), STEEPEST),
-            dip_direction=_degrees(self.dip_direction),
-            fold_amplitude=self.fold_amplitude * height,
-            fold_wavelength=self.fold_wavelength * width,
-            fold_axis=_degrees(self.fold_axis),
-            axial_dip=min(max(round(math.degrees(self.axial_dip), 4), RECUMBENT), UPRIGHT),
-            faults=self.faults,
-            throw=self.throw * height,
-            fault_strike=_degrees(self.fault_strike),
-            unconformity=self.unconformity,
-            gap=self.gap * height,
-            pegs=self.pegs,
-            peg_size=self.peg_size * height,
-            palette=self.palette.lower(),
-            seed=self.seed,
-        )
+class REALMODEL_OT_strata_preset(Reporting, bpy.types.Operator):
+    """Show strata on the active mesh, by a modifier that follows its shape. A choice replaces all values"""
+
+    bl_label = "Strata Preset"
+    needs = (a_mesh,)
+
+    preset: EnumProperty(name="Preset", description="Values of the strata", items=_preset_items(False))
+
+    def act(self, context):
+        obj = context.active_object
+        strata_modifier.set_values(obj, strata_presets.values(self.preset))
+        strata_modifier.update(obj)
 
 
-def _degrees(angle):
-    """An azimuth, which Blender has in radians of 32 bits."""
-    return round(math.degrees(angle), 4) % 360.0
+class REALMODEL_OT_strata_fit(Reporting, bpy.types.Operator):
+    """Lay the beds through the mesh anew, as it is now. They stay in place while you sculpt"""
+
+    bl_label = "Fit Beds to Mesh"
+    needs = (some_strata,)
+
+    def act(self, context):
+        strata_modifier.update(context.active_object)
+
+
+class REALMODEL_OT_strata_remove(Reporting, bpy.types.Operator):
+    """Remove the strata of the active mesh. Beds that were made of it stay"""
+
+    bl_label = "Remove Strata"
+    needs = (some_strata,)
+
+    def act(self, context):
+        strata_modifier.take_off(context.active_object)
+
+
+class REALMODEL_OT_strata_erode(_OfStrata, bpy.types.Operator):
+    """Show what erosion leaves of the mesh: hard beds stand out, soft ones recede beneath them. The mesh
+    itself stays as it is. Esc cancels"""
+
+    bl_label = "Erode"
+    needs = (not_building, object_mode, some_strata)
+
+    def begin(self, context):
+        obj = self.shown(context)
+        strata_modifier.set_values(obj, {"erosion": True})
+        return ErosionJob(context.scene, obj)
+
+    def tell_done(self, result):
+        self.report({"INFO"}, f"{counted(result, 'face')} after erosion")
+
+
+class REALMODEL_OT_strata_edit(Reporting, bpy.types.Operator):
+    """Show the mesh that the beds were made of, and hide these. Make Solid replaces them"""
+
+    bl_label = "Edit Shape"
+    needs = (object_mode,)
+
+    def act(self, context):
+        obj = next((o for o in context.scene.objects if _is_shape_of(o, context.active_object)), None)
+        if obj is None:
+            self.report({"WARNING"}, "the active object is no bed of a filled mesh")
+            return {"CANCELLED"}
+        for bed in obj.realmodel_strata.beds_in.objects:
+            placing.hide(bed)
+        obj.hide_set(False)
+        obj.hide_render = False
+        strata_modifier.show_eroded(obj, None)
+        placing.select([obj])
+        return {"FINISHED"}
+
+
+class REALMODEL_OT_strata_rock_add(Reporting, bpy.types.Operator):
+    """Add a rock with strata that erosion has worked on: a mesh to sculpt, with the modifier Strata"""
+
+    bl_label = "Add Strata Rock"
+    needs = (object_mode,)
+
+    kind: EnumProperty(
+        name="Shape",
+        description="Kind of rock",
+        items=tuple((key, name, tip) for key, (name, tip, _) in SHAPES.items()),
+    )
+    size: FloatProperty(
+        name="Size", description="Width", subtype="DISTANCE", default=20.0, min=0.01, soft_max=1000.0
+    )
+    seed: IntProperty(name="Seed", description="Another shape with other beds", min=0)
+    strength: FloatProperty(
+        name="Erosion",
+        description="Depth of the erosion; 0: none",
+        default=1.0,
+        min=0.0,
+        max=20.0,
+        soft_max=3.0,
+    )
+    faces: IntProperty(
+        name="Faces",
+        description="About how many triangles the eroded mesh has",
+        default=200_000,
+        min=1000,
+        max=5_000_000,
+        soft_max=1_500_000,
+    )
+
+    def act(self, context):
+        name, _, given = SHAPES[self.kind]
+        vertices, triangles = rock_shape(self.kind.lower(), self.size, self.seed)
+        mesh = meshes.triangle_mesh(name, vertices.astype(np.float32), triangles)
+        obj = bpy.data.objects.new(f"Strata {name}", mesh)
+        obj.location = context.scene.cursor.location
+        context.collection.objects.link(obj)
+        placing.select([obj])
+        values = strata_presets.values(given["preset"]) | {k: v for k, v in given.items() if k != "preset"}
+        erosion = {"erosion": self.strength > 0, "strength": self.strength, "faces": self.faces}
+        strata_modifier.set_values(obj, {**values, **erosion, "seed": self.seed})
+        strata_modifier.update(obj)
+        if self.strength > 0:
+            ErosionJob(context.scene, obj).run()
+
+
+def _is_shape_of(obj, bed):
+    """Whether an object is the mesh that a bed was made of, or the bed itself is that mesh."""
+    collection = obj.realmodel_strata.beds_in
+    return collection is not None and bed is not None and (obj == bed or bed.name in collection.objects)
+
+
+def draw_presets(layout, columns, button):
+    """Pictures of the presets. button(layout, key) draws what chooses one."""
+    grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True)
+    for number, key in enumerate(PRESETS):
+        cell = grid.column(align=True)
+        cell.template_icon(icon_value=thumbnails.icon(strata_presets.PICTURES, number), scale=_PICTURE_SIZE)
+        button(cell, key)
+
+
+def draw_values(layout, values, groups):
+    """Values of strata, in groups of names."""
+    layout.use_property_split = True
+    for names in groups:
+        column = layout.column(align=True)
+        for name in names:
+            column.prop(values, name)
 
 
 def unregister():

@@ -19,6 +19,7 @@ from . import (
     rocks,
     series,
     start,
+    strata,
     structures,
     surfaces,
     view,
@@ -40,7 +41,7 @@ _MODULES = (
         view,
         library,
     ),
-    *(results, hole_validation, ensemble, planned_holes, booleans, menu),
+    *(results, hole_validation, ensemble, planned_holes, booleans, strata, menu),
 )
 
 

@@ -5,6 +5,7 @@ import bpy
 
 from ..bl.objects.boolean_job import OPERATIONS
 from ..bl.scene import samples
+from ..bl.shading.strata_presets import SHAPES
 
 # (operator without "realmodel.", text or None for its label, properties); None: a line
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})
@@ -52,6 +53,16 @@ class REALMODEL_MT_add(_Menu, bpy.types.Menu):
         for axis, name in (("Y", "South"), ("X", "East"), ("Z", "Above")):
             yield "section_plane", f"Section Plane: {name}", {"axis": axis}
         yield "section", "Section", {}
+
+
+class REALMODEL_MT_add_rock(_Menu, bpy.types.Menu):
+    """Rocks with strata, to sculpt and to render"""
+
+    bl_label = "Strata"
+
+    def entries(self, _context):
+        for kind, (name, *_) in SHAPES.items():
+            yield "strata_rock_add", f"Strata {name}", {"kind": kind}
 
 
 class REALMODEL_MT_object(_Menu, bpy.types.Menu):
@@ -133,6 +144,7 @@ def _flat(entries):
 
 _IN_BLENDER = (  # its menu, what is drawn at the end of it
     ("VIEW3D_MT_add", _submenu(REALMODEL_MT_add)),
+    ("VIEW3D_MT_add", _submenu(REALMODEL_MT_add_rock)),
     ("VIEW3D_MT_object", _submenu(REALMODEL_MT_object)),
     ("VIEW3D_MT_edit_mesh", _submenu(REALMODEL_MT_object)),
     ("VIEW3D_MT_view", _submenu(REALMODEL_MT_view)),

@@ -60,6 +60,10 @@ class Nodes:
         """A value from 0 to 1 around 0, times a strength."""
         return self.math("MULTIPLY", self.math("SUBTRACT", value, 0.5), strength)
 
+    def mixed(self, low, high, share):
+        """Between two values, at a share of the way."""
+        return self.math("MULTIPLY_ADD", self.math("SUBTRACT", high, low), share, low)
+
     def total(self, values):
         total = values[0] if values else 0.0
         for value in values[1:]:

@@ -166,6 +166,8 @@ def set_group_input(modifier, name, value):
         getattr(modifier.properties.inputs, key).value = value
     else:
         modifier[key] = value
+        if isinstance(value, bpy.types.ID):
+            modifier.node_group = modifier.node_group  # or Blender would not evaluate what is new to it
     modifier.id_data.update_tag()
 
 

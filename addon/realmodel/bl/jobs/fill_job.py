@@ -1,161 +1,147 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh object filled with strata: its shape read on the main thread, filled in another thread, and beds as
-objects of the scene. In between only names are kept, no Blender data.
+"""A mesh object eroded or filled with strata: its shape read on the main thread, the work done in another
+thread, and what comes of it put into the scene. In between only names are kept, no Blender data.
 
-Beds are laid in the world, without vertical exaggeration. Their objects stand where the filled one stands and
-have its coordinates, of which those of its vertices stay the same to the last bit.
+Beds are laid in the world, without vertical exaggeration, and stay with the object where it is moved. Their
+objects stand where the filled one stands and have its coordinates, of which those of its vertices stay the
+same to the last bit.
 """
-
-from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
 
 from ...core import BuildFailed, InputRefused
-from ...core.base.triangles import welded
+from ...core.base.triangles import without_flat
 from ...core.display import polygon_mesh
-from ...core.filling import ITEM, closed_mesh, fill_within, lay_beds
-from ...core.project.looks import look_of
+from ...core.filling import divided_at_beds, eroded_within, fill_within, kept_of, scree_within
+from ...core.filling.scree import REPOSE
 from ..host.thread_job import ThreadJob
-from ..objects import exaggeration, filled_beds, materials, meshes, placing, shapes
+from ..objects import filled_beds, meshes, placing
 from ..objects.boolean_job import VOLUME
-from ..objects.filled_beds import BED
-from ..shading import looks
+from ..objects.filled_beds import BED, named
+from ..shading import strata_modifier, strata_values
 
-_SHARE = 0.9  # of the progress that filling takes
-
-
-@dataclass(eq=False)
-class FilledShape:
-    """The shape of an object that is to be filled.
-
-    local: (V, 3) float32, in its own coordinates; matrix: (4, 4) from there to the world; vertices: (V, 3)
-    float64 in the world; triangles: (T, 3).
-    """
-
-    name: str
-    local: np.ndarray
-    matrix: np.ndarray
-    vertices: np.ndarray
-    triangles: np.ndarray
-    _closed: dict = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, item, depsgraph):
-        """Reads an object. Raises InputRefused."""
-        matrix = exaggeration.true_matrix(item)
-        determinant = np.linalg.det(matrix[:3, :3])
-        if determinant == 0 or not np.isfinite(determinant):
-            raise InputRefused(
-                "its scale is zero along an axis", item=item.name, advice="give it another scale"
-            )
-        with shapes.evaluated_mesh(item, depsgraph) as mesh:
-            if not len(mesh.polygons):
-                raise InputRefused("it has no faces", item=item.name, advice="choose another object")
-            local = meshes.mesh_coordinates(mesh)
-            offsets = shapes.offsets(item, mesh)
-            return cls(item.name, local, matrix, offsets, shapes.mesh_triangles(mesh))
-
-    @property
-    def is_mirrored(self):
-        """Whether faces that face outward in the world face inward in the object's coordinates."""
-        return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
-
-    def closed(self, depth):
-        """Vertices in the world and triangles of what is filled. depth: of the base of an open mesh beneath
-        its lowest point, as a share of its height, or of a tenth of its width where that is more. Raises
-        InputRefused."""
-        if depth not in self._closed:
-            low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
-            size = high - low
-            base = low[2] - depth * max(size[2], 0.1 * size[:2].max())
-            with named(self.name):
-                self._closed = {depth: closed_mesh(self.vertices, self.triangles, float(base))}
-        return self._closed[depth]
-
-    def to_local(self, places):
-        """(N, 3) float64: places in the world in the coordinates of the object, without any change of its own
-        vertices."""
-        inverse = np.linalg.inv(self.matrix)
-        local = places @ inverse[:3, :3].T + inverse[:3, 3]
-        same = welded(np.concatenate([self.vertices, places]))[len(self.vertices) :]
-        is_vertex = same < len(self.vertices)
-        local[is_vertex] = self.local[same[is_vertex]]
-        return local
+_EROSION, _SHARE = 0.3, 0.9  # of the progress: where erosion and where filling end
+_COARSER = 3  # times as few faces on an area of scree as on the rock
 
 
-class named:
-    """Within it refusals of the mesh name the object."""
+class _StrataJob(ThreadJob):
+    """What erosion and filling share. warnings: of what was left out, once it is done. Raises InputRefused
+    for a shape that cannot be closed."""
 
-    def __init__(self, name):
-        self._name = name
+    warnings: tuple[str, ...] | list[str] = ()
 
-    def __enter__(self):
-        return self
+    def __init__(self, scene, item):
+        """item: the object, with its modifier Strata."""
+        self._scene, self._name = scene.name, item.name
+        values = item.realmodel_strata
+        beds, matrix = strata_modifier.beds_of(item)
+        self._shape = strata_modifier.base_shape(item, matrix)
+        self._mesh = self._shape.closed(values)
+        self._beds = beds.reaching(self._mesh[0])
+        self._strata = strata_values.strata_of(values, beds.high - beds.low)
+        self._erosion = strata_values.erosion_of(values)
+        self._has_masks, self._scree = values.masks, values.scree
 
-    def __exit__(self, _kind, error, _trace):
-        if isinstance(error, InputRefused) and error.item in (ITEM, None):
-            raise InputRefused(
-                error.what, item=self._name, advice=error.advice, triangles=error.triangles, place=error.place
-            ) from error
+    def _eroded(self, job):
+        kept = kept_of(*self._mesh, len(self._shape.triangles))
+        with named(self._name):
+            return eroded_within(job, self._mesh, kept, self._beds, self._strata, self._erosion)
+
+    def _heaped(self, job, mesh):
+        """The scree of a mesh; nothing where there is none."""
+        if not self._scree:
+            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+        faces = (len(mesh[1]) if self._erosion is None else self._erosion.faces) // _COARSER
+        try:
+            return scree_within(job, mesh, self._scree, REPOSE, self._strata.seed, max(faces, 1000))
+        except InputRefused as error:
+            self.warnings = [*self.warnings, f"no scree: {error.what}"]
+            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+
+    def _local(self, mesh):
+        """A mesh in the coordinates of the object, with its faces outward there."""
+        local = self._shape.to_local(mesh[0]).astype(np.float32)
+        triangles = without_flat(local.astype(np.float64), mesh[1])
+        return local, triangles[:, ::-1] if self._shape.is_mirrored else triangles
+
+    def _object(self):
+        scene = bpy.data.scenes.get(self._scene)
+        obj = None if scene is None else scene.objects.get(self._name)
+        if obj is None or obj.type != "MESH" or strata_modifier.beds_of(obj) is None:
+            raise BuildFailed(f"object '{self._name}' is gone; nothing was changed")
+        return obj
 
 
-class FillJob(ThreadJob):
-    """Fills a shape with strata. `run` and `finish` return the collection of the beds.
-
-    shape: FilledShape. strata: core.Strata. depth: as of FilledShape.closed. has_looks: the rocks get looks,
-    otherwise their colors alone. has_masks: a copy of the object gets a mask of each bed. warnings: of what
-    was left out, once it is done.
-    """
-
-    warnings = ()
-
-    def __init__(self, scene, shape, strata, depth, has_looks=True, has_masks=False):
-        """Raises InputRefused for a shape that cannot be closed."""
-        self._scene, self._shape, self._strata = scene.name, shape, strata
-        self._mesh = shape.closed(depth)
-        self._has_looks, self._has_masks = has_looks, has_masks
+class ErosionJob(_StrataJob):
+    """Shows the eroded mesh of an object in its modifier. `run` and `finish` return how many faces it has."""
 
     def _work(self, job):
-        with job.part(0.0, _SHARE), named(self._shape.name):
-            beds = lay_beds(self._strata, self._mesh[0])
-            model, places = fill_within(job, self._mesh, beds, self._strata)
+        with job.part(0.0, _SHARE):
+            eroded = self._eroded(job)
+        with job.part(_SHARE, 1.0):
+            scree = self._heaped(job, eroded)
+        return [self._local(mesh) for mesh in (divided_at_beds(*eroded, self._beds), scree)]
+
+    def _put(self, made):
+        obj = self._object()
+        (vertices, triangles), (of_scree, others) = made
+        together = np.concatenate([triangles, others + len(vertices)])
+        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", np.concatenate([vertices, of_scree]), together)
+        is_scree = np.arange(len(together)) >= len(triangles)
+        mesh.attributes.new(strata_modifier.SCREE, "BOOLEAN", "FACE").data.foreach_set("value", is_scree)
+        strata_modifier.show_eroded(obj, mesh)
+        return len(together)
+
+
+class FillJob(_StrataJob):
+    """Fills an object with its strata. `run` and `finish` return the collection of the beds, which replace
+    earlier ones of the object."""
+
+    def _work(self, job):
+        mesh, begin = self._mesh, 0.0
+        if self._erosion is not None:
+            begin = _EROSION
+            with job.part(0.0, begin):
+                mesh = self._eroded(job)
+        with job.part(begin, _SHARE), named(self._name):
+            model, places = fill_within(job, mesh, self._beds, self._strata)
         with job.phase(_SHARE, 1.0, "making meshes"):
             local = self._shape.to_local(places)
             solids = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
-            solids = [
-                None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in solids
-            ]
-        return model, solids, beds.numbers(self._shape.vertices)
+            matrix = self._shape.matrix
+            solids = [None if shape is None else filled_beds.exposed(shape, matrix) for shape in solids]
+            scree = self._local(self._heaped(job, mesh))
+        return model, solids, scree, self._beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 
     def _put(self, made):
-        model, solids, masks = made
-        scene = bpy.data.scenes.get(self._scene)
-        obj = None if scene is None else scene.objects.get(self._shape.name)
-        if obj is None or obj.type != "MESH":
-            raise BuildFailed(f"object '{self._shape.name}' is gone; nothing was changed")
-        where = obj.users_collection[0] if obj.users_collection else scene.collection
-        collection = bpy.data.collections.new(f"{obj.name} Strata")
-        where.children.link(collection)
-        self.warnings = [warning.text for warning in model.warnings]
-        rocks = {}
+        model, solids, scree, masks = made
+        obj = self._object()
+        collection = self._emptied(obj)
+        self.warnings = [*self.warnings, *(warning.text for warning in model.warnings)]
         beds = [pair for pair in zip(model.blocks, solids, strict=True) if pair[0].property]  # without gaps
         digits = len(str(len(beds)))
         for number, (block, shape) in enumerate(beds, 1):
             if shape is None:
                 continue
-            if block.property not in rocks:
-                rocks[block.property] = self._material(model.project.library.get(block.property))
             name = f"{obj.name} Bed {number:0{digits}}"
             bed = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
             if self._shape.is_mirrored:
                 bed.data.flip_normals()
-            bed.data.materials.append(rocks[block.property])
+            rock = block.property - 1
+            bed.data.materials.append(strata_modifier.material_of(obj, rock))
             bed[BED], bed[VOLUME] = number, block.volume
             placing.stand_at(bed, obj)
             collection.objects.link(bed)
+        if len(scree[1]):
+            heap = bpy.data.objects.new(
+                f"{obj.name} Scree", meshes.triangle_mesh(f"{obj.name} Scree", *scree)
+            )
+            strata_modifier.put_scree_on(heap, obj)
+            placing.stand_at(heap, obj)
+            collection.objects.link(heap)
         beds = list(collection.objects)
         if self._has_masks:
             self._add_masks(collection, obj, masks)
@@ -163,21 +149,26 @@ class FillJob(ThreadJob):
         placing.select(beds)
         return collection
 
-    def _material(self, rock):
-        """A new material of a rock; those that models have of the library stay apart."""
-        made = materials.new_material(rock.name, materials.NO_PROPERTY, rock.color)
-        del made[materials.KEY]
-        if self._has_looks:
-            diagonal = float(np.linalg.norm(np.ptp(self._shape.local, axis=0)))
-            looks.apply(made, look_of(rock.name), 1.0, self._strata.seed + rock.id, diagonal)
-        return made
+    def _emptied(self, obj):
+        """The collection of the object's beds, without those that were there."""
+        collection = obj.realmodel_strata.beds_in
+        if collection is None:
+            where = (
+                obj.users_collection[0] if obj.users_collection else bpy.data.scenes[self._scene].collection
+            )
+            collection = bpy.data.collections.new(f"{obj.name} Strata")
+            where.children.link(collection)
+            obj.realmodel_strata.beds_in = collection
+        for bed in [item for item in collection.objects if strata_modifier.is_made(item)]:
+            bpy.data.meshes.remove(bed.data)  # and its object with it
+        return collection
 
     def _add_masks(self, collection, obj, numbers):
         """A hidden copy of the object whose vertices have the number of their bed, and a mask of each bed."""
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph))
+        mesh = strata_modifier.base_mesh(obj)
         mesh.name = f"{obj.name} Bed Masks"
-        mesh.attributes.new(BED, "INT", "POINT").data.foreach_set("value", numbers + 1)
+        stored = mesh.attributes.get(BED) or mesh.attributes.new(BED, "INT", "POINT")
+        stored.data.foreach_set("value", numbers + 1)
         digits = len(str(self._strata.beds))
         for number in range(self._strata.beds):
             mask = mesh.attributes.new(f"Bed {number + 1:0{digits}}", "FLOAT", "POINT")

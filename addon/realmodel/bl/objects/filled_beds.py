@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The beds that Fill with Strata has put into a scene, without a model."""
+"""Shapes of objects that are filled with strata, and the beds that are in a scene then, without a model."""
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from . import meshes
+from ...core import InputRefused
+from ...core.base.triangles import welded
+from ...core.filling import ITEM, closed_mesh, without_holes
+from . import exaggeration, meshes, shapes
 from .boolean_job import VOLUME
 
 BED = "realmodel_bed"  # on the object of a bed, and on the vertices of a mask: its number, 1 for the oldest
@@ -46,3 +49,81 @@ def size(item):
     vertices = [meshes.mesh_coordinates(bed.data) for bed in together(item)]
     places = np.concatenate([[places.min(axis=0), places.max(axis=0)] for places in vertices if len(places)])
     return float(np.linalg.norm(np.ptp(places, axis=0))) or 1.0
+
+
+@dataclass(eq=False)
+class FilledShape:
+    """The shape of an object that is to be filled.
+
+    local: (V, 3) float32, in its own coordinates; matrix: (4, 4) from there to the world; vertices: (V, 3)
+    float64 in the world; triangles: (T, 3).
+    """
+
+    name: str
+    local: np.ndarray
+    matrix: np.ndarray
+    vertices: np.ndarray
+    triangles: np.ndarray
+    _closed: dict = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, item, depsgraph, matrix=None):
+        """Reads an object. matrix: None for where it is now. Raises InputRefused."""
+        matrix = exaggeration.true_matrix(item) if matrix is None else matrix
+        determinant = np.linalg.det(matrix[:3, :3])
+        if determinant == 0 or not np.isfinite(determinant):
+            raise InputRefused(
+                "its scale is zero along an axis", item=item.name, advice="give it another scale"
+            )
+        with shapes.evaluated_mesh(item, depsgraph) as mesh:
+            if not len(mesh.polygons):
+                raise InputRefused("it has no faces", item=item.name, advice="choose another object")
+            local = meshes.mesh_coordinates(mesh)
+            places = local.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+            return cls(item.name, local, matrix, places, shapes.mesh_triangles(mesh))
+
+    @property
+    def is_mirrored(self):
+        """Whether faces that face outward in the world face inward in the object's coordinates."""
+        return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
+
+    def closed(self, values):
+        """Vertices in the world and triangles of what is filled. values: the strata of the object, for the
+        depth of the base of an open mesh beneath its lowest point, as a share of its height or of a tenth of
+        its width where that is more, and for whether holes are closed. Raises InputRefused."""
+        key = values.base_depth, values.close_holes
+        if key not in self._closed:
+            low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+            size = high - low
+            base = low[2] - values.base_depth * max(size[2], 0.1 * size[:2].max())
+            mesh = self.vertices, self.triangles
+            with named(self.name):
+                mesh = without_holes(*mesh) if values.close_holes else closed_mesh(*mesh, float(base))
+            self._closed = {key: mesh}
+        return self._closed[key]
+
+    def to_local(self, places):
+        """(N, 3) float64: places in the world in the coordinates of the object, without any change of its own
+        vertices."""
+        inverse = np.linalg.inv(self.matrix)
+        local = places @ inverse[:3, :3].T + inverse[:3, 3]
+        same = welded(np.concatenate([self.vertices, places]))[len(self.vertices) :]
+        is_vertex = same < len(self.vertices)
+        local[is_vertex] = self.local[same[is_vertex]]
+        return local
+
+
+class named:
+    """Within it refusals of the mesh name the object."""
+
+    def __init__(self, name):
+        self._name = name
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, _kind, error, _trace):
+        if isinstance(error, InputRefused) and error.item in (ITEM, None):
+            raise InputRefused(
+                error.what, item=self._name, advice=error.advice, triangles=error.triangles, place=error.place
+            ) from error

@@ -56,6 +56,23 @@ PRESETS = {
     ),
     "PRINT": ("Print in Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
 }
+# Of each shape of core.filling.SHAPES its label, its description, and a preset with other values
+SHAPES = {
+    "CLIFF": (
+        "Cliff",
+        "A plateau that ends in a cliff above a slope",
+        {"preset": "CLIFF", "variation": 0.8, "scree": 0.7},
+    ),
+    "CANYON": ("Canyon", "A river canyon with a mesa beside it", {"preset": "CANYON", "scree": 0.6}),
+    "BOULDER": ("Boulder", "A lump with broken faces", {"preset": "FAULTED", "faults": 1, "beds": 10}),
+    "ARCH": (
+        "Arch",
+        "A wall of rock with an opening",
+        {"preset": "CANYON", "beds": 12, "variation": 0.8, "scree": 0.3},
+    ),
+    "ISLAND": ("Island", "An island with a steep coast and stacks", {"preset": "ISLAND", "beds": 12}),
+    "TERRAIN": ("Terrain", "Ridges and valleys", {"preset": "FOLDED", "beds": 20}),
+}
 _UNEVEN, _WAVES = 0.35, 2.4  # how much beds differ in thickness: of a bed; waves, radians of a bed
 _ROUGH, _ROUGH_SIZE = 0.012, 7.0  # how rough their borders are, of the height
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from ...core.project.looks import DEFAULT, LOOKS
 from ..host import versions
-from ..host.nodes import Nodes, group_once
+from ..host.geometry_nodes import GeometryNodes
+from ..host.nodes import group_once
 from ..objects import filled_beds, materials, meshes
 from ..project import library_rows
 from . import edge_wear, looks, scatter
@@ -147,9 +148,8 @@ def _thickness(items, size):
     found = np.zeros(0, np.float32)
     for obj in items:
         if (exposed := _exposed(obj)).any():
-            found = np.append(
-                found, meshes.values(obj.data, meshes.PREFIX + "thickness", found.dtype)[exposed]
-            )
+            values = meshes.values(obj.data, meshes.PREFIX + "thickness", np.float32)
+            found = np.append(found, values[exposed])
     found = found[found > 0.0]
     return min(float(found.mean(dtype=np.float64)) if len(found) else math.inf, _THICKEST * size)
 
@@ -245,10 +245,10 @@ def _fill(group):
     versions.add_group_socket(group, "Geometry", "NodeSocketGeometry")
     for name, (kind, *values) in _INPUTS.items():
         versions.add_group_socket(group, name, kind, values)
-    nodes = _Nodes(group)
+    nodes = GeometryNodes(group)
     inputs = nodes.new("NodeGroupInput").outputs
-    is_top = nodes.named("is_top", "BOOLEAN")
-    surface = nodes.named("surface", "INT")
+    is_top = nodes.named(meshes.PREFIX + "is_top", "BOOLEAN")
+    surface = nodes.named(meshes.PREFIX + "surface", "INT")
     exposed = nodes.math("MAXIMUM", is_top, nodes.math("COMPARE", surface, -1.0, 0.5))
     seen, hidden = nodes.separated(inputs["Geometry"], exposed)
     before, geometry = _worn(nodes, inputs, seen)
@@ -272,6 +272,11 @@ def _is_fine(nodes, inputs):
     return nodes.math("GREATER_THAN", inputs["Detail"], 0.5)
 
 
+def _length(nodes, inputs):
+    """About how deep erosion is."""
+    return nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+
+
 def _worn(nodes, inputs, seen):
     """The exposed faces, subdivided, before and after erosion. Vertices move along the normals of the mesh as
     it was: those of subdivided polygons would be flat within each polygon and break at its edges."""
@@ -290,8 +295,8 @@ def _worn(nodes, inputs, seen):
     depth = nodes.math("MULTIPLY", _depth(nodes, inputs, position), inputs["Strength"])
     deepest = inputs["Deepest"]
     depth = nodes.math("MULTIPLY", nodes.math("TANH", nodes.math("DIVIDE", depth, deepest)), deepest)
-    depth = nodes.math("MINIMUM", depth, nodes.temporary(_MOST))
-    shift = nodes.vector("SCALE", nodes.vector("NORMALIZE", nodes.temporary(_INWARD, "FLOAT_VECTOR")), depth)
+    depth = nodes.math("MINIMUM", depth, nodes.named(_MOST, "FLOAT"))
+    shift = nodes.vector("SCALE", nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR")), depth)
     geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=shift)
     rounding = nodes.math("MULTIPLY", inputs["Edge Rounding"], _is_fine(nodes, inputs))
     # Along its border alone the exposed part keeps meeting its neighbors, which have the same border.
@@ -308,11 +313,11 @@ def _worn(nodes, inputs, seen):
 def _turned_back(nodes, inputs, geometry, position, normal):
     """The eroded geometry without faces that are turned over. Around them erosion becomes less, at first a
     little and nearby, at last wholly and so widely that the change cannot turn any."""
-    facing, before = (nodes.temporary(name, "FLOAT_VECTOR") for name in (_FACING, _BEFORE))
+    facing, before = (nodes.named(name, "FLOAT_VECTOR") for name in (_FACING, _BEFORE))
     least = nodes.math("MULTIPLY", nodes.vector("DOT_PRODUCT", facing, facing), _LEAST)
     is_over = nodes.on("FACE", nodes.math("LESS_THAN", nodes.vector("DOT_PRODUCT", normal, facing), least))
     back = nodes.vector("SUBTRACT", before, position)
-    strength = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+    strength = _length(nodes, inputs)
     for kept, reach in _EBBING:
         over, _ = nodes.separated(geometry, is_over)
         node = nodes.new("GeometryNodeProximity")
@@ -348,18 +353,20 @@ def _pushed(nodes, inputs, hidden, before, geometry):
     """The faces between blocks, each vertex at least as far inwards as the exposed point beside it: else they
     would stick out of the walls that fell back. A margin is for the roughness of what is subdivided."""
     position = nodes.of("GeometryNodeInputPosition", "Position")
-    taken = [nodes.temporary(name, "FLOAT_VECTOR") for name in (_BEFORE, _INWARD)]
-    place, inward, worn = nodes.nearest(before, position, geometry, (*taken, position))
+    taken = [nodes.named(name, "FLOAT_VECTOR") for name in (_BEFORE, _INWARD)]
+    index = nodes.nearest(before, position)
+    place, inward, worn = (nodes.at(geometry, index, value, "FLOAT_VECTOR") for value in (*taken, position))
     inward = nodes.vector("NORMALIZE", inward)
     depth = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", worn, place), inward)
-    depth = nodes.math("MULTIPLY_ADD", nodes.math("GREATER_THAN", depth, 0.0), _margin(nodes, inputs), depth)
+    depth = nodes.math(
+        "MULTIPLY_ADD",
+        nodes.math("GREATER_THAN", depth, 0.0),
+        nodes.math("MULTIPLY", _length(nodes, inputs), _MARGIN),
+        depth,
+    )
     reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
     push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
     return nodes.to("GeometryNodeSetPosition", hidden, Offset=nodes.vector("SCALE", inward, push))
-
-
-def _margin(nodes, inputs):
-    return nodes.math("MULTIPLY", nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"]), _MARGIN)
 
 
 def _with_skirt(nodes, inputs, geometry, surface):
@@ -367,16 +374,15 @@ def _with_skirt(nodes, inputs, geometry, surface):
     farther."""
     node = nodes.new("GeometryNodeExtrudeMesh")
     node.mode = "EDGES"
-    inward = nodes.vector("NORMALIZE", nodes.temporary(_INWARD, "FLOAT_VECTOR"))
-    reach = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
-    reach = nodes.math("MINIMUM", reach, nodes.temporary(_MOST))
+    inward = nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR"))
+    reach = nodes.math("MINIMUM", _length(nodes, inputs), nodes.named(_MOST, "FLOAT"))
     border = nodes.math("MULTIPLY", _is_border(nodes), nodes.math("GREATER_THAN", inputs["Strength"], 0.0))
     for name, value in (("Selection", border), ("Offset", inward), ("Offset Scale", reach)):
         nodes.link(value, node.inputs[name])
     nodes.link(geometry, node.inputs["Mesh"])
     side = node.outputs["Side"]
     outer = nodes.math("SUBTRACT", 1.0, side)
-    is_top = nodes.math("MULTIPLY", nodes.named("is_top", "BOOLEAN"), outer)
+    is_top = nodes.math("MULTIPLY", nodes.named(meshes.PREFIX + "is_top", "BOOLEAN"), outer)
     surface = nodes.math("MULTIPLY_ADD", nodes.math("SUBTRACT", surface, _SKIRT), outer, _SKIRT)
     geometry = nodes.stored(node.outputs["Mesh"], meshes.PREFIX + "is_top", is_top, "FACE", "BOOLEAN")
     geometry = nodes.stored(geometry, meshes.FACE_SURFACE, surface, "FACE", "INT")
@@ -386,7 +392,7 @@ def _with_skirt(nodes, inputs, geometry, surface):
 def _depth(nodes, inputs, position):
     """The depth of erosion, about 0 to 2: larger and uneven in soft rock; of each bed its own, and by layers
     within it."""
-    age = nodes.named("age", "FLOAT")
+    age = nodes.named(meshes.PREFIX + "age", "FLOAT")
     own = nodes.new("ShaderNodeTexWhiteNoise")
     own.noise_dimensions = "1D"
     nodes.link(nodes.math("MULTIPLY_ADD", inputs["Seed"], 31.7, age), own.inputs["W"])
@@ -398,7 +404,11 @@ def _depth(nodes, inputs, position):
         nodes.link(nodes.math("MULTIPLY", inputs["Seed"], step), shift.inputs[axis])
     place = nodes.vector("ADD", place, shift.outputs[0])
     uneven = nodes.ramp(nodes.noise(place, 1.0, 4.0), 0.25, 0.75, 0.0, 1.0)
-    above = nodes.math("MULTIPLY", nodes.named("height", "FLOAT"), nodes.named("thickness", "FLOAT"))
+    above = nodes.math(
+        "MULTIPLY",
+        nodes.named(meshes.PREFIX + "height", "FLOAT"),
+        nodes.named(meshes.PREFIX + "thickness", "FLOAT"),
+    )
     above = nodes.math("DIVIDE", above, inputs["Bed Thickness"])
     above = nodes.math("ADD", above, nodes.math("MULTIPLY", age, 7.3))
     beds = nodes.new("ShaderNodeCombineXYZ")
@@ -427,120 +437,3 @@ def _covered(nodes, inputs, geometry, is_top):
         geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=inputs[name])
         scattered.append((thing, here))
     return geometry, [scatter.on(nodes, inputs, geometry, thing, here) for thing, here in scattered]
-
-
-class _Nodes(Nodes):
-    """Makes nodes of a geometry node tree."""
-
-    def to(self, kind, geometry, **given):
-        """The geometry that a node makes of another. given: its inputs by their names."""
-        node = self.new(kind)
-        self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
-        for name, value in given.items():
-            self.link(value, node.inputs[name])
-        return next(s for s in node.outputs if s.type == "GEOMETRY")
-
-    def named(self, name, kind):
-        """An attribute of blocks."""
-        node = self.new("GeometryNodeInputNamedAttribute")
-        node.data_type = kind
-        node.inputs["Name"].default_value = meshes.PREFIX + name
-        return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
-
-    def temporary(self, name, kind="FLOAT"):
-        """An attribute that is removed at the end."""
-        node = self.new("GeometryNodeInputNamedAttribute")
-        node.data_type = kind
-        node.inputs["Name"].default_value = name
-        return _of_type(node.outputs, "VECTOR" if kind == "FLOAT_VECTOR" else "VALUE")
-
-    def separated(self, geometry, selection):
-        """The selected faces, and the others."""
-        node = self.new("GeometryNodeSeparateGeometry")
-        node.domain = "FACE"
-        self.link(geometry, node.inputs["Geometry"])
-        self.link(selection, node.inputs["Selection"])
-        return node.outputs["Selection"], node.outputs["Inverted"]
-
-    def stored(self, geometry, name, value, domain="POINT", kind=None):
-        """The geometry with a value for each of its points, or faces."""
-        is_vector = getattr(value, "type", "") == "VECTOR"
-        node = self.new("GeometryNodeStoreNamedAttribute")
-        node.data_type, node.domain = kind or ("FLOAT_VECTOR" if is_vector else "FLOAT"), domain
-        node.inputs["Name"].default_value = name
-        self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
-        self.link(value, next(s for s in node.inputs if s.name == "Value" and s.enabled))
-        return next(s for s in node.outputs if s.type == "GEOMETRY")
-
-    def nearest(self, geometry, place, values_of, values):
-        """The values of fields of a geometry at the point of another one, with the same points, that is
-        nearest to a position."""
-        nearest_node = self.new("GeometryNodeSampleNearest")
-        self.link(geometry, next(s for s in nearest_node.inputs if s.type == "GEOMETRY"))
-        self.link(place, nearest_node.inputs["Sample Position"])
-        sampled = []
-        for value in values:
-            node = self.new("GeometryNodeSampleIndex")
-            kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
-            node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
-            self.link(values_of, next(s for s in node.inputs if s.type == "GEOMETRY"))
-            self.link(value, _of_type(node.inputs, kind))
-            self.link(nearest_node.outputs["Index"], node.inputs["Index"])
-            sampled.append(_of_type(node.outputs, kind))
-        return sampled
-
-    def rotation(self):
-        """The rotation of the object, as Euler angles."""
-        node = self.new("GeometryNodeObjectInfo")
-        self.link(self.of("GeometryNodeSelfObject", 0), node.inputs["Object"])
-        return node.outputs["Rotation"]
-
-    def turned(self, vector):
-        """A vector of the object's coordinates as the world has it, but for the object's scale."""
-        node = self.new("ShaderNodeVectorRotate")
-        node.rotation_type = "EULER_XYZ"
-        self.link(vector, node.inputs["Vector"])
-        self.link(self.rotation(), node.inputs["Rotation"])
-        return node.outputs[0]
-
-    def upright(self, instances):
-        """Instances turned in their places as if the object were not: the inverse of its rotation, axis by
-        axis, as Euler angles have an order."""
-        for axis in (2, 1, 0):
-            angles = self.new("ShaderNodeCombineXYZ")
-            angle = self.math("MULTIPLY", self.part(self.rotation(), axis), -1.0)
-            self.link(angle, angles.inputs[axis])
-            node = self.new("GeometryNodeRotateInstances")
-            for name, value in (
-                ("Instances", instances),
-                ("Rotation", angles.outputs[0]),
-                ("Pivot Point", self.of("GeometryNodeInputPosition", "Position")),
-                ("Local Space", False),
-            ):
-                self.link(value, node.inputs[name])
-            instances = node.outputs[0]
-        return instances
-
-    def random(self, low, high, number):
-        """A random number, or vector, for each point. number: another one has other values."""
-        node = self.new("FunctionNodeRandomValue")
-        kind = "VECTOR" if isinstance(low, tuple) else "VALUE"
-        node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
-        for name, value in (("Min", low), ("Max", high)):
-            self.link(value, next(s for s in node.inputs if s.name == name and s.enabled))
-        self.link(number, node.inputs["Seed"])
-        return _of_type(node.outputs, kind)
-
-    def on(self, domain, value):
-        """A number or a vector as a domain has it."""
-        node = self.new("GeometryNodeFieldOnDomain")
-        node.domain = domain
-        node.data_type = "FLOAT_VECTOR" if value.type == "VECTOR" else "FLOAT"
-        kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
-        self.link(value, _of_type(node.inputs, kind))
-        return _of_type(node.outputs, kind)
-
-
-def _of_type(sockets, kind):
-    """The socket of a type: before 5.0 nodes have one for each, of which one is in use."""
-    return next(s for s in sockets if s.type == kind and s.enabled and s.name != "Exists")

@@ -115,8 +115,8 @@ class _Sheets:
         squares = self._squares(number, play)
         if not len(squares):
             return np.column_stack([np.array(self._box) + self._beds.middle, np.full(4, z)]), _HALVES
-        across = self._beds.fold[0]
-        level = replace(self._beds, fold=(across, np.zeros(1), np.zeros(1)), fault=_no_faults(across))
+        across = self._beds.across
+        level = replace(self._beds, wave=np.array([1.0, 0.0, 0.0]), fault=_no_faults(across))
         plan = _plan(level, self._box, squares)
         return np.column_stack([plan.places, z + self._rise(number) * plan.is_raised]), plan.triangles
 
@@ -142,7 +142,7 @@ def _plan(beds: Beds, box: list[Corner], squares: np.ndarray, gap: float = 0.0) 
     """The plan of a sheet. squares: as of `_Sheets._squares`. gap: the width of what is open along faults."""
     near = _NEAR * max(box[2])
     along, positions, _ = beds.fault
-    fold_along, distances, heights = beds.fold
+    fold_along, (distances, heights) = beds.across, beds.fold
     ends = np.sort(squares, axis=0).reshape(-1, 2) if len(squares) else np.empty((0, 2))
     folds = np.sort(np.concatenate([distances if heights.any() else distances[:0], ends[:, 0]]))
     if gap:

@@ -12,8 +12,10 @@ that these planes, volumes and heights stay as they are. `Beds.upright` leads th
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -24,6 +26,7 @@ from .strata import Strata
 _NODES = 32  # of a fold's polyline to a wavelength
 _MOST_NODES = 2048
 _PARALLEL = 0.05  # below it, beds are too nearly parallel to axial planes; 0: they are, and have no datum
+_ARRAYS = ("lean", "low", "high", "slope", "across", "wave", "levels", "covers")  # of Beds
 _UNEVEN = 1.2  # beds are at most exp(1.2) times as thick as the mean before that is made even
 
 
@@ -33,10 +36,11 @@ class Beds:
 
     lean: (2,) how far axial planes move in plan from one height to the next. All that follows is in the
     upright space. low, high: (3,) corners of the box. slope: (2,) of the datum's plane, which is at 0 in the
-    middle of the box. fold: a direction in plan (2,), and of the polyline the distances along it (N,) and the
-    heights (N,). fault: a direction in plan (2,), the distances of the faults along it (F,) and the shifts of
-    the strips between them (F + 1,). levels: (L,) heights above the datum between the tilted beds. floor: the
-    elevation of the unconformity, infinite where there is none. covers: (U,) elevations between the beds
+    middle of the box. across: (2,) the direction in plan across folds; wave: (3,) of their polyline the
+    distance of its nodes along it, how many of these node 0 is from the middle, and the height of crests, 0
+    without folds. fault: a direction in plan (2,), the distances of the faults along it (F,) and the shifts
+    of the strips between them (F + 1,). levels: (L,) heights above the datum between the tilted beds. floor:
+    the elevation of the unconformity, infinite where there is none. covers: (U,) elevations between the beds
     above it.
     """
 
@@ -44,7 +48,8 @@ class Beds:
     low: np.ndarray
     high: np.ndarray
     slope: np.ndarray
-    fold: tuple[np.ndarray, np.ndarray, np.ndarray]
+    across: np.ndarray
+    wave: np.ndarray
     fault: tuple[np.ndarray, np.ndarray, np.ndarray]
     levels: np.ndarray
     floor: float
@@ -63,8 +68,39 @@ class Beds:
     @property
     def axes(self) -> np.ndarray:
         """(2, 2) the direction across the fold axes, and the one along them."""
-        across = self.fold[0]
-        return np.array([across, [-across[1], across[0]]])
+        return np.array([self.across, [-self.across[1], self.across[0]]])
+
+    @cached_property
+    def fold(self) -> tuple[np.ndarray, np.ndarray]:
+        """(N,) the distances of the fold's nodes across it and (N,) their heights, all through the box."""
+        step, offset, amplitude = self.wave
+        if not amplitude:
+            return np.zeros(1), np.zeros(1)
+        first, last = _node_range(_corners(self.low, self.high), self.across, step, offset)
+        nodes = np.arange(first, last + 1)
+        return (nodes + offset) * step, amplitude * sin((nodes % _NODES) * (2.0 * math.pi / _NODES))
+
+    def reaching(self, vertices: np.ndarray) -> Beds:
+        """These beds with a box around vertices (V, 3) as well. No bed moves."""
+        places, middle = self.upright(vertices), self.middle
+        half = np.maximum(np.abs(places[:, :2] - middle).max(axis=0), 0.5 * (self.high - self.low)[:2])
+        low, high = np.minimum(self.low, places.min(axis=0)), np.maximum(self.high, places.max(axis=0))
+        if (half <= 0.5 * (self.high - self.low)[:2]).all():
+            return replace(self, low=np.append(self.low[:2], low[2]), high=np.append(self.high[:2], high[2]))
+        return replace(self, low=np.append(middle - half, low[2]), high=np.append(middle + half, high[2]))
+
+    def to_json(self) -> str:
+        """The beds as text, from which `from_json` makes the same ones."""
+        numbers = {name: np.asarray(value).tolist() for name, value in vars(self).items() if name in _ARRAYS}
+        return json.dumps({**numbers, "fault": [part.tolist() for part in self.fault], "floor": self.floor})
+
+    @staticmethod
+    def from_json(text: str) -> Beds:
+        """The beds of a text that `to_json` wrote."""
+        record = json.loads(text)
+        arrays = {name: np.array(record[name], float) for name in _ARRAYS}
+        along, distances, shifts = (np.array(part, float) for part in record["fault"])
+        return Beds(**arrays, fault=(along, distances, shifts), floor=float(record["floor"]))
 
     @property
     def slant(self) -> float:
@@ -88,17 +124,45 @@ class Beds:
     def datum(self, plan: np.ndarray, strips: np.ndarray) -> np.ndarray:
         """(N,) the elevation of the datum at places in plan (N, 2), in strips between faults (N,)."""
         away = plan - self.middle
-        along, distances, heights = self.fold
-        return dot(away, self.slope) + np.interp(dot(away, along), distances, heights) + self.fault[2][strips]
+        distances, heights = self.fold
+        fold = np.interp(dot(away, self.across), distances, heights)
+        return dot(away, self.slope) + fold + self.fault[2][strips]
 
     def numbers(self, points: np.ndarray) -> np.ndarray:
         """(N,) int32: the bed that each of the points (N, 3) lies in."""
+        return self.found(points)[0]
+
+    def places(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(N,) int32 the bed that each of the points (N, 3) lies in, (N,) its share of the thickness of the
+        bed, from 0 at its base to 1 at its top, and (N,) that thickness. The lowest and the highest bed are
+        as thick as the mean of the others, or reach to the end of the box."""
+        bed, height = self.found(points)
+        base, top = self.bounds()
+        thickness = (top - base)[bed]
+        return bed, np.clip((height - base[bed]) / thickness, 0.0, 1.0), thickness
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """(B,) the bases and the tops of beds: above the datum, those above the unconformity elevations."""
+        mean = (
+            float(np.diff(self.levels).mean()) if len(self.levels) > 1 else float(self.high[2] - self.low[2])
+        )
+        levels = self.levels if len(self.levels) else np.zeros(1)
+        ends = np.array([levels[0] - mean, *self.levels, levels[-1] + mean])
+        if not math.isfinite(self.floor):
+            return ends[:-1], ends[1:]
+        covers = np.array([self.floor, *self.covers, max(self.high[2], self.floor + mean)])
+        return np.concatenate([ends[:-1], covers[:-1]]), np.concatenate([ends[1:], covers[1:]])
+
+    def found(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(N,) int32 beds of points, and heights: above the datum, or elevations above the unconformity."""
         plan, z = self.upright(points)[:, :2], points[:, 2]
-        beds = np.searchsorted(self.levels, z - self.datum(plan, self.strips(plan)))
+        height = z - self.datum(plan, self.strips(plan))
+        beds = np.searchsorted(self.levels, height)
         if math.isfinite(self.floor):
-            above = len(self.levels) + 1 + np.searchsorted(self.covers, z)
-            beds = np.where(z > self.floor, above, beds)
-        return beds.astype(np.int32)
+            is_above = z > self.floor
+            beds = np.where(is_above, len(self.levels) + 1 + np.searchsorted(self.covers, z), beds)
+            height = np.where(is_above, z, height)
+        return beds.astype(np.int32), height
 
 
 def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:
@@ -108,8 +172,7 @@ def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:
     lean = _lean(strata)
     vertices = _sheared(vertices, -lean)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
-    corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
-    corners -= 0.5 * (low + high)[:2]
+    corners = _corners(low, high)
     thicknesses = exp(strata.variation * _UNEVEN * (2.0 * random.random(strata.beds) - 1.0))
     phase, fault_random = random.random(), random.random((2, strata.faults))
     slope = _upright_slope(strata, lean)
@@ -120,7 +183,8 @@ def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:
         low,
         high,
         slope,
-        _fold(strata, corners, phase, _slant(slope, lean)),
+        _towards(strata.fold_axis + 90.0),
+        _wave(strata, corners, phase, _slant(slope, lean)),
         _faults(strata, corners, fault_random),
         empty,
         float(low[2] + strata.unconformity * (high[2] - low[2])) if has_cover else math.inf,
@@ -212,25 +276,30 @@ def _slant(slope: np.ndarray, lean: np.ndarray) -> float:
     return math.sqrt((1.0 + float(dot(slope, lean))) ** 2 + float(dot(slope, slope)))
 
 
-def _fold(
-    strata: Strata, corners: np.ndarray, phase: float, slant: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    across = _towards(strata.fold_axis + 90.0)
+def _wave(strata: Strata, corners: np.ndarray, phase: float, slant: float) -> np.ndarray:
     if not strata.is_folded:
-        return across, np.zeros(1), np.zeros(1)
-    reach = dot(corners, across)
-    step = strata.fold_wavelength / _NODES
-    offset = phase * _NODES
-    first = math.floor(reach.min() / step - offset) - 1
-    last = math.ceil(reach.max() / step - offset) + 1
+        return np.array([1.0, 0.0, 0.0])
+    step, offset, across = strata.fold_wavelength / _NODES, phase * _NODES, _towards(strata.fold_axis + 90.0)
+    first, last = _node_range(corners, across, step, offset)
     if last - first > _MOST_NODES:
+        wide = float(np.ptp(dot(corners, across)))
         raise InputRefused(
-            f"folds {strata.fold_wavelength:g} long are too narrow for a solid {np.ptp(reach):g} wide",
-            advice=f"choose a wavelength of {np.ptp(reach) * _NODES / (_MOST_NODES - 4):.3g} or more",
+            f"folds {strata.fold_wavelength:g} long are too narrow for a solid {wide:g} wide",
+            advice=f"choose a wavelength of {wide * _NODES / (_MOST_NODES - 4):.3g} or more",
         )
-    nodes = np.arange(first, last + 1)
-    heights = strata.fold_amplitude * slant * sin((nodes % _NODES) * (2.0 * math.pi / _NODES))
-    return across, (nodes + offset) * step, heights
+    return np.array([step, offset, strata.fold_amplitude * slant])
+
+
+def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(4, 2) the corners of a box in plan, from its middle."""
+    corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
+    return corners - 0.5 * (low + high)[:2]
+
+
+def _node_range(corners: np.ndarray, across: np.ndarray, step: float, offset: float) -> tuple[int, int]:
+    """The first and the last node of a fold through the corners of a box."""
+    reach = dot(corners, across)
+    return math.floor(reach.min() / step - offset) - 1, math.ceil(reach.max() / step - offset) + 1
 
 
 def _faults(

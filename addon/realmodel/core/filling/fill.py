@@ -24,6 +24,7 @@ from ..surfaces.planar_mesh import triangulate_polygon
 from ..surfaces.surface_input import SurfaceArrays
 from .bed_sheets import sheets_of
 from .beds import Beds, check_gap, lay_beds
+from .erosion import DifferentialErosion, eroded_within, kept_of
 from .pegs import place_pegs
 from .strata import Strata, rocks_of_beds
 
@@ -65,6 +66,22 @@ def closed_mesh(vertices: ArrayLike, triangles: ArrayLike, base: float | None = 
             advice="choose a deeper base",
         )
     return _down_to(vertices, triangles, base)
+
+
+def without_holes(vertices: ArrayLike, triangles: ArrayLike) -> Mesh:
+    """A mesh whose holes are closed, each by triangles around the mean of its border. Vertices that are given
+    come first, unchanged. Raises InputRefused."""
+    vertices, triangles = checked_triangulation(vertices, triangles)
+    if not len(open_edges(vertices, triangles)):
+        return vertices, triangles
+    loops = border_loops(triangles)
+    middles = np.array([vertices[loop].mean(axis=0) for loop in loops])
+    fans = [
+        np.column_stack([np.roll(loop, -1), loop, np.full(len(loop), len(vertices) + number)])
+        for number, loop in enumerate(loops)
+    ]
+    closed = np.concatenate([triangles, *fans]).astype(np.int32)
+    return np.concatenate([vertices, middles]), closed
 
 
 def _down_to(vertices: np.ndarray, triangles: np.ndarray, base: float) -> Mesh:
@@ -122,6 +139,7 @@ def _far_from(vertices: np.ndarray) -> Mesh:
 
 
 _SOLID, _STACK = 0.3, 0.35  # the progress at the end of these steps
+_EROSION = 0.3  # the same of erosion, where there is any
 
 
 @keyword_only
@@ -130,14 +148,16 @@ def fill_with_strata(
     triangles: ArrayLike,
     strata: Strata,
     *,
+    erosion: DifferentialErosion | None = None,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Model:
     """Fills a closed mesh with strata, or an open one with a single height at each position down to a base.
 
-    vertices (V, 3), triangles (T, 3). Returns a model whose blocks are the beds, oldest first, `Bed 1` and so
-    on: closed, with common faces, and together the mesh. Vertices of the mesh are not changed. Beds that are
+    vertices (V, 3), triangles (T, 3). erosion: what is taken off the mesh first, so that hard beds stand out;
+    None: nothing. Returns a model whose blocks are the beds, oldest first, `Bed 1` and so on: closed, with
+    common faces, and together the mesh. Vertices of a mesh without erosion are not changed. Beds that are
     nowhere in the mesh are blocks without cells. With a gap, what is between beds is blocks, too, without a
     property: `Gap 1` and so on, each with the number of the bed beneath, and `Gap at Faults`.
 
@@ -153,7 +173,17 @@ def fill_with_strata(
     threads = check_threads(threads)
     mesh = closed_mesh(vertices, triangles, strata.base)
     beds = lay_beds(strata, mesh[0])
-    model, places = run(lambda work: fill_within(work, mesh, beds, strata), progress, cancel, threads=threads)
+    kept = kept_of(*mesh, len(np.asarray(triangles)))
+
+    def fill(work: Work) -> tuple[Model, np.ndarray]:
+        if erosion is None:
+            return fill_within(work, mesh, beds, strata)
+        with work.part(0.0, _EROSION):
+            eroded = eroded_within(work, mesh, kept, beds, strata, erosion)
+        with work.part(_EROSION, 1.0):
+            return fill_within(work, eroded, beds, strata)
+
+    model, places = run(fill, progress, cancel, threads=threads)
     surfaces = SurfaceArrays([Sheet(beds.leaned(nodes), of) for nodes, of in model.surface_arrays.shapes])
     return replace(model, complex=replace(model.complex, vertices=places), surface_arrays=surfaces)
 

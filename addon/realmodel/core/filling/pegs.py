@@ -24,7 +24,7 @@ _OFF = np.array([0.317, 0.441])  # of a step: lattices through the corners of a 
 @dataclass(frozen=True, eq=False)
 class Pegs:
     """The pegs on the boundaries between beds. side: of all. places: of each boundary, from below, their
-    centers (P, 2) along and across the direction of `Beds.fold`, from the middle of the box. heights: (N,) of
+    centers (P, 2) along and across the direction `Beds.across`, from the middle of the box. heights: (N,) of
     those of each boundary."""
 
     side: float

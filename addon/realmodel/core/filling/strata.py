@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.errors import UsageError
 from ..project.library import Library, Property
+from ..project.looks import LOOKS, look_of
 
 # Of each palette: the name of a rock, which its look follows from, and its color.
 PALETTES: dict[str, tuple[tuple[str, str], ...]] = {
@@ -62,6 +63,13 @@ def rocks_of_beds(count: int, palette: str, seed: int) -> tuple[Library, list[in
         free = [n for n in range(1, len(entries) + 1) if n not in numbers[-2:]]
         numbers.append(free[int(chance * len(free))])
     return library, numbers
+
+
+def hardness_of_beds(count: int, strata: Strata) -> np.ndarray:
+    """(B,) how well each bed withstands weathering, from 0 to 1: that of the look of its rock."""
+    _, rocks = rocks_of_beds(count, strata.palette, strata.seed)
+    hardness = [LOOKS[look_of(name)].hardness for name, _ in PALETTES[strata.palette]]
+    return np.array(hardness)[np.array(rocks) - 1]
 
 
 MOST_BEDS = 200

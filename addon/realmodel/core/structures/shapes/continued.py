@@ -61,15 +61,18 @@ def connected(edges: np.ndarray) -> np.ndarray:
     """(E,) the number of the connected component, from 0, that each edge is in."""
     _, ends = np.unique(edges, return_inverse=True)
     ends = ends.reshape(-1, 2)
-    least = np.arange(ends.max(initial=-1) + 1)
-    while True:
-        both = least[ends].min(axis=1)
-        before = least.copy()
-        np.minimum.at(least, ends[:, 0], both)
-        np.minimum.at(least, ends[:, 1], both)
+    count = ends.max(initial=-1) + 1
+    vertex, other = ends.ravel("F"), ends[:, ::-1].ravel("F")
+    order = np.argsort(vertex, kind="stable")
+    begin, other = np.searchsorted(vertex[order], np.arange(count)), other[order]
+    least = np.arange(count)
+    while len(least):
+        before = least
+        least = np.minimum(least, np.minimum.reduceat(least[other], begin))
         least = least[least]
         if np.array_equal(least, before):
-            return np.unique(least[ends[:, 0]], return_inverse=True)[1].ravel()
+            break
+    return np.unique(least[ends[:, 0]], return_inverse=True)[1].ravel()
 
 
 def extended(vertices: np.ndarray, triangles: np.ndarray, by: float, sideways: bool = True) -> Sheet:

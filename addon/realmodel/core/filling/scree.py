@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scree at the foot of the cliffs of a rock: aprons at the angle of repose, which lean against the walls."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..base.algebra import hypot
+from ..base.errors import InputRefused
+from ..base.work import Work
+from .erosion import Lattice, Mesh, meshed, winding
+from .noise import fractal
+
+REPOSE = 34.0  # degrees: of angular stones (Carson 1977, "Angles of repose, angles of shearing resistance and
+# angles of talus slopes")
+_STEEP = 1.5  # a step of the ground by so many times the spacing is a wall
+_SHARE = 0.35  # of the height of a wall: that of the scree at its foot
+_AROUND = 3  # spacings: within them the ground rises by the height of the wall that supplies scree
+_BEFORE = 10  # spacings: so wide is the ground before a wall at which scree can lie
+_MOST = 0.09  # of the width of the rock: the height of scree at amount 1
+_THIN = 0.4  # spacings: thinner scree is not seen
+
+
+def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int, faces: int) -> Mesh:
+    """The scree of a closed mesh that stands upright, as a job: a closed mesh, its lower side in the rock.
+
+    amount: 1 covers about a third of the height of walls. angle: of its surface, degrees. faces: about how
+    many triangles the rock would have at the same spacing. Raises InputRefused where there is no wall,
+    Cancelled."""
+    vertices, triangles = mesh
+    corners = np.ascontiguousarray(vertices[triangles])
+    with work.phase(0.0, 0.5, "finding the ground"):
+        lattice = Lattice.around(vertices, corners, faces)
+        inside = winding(lattice, corners) != 0
+    spacing, levels = lattice.spacing, np.arange(lattice.counts[2])
+    top = np.where(inside, levels, -1).max(axis=2)
+    is_ground = top >= 0
+    ground = lattice.origin[2] + spacing * (top + 0.5)
+    ground[~is_ground] = lattice.origin[2] - spacing
+    with work.phase(0.5, 0.8, "heaping up"):
+        surface = _heaped(work, ground, is_ground, spacing, amount, math.tan(math.radians(angle)), seed)
+    if not (surface > ground + _THIN * spacing)[is_ground].any():
+        raise InputRefused(
+            "it has no wall at whose foot scree could lie", advice="choose more scree, or a steeper shape"
+        )
+    z = lattice.origin[2] + spacing * levels
+    # It goes on a little into the walls, and its lower side lies in the rock.
+    upper = np.where(is_ground & np.isneginf(surface), _greatest(surface, 0.0), surface)
+    lower = -_greatest(-ground, 0.0) - 2.0 * spacing
+    field = np.maximum(z - upper[:, :, None], lower[:, :, None] - z)
+    with work.phase(0.8, 1.0, "meshing"):
+        return meshed(work, lattice, np.clip(field, -2.0 * spacing, 2.0 * spacing))
+
+
+def _heaped(
+    work: Work,
+    ground: np.ndarray,
+    is_ground: np.ndarray,
+    spacing: float,
+    amount: float,
+    slope: float,
+    seed: int,
+) -> np.ndarray:
+    """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls."""
+    highest, lowest = ground, ground
+    for _ in range(_AROUND):
+        highest = _greatest(highest, 0.0)
+    for _ in range(_BEFORE):
+        lowest = -_greatest(-lowest, 0.0)
+    is_wall = _greatest(ground, 0.0) - ground > _STEEP * spacing
+    is_foot = is_wall & is_ground & (ground - lowest < _BEFORE * slope * spacing)  # no ledge high in a wall
+    places = np.stack(np.meshgrid(*map(np.arange, ground.shape), indexing="ij"), axis=-1).reshape(-1, 2)
+    places = np.column_stack([places * (6.0 / max(ground.shape)), np.zeros(len(places))])
+    uneven = 0.4 + 1.2 * fractal(places, seed + 31).reshape(ground.shape)
+    height = np.minimum(_SHARE * (highest - ground), _MOST * spacing * max(ground.shape))
+    surface = np.where(is_foot, ground + amount * uneven * height, -math.inf)
+    while True:
+        work.check()
+        wider = _greatest(surface, slope * spacing)
+        wider[~is_ground | (wider <= ground - spacing)] = -math.inf  # it ends in the ground
+        if np.array_equal(wider, surface):
+            return surface
+        surface = wider
+
+
+def _greatest(field: np.ndarray, fall: float) -> np.ndarray:
+    """The greatest value of each node and its eight neighbors, less a fall by their distance."""
+    wide = np.pad(field, 1, constant_values=-math.inf)
+    result = field
+    for i in range(3):
+        for j in range(3):
+            there = wide[i : i + field.shape[0], j : j + field.shape[1]]
+            result = np.maximum(result, there - fall * float(hypot(i - 1.0, j - 1.0)))
+    return result
