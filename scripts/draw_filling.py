@@ -65,7 +65,7 @@ def cliff():
     """As the recipe says it."""
     gallery_picture.cliff(levels=6)
     bpy.ops.realmodel.fill_with_strata(preset="CLIFF")
-    bpy.ops.realmodel.weathering(strength=1.5, detail=2, plants=1.0)
+    bpy.ops.realmodel.weathering(plants=1.0)
     bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(115.0))
     corners = np.array([(x, y, z) for x in (-17, 17) for y in (-13, 13) for z in (-11, 13)], float)
     gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 145.0, 17.0, (0.0, 0.0))

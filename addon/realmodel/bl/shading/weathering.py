@@ -30,6 +30,7 @@ _STEPS = 5  # of smoothing
 _BEFORE, _INWARD, _FACING, _MOST = (f"realmodel_{name}" for name in ("before", "inward", "facing", "most"))
 _FAR = 1e9  # no limit
 _MERGED = 0.06  # of the bed thickness: vertices that are nearer to each other become one
+_EVEN = 4  # passes that even out how far vertices may go
 _ROOM = 0.4  # of the way through the rock: how far a vertex may go
 _LEAST = 0.05  # of the cosine of the angle by which a face turns
 # The passes that turn faces back: the share of erosion that is left there, and how far around, in strengths
@@ -129,6 +130,9 @@ def _set(obj, values):
     modifier.node_group = _group()
     for name, value in values.items():
         versions.set_group_input(modifier, name, value)
+    if any(slot.material and slot.material.get(looks.KEY) == "WATER" for slot in obj.material_slots):
+        for name in ("Strength", "Grass Slope", "Scree Slope"):
+            versions.set_group_input(modifier, name, 0.0)
     if filled_beds.BED in obj:
         versions.set_group_input(modifier, "Hardness", _hardness_of_bed(obj))
     obj.pop(HARDNESS, None)
@@ -287,7 +291,11 @@ def _worn(nodes, inputs, seen):
         "MULTIPLY", inputs["Bed Thickness"], nodes.math("MULTIPLY", _is_fine(nodes, inputs), _MERGED)
     )
     seen = nodes.to("GeometryNodeMergeByDistance", seen, Distance=distance)
-    seen = nodes.stored(seen, _MOST, _room(nodes, seen, position, inward))
+    seen = nodes.stored(
+        seen, _MOST, nodes.math("MINIMUM", _room(nodes, seen, position, inward), inputs["Deepest"])
+    )
+    for _ in range(_EVEN):  # a single vertex that may not go far would become a spike
+        seen = nodes.stored(seen, _MOST, nodes.on("POINT", nodes.on("EDGE", nodes.named(_MOST, "FLOAT"))))
     seen = nodes.stored(seen, _INWARD, inward)
     geometry = nodes.to("GeometryNodeSubdivideMesh", seen, Level=inputs["Detail"])
     geometry = nodes.stored(geometry, _BEFORE, position)
