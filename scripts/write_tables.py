@@ -23,7 +23,7 @@ DOCUMENTS = [
         "reference/panel.md",
     )
 ]
-_OF_FILE_BROWSER = ("filepath", "filter_glob", "files", "directory", "format")
+_NOT_GIVEN = ("filepath", "filter_glob", "files", "directory", "format", "made")  # by scripts
 TABLE = re.compile(r"(<!-- table of (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
@@ -146,7 +146,7 @@ def _arguments(node, shared):
         if any(base.endswith(("ImportHelper", "ExportHelper", "Exporting")) for base in bases)
         else []
     )
-    return [*file, *(name for name in names if name not in _OF_FILE_BROWSER)]
+    return [*file, *(name for name in names if name not in _NOT_GIVEN)]
 
 
 def _operators():

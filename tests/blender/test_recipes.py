@@ -67,7 +67,7 @@ class ForArtists(Recipe):
         ops.fill_with_strata(use_dialog=False)
         beds = list(bpy.data.collections["Cube Strata"].objects)
         self.assertEqual(len(beds), 14)
-        ops.weathering(strength=1.5, detail=2, plants=1.0)
+        ops.weathering(plants=1.0)
         self.assertTrue(all(weathering.modifier_of(bed) is not None for bed in beds))
         ops.set_up_picture(sun_elevation=math.radians(20.0))
         picture = self.rendered()

@@ -30,6 +30,7 @@ _STEPS = 5  # of smoothing
 _BEFORE, _INWARD, _FACING, _MOST = (f"realmodel_{name}" for name in ("before", "inward", "facing", "most"))
 _FAR = 1e9  # no limit
 _MERGED = 0.06  # of the bed thickness: vertices that are nearer to each other become one
+_EVEN = 4  # passes that even out how far vertices may go
 _ROOM = 0.4  # of the way through the rock: how far a vertex may go
 _LEAST = 0.05  # of the cosine of the angle by which a face turns
 # The passes that turn faces back: the share of erosion that is left there, and how far around, in strengths
@@ -129,6 +130,9 @@ def _set(obj, values):
     modifier.node_group = _group()
     for name, value in values.items():
         versions.set_group_input(modifier, name, value)
+    if any(slot.material and slot.material.get(looks.KEY) == "WATER" for slot in obj.material_slots):
+        for name in ("Strength", "Grass Slope", "Scree Slope"):
+            versions.set_group_input(modifier, name, 0.0)
     if filled_beds.BED in obj:
         versions.set_group_input(modifier, "Hardness", hardness_of_bed(obj))
     obj.pop(HARDNESS, None)
@@ -136,17 +140,21 @@ def _set(obj, values):
 
 def _exposed(obj):
     """(C,) bool: the corners of a block on its exposed polygons."""
-    mesh = obj.data
-    starts = versions.polygon_starts(mesh)
-    is_top = meshes.values(mesh, meshes.PREFIX + "is_top", bool)
-    surface = meshes.values(mesh, meshes.FACE_SURFACE, np.int32)
-    return np.repeat(is_top | (surface == -1), np.diff(starts, append=len(mesh.loops)))
+    mesh, names = obj.data, (meshes.PREFIX + "is_top", meshes.FACE_SURFACE, meshes.PREFIX + "thickness")
+    if not all(name in mesh.attributes for name in names):  # without polygons, or of an earlier version
+        return np.zeros(len(mesh.loops), bool)
+    is_top, surface = (meshes.values(mesh, *each) for each in zip(names[:2], (bool, np.int32), strict=True))
+    return np.repeat(is_top | (surface == -1), np.diff(versions.polygon_starts(mesh), append=len(mesh.loops)))
 
 
 def _thickness(items, size):
     """The mean thickness of beds where blocks are exposed. size: the diagonal of all."""
-    parts = [meshes.values(obj.data, meshes.PREFIX + "thickness", np.float32)[_exposed(obj)] for obj in items]
-    found = np.concatenate([part[part > 0.0] for part in parts])
+    found = np.zeros(0, np.float32)
+    for obj in items:
+        if (exposed := _exposed(obj)).any():
+            values = meshes.values(obj.data, meshes.PREFIX + "thickness", np.float32)
+            found = np.append(found, values[exposed])
+    found = found[found > 0.0]
     return min(float(found.mean(dtype=np.float64)) if len(found) else math.inf, _THICKEST * size)
 
 
@@ -268,6 +276,11 @@ def _is_fine(nodes, inputs):
     return nodes.math("GREATER_THAN", inputs["Detail"], 0.5)
 
 
+def _length(nodes, inputs):
+    """About how deep erosion is."""
+    return nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+
+
 def _worn(nodes, inputs, seen):
     """The exposed faces, subdivided, before and after erosion. Vertices move along the normals of the mesh as
     it was: those of subdivided polygons would be flat within each polygon and break at its edges."""
@@ -278,7 +291,11 @@ def _worn(nodes, inputs, seen):
         "MULTIPLY", inputs["Bed Thickness"], nodes.math("MULTIPLY", _is_fine(nodes, inputs), _MERGED)
     )
     seen = nodes.to("GeometryNodeMergeByDistance", seen, Distance=distance)
-    seen = nodes.stored(seen, _MOST, _room(nodes, seen, position, inward))
+    seen = nodes.stored(
+        seen, _MOST, nodes.math("MINIMUM", _room(nodes, seen, position, inward), inputs["Deepest"])
+    )
+    for _ in range(_EVEN):  # a single vertex that may not go far would become a spike
+        seen = nodes.stored(seen, _MOST, nodes.on("POINT", nodes.on("EDGE", nodes.named(_MOST, "FLOAT"))))
     seen = nodes.stored(seen, _INWARD, inward)
     geometry = nodes.to("GeometryNodeSubdivideMesh", seen, Level=inputs["Detail"])
     geometry = nodes.stored(geometry, _BEFORE, position)
@@ -308,7 +325,7 @@ def _turned_back(nodes, inputs, geometry, position, normal):
     least = nodes.math("MULTIPLY", nodes.vector("DOT_PRODUCT", facing, facing), _LEAST)
     is_over = nodes.on("FACE", nodes.math("LESS_THAN", nodes.vector("DOT_PRODUCT", normal, facing), least))
     back = nodes.vector("SUBTRACT", before, position)
-    strength = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
+    strength = _length(nodes, inputs)
     for kept, reach in _EBBING:
         over, _ = nodes.separated(geometry, is_over)
         node = nodes.new("GeometryNodeProximity")
@@ -349,14 +366,15 @@ def _pushed(nodes, inputs, hidden, before, geometry):
     place, inward, worn = (nodes.at(geometry, index, value, "FLOAT_VECTOR") for value in (*taken, position))
     inward = nodes.vector("NORMALIZE", inward)
     depth = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", worn, place), inward)
-    depth = nodes.math("MULTIPLY_ADD", nodes.math("GREATER_THAN", depth, 0.0), _margin(nodes, inputs), depth)
+    depth = nodes.math(
+        "MULTIPLY_ADD",
+        nodes.math("GREATER_THAN", depth, 0.0),
+        nodes.math("MULTIPLY", _length(nodes, inputs), _MARGIN),
+        depth,
+    )
     reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
     push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
     return nodes.to("GeometryNodeSetPosition", hidden, Offset=nodes.vector("SCALE", inward, push))
-
-
-def _margin(nodes, inputs):
-    return nodes.math("MULTIPLY", nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"]), _MARGIN)
 
 
 def _with_skirt(nodes, inputs, geometry, surface):
@@ -365,8 +383,7 @@ def _with_skirt(nodes, inputs, geometry, surface):
     node = nodes.new("GeometryNodeExtrudeMesh")
     node.mode = "EDGES"
     inward = nodes.vector("NORMALIZE", nodes.named(_INWARD, "FLOAT_VECTOR"))
-    reach = nodes.math("MINIMUM", inputs["Strength"], inputs["Deepest"])
-    reach = nodes.math("MINIMUM", reach, nodes.named(_MOST, "FLOAT"))
+    reach = nodes.math("MINIMUM", _length(nodes, inputs), nodes.named(_MOST, "FLOAT"))
     border = nodes.math("MULTIPLY", _is_border(nodes), nodes.math("GREATER_THAN", inputs["Strength"], 0.0))
     for name, value in (("Selection", border), ("Offset", inward), ("Offset Scale", reach)):
         nodes.link(value, node.inputs[name])
