@@ -36,7 +36,8 @@ WIDEST = 1200  # pixels
 AMBIENT = 0.62
 LIGHTS = ((-0.35, 0.0, 0.94), 0.38), ((0.0, 1.0, 0.0), 0.2)
 PATIENCE = 1200.0  # seconds for one step, on a busy machine
-WIDER = 130  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut
+WIDER = 130  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut;
+WIDER_ALONE = 190  # in pictures of it alone
 PAPER = (0.9, 0.91, 0.92)  # its background, on which dark layers and letters are seen
 
 
@@ -157,7 +158,8 @@ def chapter(walk, draw):
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from guide_window.open_tab(walk)
-    yield from guide_window.widen(walk, walk.region("UI"), WIDER * bpy.context.preferences.view.ui_scale)
+    wider = WIDER_ALONE if draw in chapters.OF_PANELS else WIDER
+    yield from guide_window.widen(walk, walk.region("UI"), wider * bpy.context.preferences.view.ui_scale)
     if draw in chapters.OF_VIEWPORTS:
         yield from guide_window.show_panels(walk, ["start"])
         space.show_region_ui = False

@@ -20,6 +20,7 @@ from guide_window import (
     labeled,
     place_in_view,
     settled,
+    to_the_end,
     viewed,
     viewport,
 )
@@ -111,6 +112,7 @@ def planned_hole(walk):
     yield from settled(walk)
     yield from fit(walk, ["results", "planned_holes"])
     fill_view(walk, guide_scenes.visible_meshes())
+    yield from to_the_end(walk)
     yield from keep(walk, "planned_hole")
 
 

@@ -112,6 +112,17 @@ def redrawn(walk, times=3):
         yield lambda: True
 
 
+def to_the_end(walk):
+    """Scrolls the sidebar down, as the wheel of a mouse does."""
+    region = walk.region("UI")
+    x, y = region.x + region.width // 2, region.y + region.height // 2
+    walk.move(x, y)
+    for _ in range(12):
+        walk.window.event_simulate(type="WHEELDOWNMOUSE", value="PRESS", x=x, y=y)
+        yield from redrawn(walk, 2)
+    walk.over_viewport()
+
+
 def keep(walk, name, region=None, panels=(), folded=()):
     """Keeps a picture of the sidebar (region "UI"), or of the viewport with it, as NAME.png. panels, folded:
     of the sidebar these alone, as of show_panels; their idnames end so."""
