@@ -37,7 +37,7 @@ AMBIENT = 0.62
 LIGHTS = ((-0.35, 0.0, 0.94), 0.38), ((0.0, 1.0, 0.0), 0.2)
 PATIENCE = 1200.0  # seconds for one step, on a busy machine
 WIDER = 130  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut;
-WIDER_ALONE = 190  # in pictures of it alone
+WIDEST_SIDEBAR = 190  # in pictures of it alone, and in that of the window, which has the longest names
 PAPER = (0.9, 0.91, 0.92)  # its background, on which dark layers and letters are seen
 
 
@@ -158,7 +158,7 @@ def chapter(walk, draw):
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from guide_window.open_tab(walk)
-    wider = WIDER_ALONE if draw in chapters.OF_PANELS else WIDER
+    wider = WIDEST_SIDEBAR if draw in (*chapters.OF_PANELS, chapters.window) else WIDER
     yield from guide_window.widen(walk, walk.region("UI"), wider * bpy.context.preferences.view.ui_scale)
     if draw in chapters.OF_VIEWPORTS:
         yield from guide_window.show_panels(walk, ["start"])

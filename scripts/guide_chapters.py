@@ -145,6 +145,8 @@ def quality(walk):
     yield from example(walk, "castle_hill")
     rock = bpy.context.scene.realmodel.rocks[0]
     rock.active_surface = rock.surfaces.find("vosgien")
+    rock.surfaces[rock.active_surface].fit_variogram = True  # then the chart has the values that it fits
+    yield from build(walk)
     bpy.ops.realmodel.check_quality()
     charts = []
     for chart in ("VARIOGRAM", "CROSS_VALIDATION"):

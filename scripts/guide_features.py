@@ -266,15 +266,18 @@ def tiles(walk):
     for item in items:  # apart, so that each tile is seen
         column, row = (int(number) for number in item.name.split()[-1].split("-"))
         item.location = 120.0 * column, 120.0 * row, 0.0
-        item.scale.z = 6.0
+        item.scale.z = 4.0
     fill_view(walk, items, elevation=math.radians(38.0))
     yield from settled(walk)
     labels = []
     for item in items:
-        if item.name.startswith("Gravel"):
+        if item.name.startswith("Gravel"):  # the uppermost block
             column, row = (int(number) for number in item.name.split()[-1].split("-"))
-            top = item.matrix_world @ max((vertex.co for vertex in item.data.vertices), key=lambda co: co.z)
-            labels.append((f"Column {column}, row {row}", place_in_view(walk, top), (0, 40)))
+            places = [vertex.co for vertex in item.data.vertices]
+            middle = sum(places[1:], places[0]) / len(places)
+            tops = [place for place in places if place.z > middle.z]
+            place = item.matrix_world @ min(tops, key=lambda place: (place - middle).xy.length)
+            labels.append((f"Column {column}, row {row}", place_in_view(walk, place), (0, 24)))
     save_picture(labeled(viewed(walk), "", labels), walk.folder / "tiles.png")
 
 
