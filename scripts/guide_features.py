@@ -227,10 +227,10 @@ def meshing(walk):
     import bpy
 
     yield from example(walk, "two_layers")
-    options = {"edge_length": 4.0, "minimum_thickness": 0.7, "layer_thickness": 2.0, "format": "VTU"}
+    options = {"edge_length": 4.0, "minimum_thickness": 0.7, "layer_thickness": 2.0, "format": "INP"}
     folder = guide_scenes.empty_folder("two_layers")
     with viewport(walk):
-        bpy.ops.realmodel.export_mesh("INVOKE_DEFAULT", filepath=str(folder / "mesh.vtu"), **options)
+        bpy.ops.realmodel.export_mesh("INVOKE_DEFAULT", filepath=str(folder / "mesh.inp"), **options)
     yield from browse(walk, "mesh_options", folder, only_options=True)
     folder.rmdir()
 

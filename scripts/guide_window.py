@@ -165,7 +165,7 @@ def browse(walk, name, folder, only_options=False, chosen=False):
         walk.key("A")
         yield from redrawn(walk, 20)
     options = next(region for region in opened().regions if region.type == "TOOL_PROPS")
-    yield from widen(walk, options, 170 * bpy.context.preferences.view.ui_scale)
+    yield from widen(walk, options, 110 * bpy.context.preferences.view.ui_scale)
     picture = seen(walk, options if only_options else opened())
     save_picture(drawn_part(picture) if only_options else picture, walk.folder / f"{name}.png")
     with bpy.context.temp_override(window=walk.window, area=opened()):
