@@ -18,8 +18,6 @@ from ..bl.project import project_settings, settings
 from ..bl.scene import build_job
 from ..core import Cancelled, InputRefused, RealModelError
 
-_LONGEST_FILTER = 255  # characters: Blender's file browser cuts off the rest, and hides those files
-
 
 class Reporting:
     """An operator whose `act(context)` may raise RealModelError: it is reported, which is a RuntimeError in a
@@ -202,9 +200,9 @@ def chosen_path(operator, what):
 
 
 def file_filter(*endings):
-    """What the file browser shows: files of these endings, or all where its filter has no room for them."""
     patterns = ";".join(f"*{ending}" for ending in endings)
-    return StringProperty(default=patterns if len(patterns) <= _LONGEST_FILTER else "*", options={"HIDDEN"})
+    has_room = len(patterns) < 256  # Blender's file browser cuts off the rest, and hides those files
+    return StringProperty(default=patterns if has_room else "*", options={"HIDDEN"})
 
 
 def require_file(path):
