@@ -267,7 +267,7 @@ def tiles(walk):
         column, row = (int(number) for number in item.name.split()[-1].split("-"))
         item.location = 120.0 * column, 120.0 * row, 0.0
         item.scale.z = 4.0
-    fill_view(walk, items, elevation=math.radians(38.0))
+    fill_view(walk, items, 0.84, math.radians(38.0))
     yield from settled(walk)
     labels = []
     for item in items:
