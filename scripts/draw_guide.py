@@ -21,8 +21,9 @@ ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "guide"
 WINDOWS = (  # (width, height), scale of the interface so that its letters are sharp in print, chapters
     (guide_recording.SIZE, 1.35, (guide_recording.carving,)),
-    ((1900, 2900), 3.0, chapters.OF_PANELS),
+    ((1500, 2400), 2.0, chapters.OF_PANELS),
     ((2300, 2200), 2.0, chapters.OF_DIALOGS),
+    ((1800, 640), 1.5, chapters.OF_BROWSERS),
     ((1900, 1400), 1.5, chapters.WITH_MANY_PANELS),
     ((1900, 1150), 1.5, chapters.WITH_PANELS),
     ((1900, 1000), 1.5, chapters.OF_VIEWPORTS),
@@ -35,7 +36,8 @@ WIDEST = 1200  # pixels
 AMBIENT = 0.62
 LIGHTS = ((-0.35, 0.0, 0.94), 0.38), ((0.0, 1.0, 0.0), 0.2)
 PATIENCE = 1200.0  # seconds for one step, on a busy machine
-WIDER = 75  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut
+WIDER = 130  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut;
+WIDEST_SIDEBAR = 190  # in pictures of it alone, and in that of the window, which has the longest names
 PAPER = (0.9, 0.91, 0.92)  # its background, on which dark layers and letters are seen
 
 
@@ -99,6 +101,7 @@ def begin(folder, number, *names):
     _, scale, known = WINDOWS[int(number)]
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
+    preferences.view.filebrowser_display_type = "SCREEN"
     preferences.view.ui_scale = scale
     preferences.system.use_region_overlap = False
     light_up(preferences.system)
@@ -147,6 +150,7 @@ def chapter(walk, draw):
     space = walk.area.spaces.active
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     space.overlay.show_cursor = space.overlay.show_text = space.show_gizmo = False
+    space.overlay.show_object_origins = False
     space.shading.studio_light = "Default"
     space.shading.show_specular_highlight = False
     # empty where only panels are kept: drawing its objects takes long, and nobody sees them
@@ -154,7 +158,8 @@ def chapter(walk, draw):
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from guide_window.open_tab(walk)
-    yield from guide_window.widen(walk, WIDER * bpy.context.preferences.view.ui_scale)
+    wider = WIDEST_SIDEBAR if draw in (*chapters.OF_PANELS, chapters.window) else WIDER
+    yield from guide_window.widen(walk, walk.region("UI"), wider * bpy.context.preferences.view.ui_scale)
     if draw in chapters.OF_VIEWPORTS:
         yield from guide_window.show_panels(walk, ["start"])
         space.show_region_ui = False

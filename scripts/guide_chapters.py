@@ -16,6 +16,7 @@ from guide_window import (
     labeled,
     place_in_view,
     settled,
+    show_panels,
     side_by_side,
     viewed,
     viewport,
@@ -37,12 +38,13 @@ def tour(walk):
     import bpy
     import guide_panels
 
+    yield from show_panels(walk, ["start"])  # no other is open yet
     yield from example(walk, guide_panels.EXAMPLE)
-    dismiss(walk)
     guide_panels.choose_rows(bpy.context.scene.realmodel)
     found = {}
     for name in guide_panels.PANELS:
-        yield from keep(walk, name, "UI", [name])
+        parts, headers = guide_panels.PARTS.get(name, ()), guide_panels.HEADERS.get(name, ())
+        yield from keep(walk, name, "UI", [name, *parts], headers)
         found[name] = guide_panels.shown(bpy.context, name)
     guide_panels.keep(found)
 
@@ -143,6 +145,8 @@ def quality(walk):
     yield from example(walk, "castle_hill")
     rock = bpy.context.scene.realmodel.rocks[0]
     rock.active_surface = rock.surfaces.find("vosgien")
+    rock.surfaces[rock.active_surface].fit_variogram = True  # then the chart has the values that it fits
+    yield from build(walk)
     bpy.ops.realmodel.check_quality()
     charts = []
     for chart in ("VARIOGRAM", "CROSS_VALIDATION"):
@@ -296,12 +300,15 @@ def smooth():
 
 
 OF_PANELS = (start, tour, csv_panel)  # pictures of the sidebar alone
-OF_DIALOGS = (csv_dialog, features.filling)
+OF_BROWSERS = (features.importing,)
+OF_DIALOGS = (csv_dialog, features.filling, features.series, features.meshing)
 WITH_PANELS = (  # of the viewport and the sidebar
     csv,
     quality,
     sculpt_built,
     features.boreholes,
+    features.drawing,
+    features.assets,
 )
 WITH_MANY_PANELS = (  # with a longer sidebar
     window,
@@ -309,6 +316,9 @@ WITH_MANY_PANELS = (  # with a longer sidebar
     features.planned_hole,
     features.fold,
     features.faults,
+    features.residuals,
+    features.misfits,
+    features.ensemble,
 )
-OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures)  # of the viewport alone
+OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures, features.tiles)  # of the viewport alone
 AS_FOUND = (start, window)  # with panels open or closed as users find them

@@ -12,6 +12,13 @@ ROOT = Path(__file__).resolve().parents[1]
 RECORD = ROOT / "docs" / "images" / "guide" / "panels.json"
 EXAMPLE = "castle_hill"
 PANELS = ("build", "results", "view", "surfaces", "rocks", "library")  # each a picture of this name
+PARTS = {"build": ("build_options",)}  # shown open in these pictures
+HEADERS = {  # shown folded
+    "results": ("results_compartments", "ensemble", "hole_validation", "planned_holes"),
+    "view": ("view_properties", "view_section", "view_camera", "view_picture", "view_coordinates"),
+    "surfaces": ("surface_method", "quality", "series", "surface_reading"),
+    "rocks": ("rock_mesh",),
+}
 START = "start"  # the picture of the tab in an empty file: of all of its panels
 
 
@@ -32,7 +39,8 @@ def shown(context, name):
         drawing = recording_layout.draw_tab(context)
     else:
         drawing = recording_layout.Drawing()
-        recording_layout.draw(getattr(bpy.types, f"REALMODEL_PT_{name}"), context, drawing)
+        for part in (name, *PARTS.get(name, ())):
+            recording_layout.draw(getattr(bpy.types, f"REALMODEL_PT_{part}"), context, drawing)
     labels = {text for text in drawing.labels if text and not any(letter.isdigit() for letter in text)}
     return sorted({*drawing.operators, *drawing.properties, *drawing.menus, *labels})
 

@@ -235,3 +235,65 @@ def logs(folder, sample):
         paths.append(folder / f"{name}.csv")
         paths[-1].write_text("\n".join(lines) + "\n", encoding="utf-8")
     return paths
+
+
+def mistaken(tables):
+    """Exchanges two units in the logs of some holes."""
+    path = tables[1]
+    lines = path.read_text(encoding="utf-8").splitlines()
+    for hole in ("V02", "V11", "V28"):
+        upper, lower = [n for n, line in enumerate(lines) if line.startswith(f"{hole},")][1:3]
+        (*first, one), (*second, other) = lines[upper].split(","), lines[lower].split(",")
+        lines[upper], lines[lower] = ",".join([*first, other]), ",".join([*second, one])
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def empty_folder(name):
+    """A folder whose path says nothing of this machine, for pictures of the file browser."""
+    folder = Path("/tmp", name)
+    folder.mkdir()
+    return folder
+
+
+def in_tiles(folder, sample):
+    """Builds a sample in tiles, with the command line; returns the path of their table."""
+    import subprocess
+
+    root = SAMPLES.parent
+    command = [root / "build" / "venv" / "bin" / "python", root / "build_model.py"]
+    command += [SAMPLES / sample / "project.toml", "--tiles", "600,400", "--out", folder / "tiles"]
+    subprocess.run(list(map(str, command)), check=True, cwd=root)
+    return folder / "tiles" / "tiles.toml"
+
+
+def along(model, block, y, share, count):
+    """Places (x, y, z) along x in a block, at a share of its height, where it is: of so many."""
+    import numpy as np
+
+    low, high = model.vertices[:, 0].min(), model.vertices[:, 0].max()
+    for x in (low + (high - low) * np.linspace(0.02, 0.98, count)).tolist():
+        for part in model.borehole(x, y):
+            if model.blocks[part.block].name == block:
+                yield x, y, part.bottom + share * (part.top - part.bottom)
+
+
+def scan(path, model, y):
+    """Saves a section of a model along x as a scanner reads it of an old print: yellowed, with inked
+    contacts. Returns x and the heights of its corners."""
+    import numpy as np
+    from driver import save_picture
+
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    width = 1400
+    height = int(width * (high[2] - low[2]) / (high[0] - low[0]))
+    random = np.random.default_rng(1)
+    paper = np.array((0.95, 0.91, 0.8)) - random.uniform(0.0, 0.04, (height, width, 1))
+    for column in range(width):
+        x = low[0] + (column + 0.5) / width * (high[0] - low[0])
+        for part in model.borehole(x, y):
+            top, bottom = (int((z - low[2]) / (high[2] - low[2]) * height) for z in (part.top, part.bottom))
+            dots = (np.arange(bottom, top) + 3 * column) % (5 + 4 * part.block) == 0
+            paper[bottom:top, column] -= 0.25 * dots[:, None]
+            paper[max(top - 4, 0) : top, column] = (0.2, 0.16, 0.14)
+    save_picture(np.clip(paper, 0.0, 1.0), path)
+    return (low[0], high[0]), (low[2], high[2])

@@ -89,6 +89,17 @@ class Registration(unittest.TestCase):
         finally:
             realmodel.unregister()
 
+    def test_the_file_browser_has_room_for_each_filter(self):
+        realmodel.register()
+        self.addCleanup(realmodel.unregister)
+        found = {}
+        for name in dir(bpy.ops.realmodel):
+            prop = getattr(bpy.ops.realmodel, name).get_rna_type().properties.get("filter_glob")
+            if prop is not None:
+                found[name] = prop.default
+        self.assertIn("*.toml", found["open_project"])
+        self.assertEqual({name: text for name, text in found.items() if len(text) > 255}, {})
+
     def test_every_setting_and_choice_says_what_it_does(self):
         realmodel.register()
         self.addCleanup(realmodel.unregister)

@@ -200,7 +200,9 @@ def chosen_path(operator, what):
 
 
 def file_filter(*endings):
-    return StringProperty(default=";".join(f"*{ending}" for ending in endings), options={"HIDDEN"})
+    patterns = ";".join(f"*{ending}" for ending in endings)
+    has_room = len(patterns) < 256  # Blender's file browser cuts off the rest, and hides those files
+    return StringProperty(default=patterns if has_room else "*", options={"HIDDEN"})
 
 
 def require_file(path):
