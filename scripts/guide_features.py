@@ -216,9 +216,9 @@ def filling(walk):
         bpy.ops.realmodel.fill_with_strata("INVOKE_DEFAULT")
     yield walk.redrawn(8)
     picture = viewed(walk)  # its rows from the bottom up: above the dialog it is empty
-    save_picture(picture[: int(0.76 * len(picture))], walk.folder / "filling.png")
+    save_picture(picture[: int(0.96 * len(picture))], walk.folder / "filling.png")
     walk.key("ESC")
-    yield lambda: "Strata Preview" not in bpy.data.objects
+    yield lambda: not bpy.data.objects[item.name].modifiers
     yield walk.redrawn(3)
 
 

@@ -107,7 +107,7 @@ class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
         if context.area is not None and context.area.type == "VIEW_3D":
             # The dialog opens around the mouse: at the left it does not hide the object in the middle.
             half = round(0.55 * _WIDTH * context.preferences.system.ui_scale)
-            context.window.cursor_warp(context.area.x + half, context.area.y + context.area.height // 2)
+            context.window.cursor_warp(context.area.x + half, context.area.y + 4 * context.area.height // 5)
         return context.window_manager.invoke_props_dialog(self, width=_WIDTH)
 
     def check(self, _context):
