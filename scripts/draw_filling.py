@@ -63,13 +63,12 @@ def filled_boulder():
 
 def cliff():
     """As the recipe says it."""
-    gallery_picture.cliff(levels=6)
-    bpy.ops.realmodel.fill_with_strata(preset="CLIFF")
-    bpy.ops.realmodel.weathering(plants=1.0)
-    bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(115.0))
-    corners = np.array([(x, y, z) for x in (-17, 17) for y in (-13, 13) for z in (-11, 13)], float)
-    gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 145.0, 17.0, (0.0, 0.0))
-    render(IMAGES / "cliff.jpg", SIZE)
+    bpy.ops.realmodel.strata_rock_add(kind="CLIFF", size=40.0, strength=1.3, faces=600_000)
+    bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(235.0))
+    corners = np.array([(x, y, z) for x in (-15, 15) for y in (-6, 6) for z in (3, 17)], float)
+    size = (1280, 720)
+    gallery_picture.aim(bpy.context.scene.camera, corners, size, 195.0, 6.0, (0.0, 0.0))
+    render(IMAGES / "cliff.jpg", size)
 
 
 def print_parts():

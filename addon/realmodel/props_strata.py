@@ -214,12 +214,13 @@ def copy(values, item):
 
 class RealModelStrata(bpy.types.PropertyGroup):
     """The strata of an object. beds_in: the collection of the beds that Fill with Strata has made of it.
-    problem: why the last change had no effect."""
+    problem: why the last change had no effect. is_shown: whether the object has the modifier Strata."""
 
     __annotations__ = {
         **{name: with_update(prop, strata_modifier.changed) for name, prop in VALUES.items()},
         "beds_in": PointerProperty(type=bpy.types.Collection, options={"HIDDEN"}),
         "problem": StringProperty(options={"HIDDEN"}),
+        "is_shown": BoolProperty(options={"HIDDEN"}),
     }
 
 

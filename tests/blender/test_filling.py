@@ -319,3 +319,34 @@ class Filling(PanelCase):
         bpy.context.collection.objects.link(empty)
         select(empty)
         self.refused(ops.fill_with_strata, "the active object is no mesh")
+
+    def test_the_surface_of_the_mesh_keeps_smooth_shading_and_uvs(self):
+        """On a ball whose upper half is smooth, and whose UV maps are linear in space."""
+        item = ball("A", 2.0)
+        mesh = item.data
+        mesh.polygons.foreach_set("use_smooth", [polygon.center.z > 0 for polygon in mesh.polygons])
+        vertices = np.empty(len(mesh.loops), np.int32)
+        mesh.loops.foreach_get("vertex_index", vertices)
+        for name, plan in (("UVMap", slice(0, 2)), ("Paint", slice(1, 3))):
+            uv = np.ascontiguousarray(coordinates(mesh)[vertices][:, plan], np.float32)
+            mesh.uv_layers.new(name=name).data.foreach_set("uv", uv.ravel())
+        kept = 0
+        for bed in self.filled(item, beds=4, dip=0.3):
+            mesh = bed.data
+            self.assertEqual([layer.name for layer in mesh.uv_layers], ["UVMap", "UVMap of Mesh", "Paint"])
+            self.assertEqual(mesh.uv_layers.active.name, "UVMap")
+            for polygon in mesh.polygons:
+                corners = [mesh.vertices[vertex].co for vertex in polygon.vertices]
+                outside = abs(polygon.center.length - 2.0) < 0.05 and polygon.center.dot(polygon.normal) > 1.9
+                if not outside:
+                    self.assertFalse(polygon.use_smooth)
+                    continue
+                kept += 1
+                if abs(polygon.center.z) > 0.2:
+                    self.assertEqual(polygon.use_smooth, polygon.center.z > 0)
+                for loop, corner in zip(polygon.loop_indices, corners, strict=True):
+                    np.testing.assert_allclose(
+                        mesh.uv_layers["UVMap of Mesh"].data[loop].uv, corner[:2], atol=1e-4
+                    )
+                    np.testing.assert_allclose(mesh.uv_layers["Paint"].data[loop].uv, corner[1:], atol=1e-4)
+        self.assertGreater(kept, 500)

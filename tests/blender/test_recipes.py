@@ -13,7 +13,7 @@ from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
 from realmodel.bl.host import notices
 from realmodel.bl.project import compartments, project_settings, surface_statistics
 from realmodel.bl.scene import quality
-from realmodel.bl.shading import looks, weathering
+from realmodel.bl.shading import looks, strata_modifier, weathering
 from recording_layout import draw_tab
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
@@ -43,14 +43,29 @@ class Recipe(PanelCase):
 class ForArtists(Recipe):
     """docs/guide/artists.md"""
 
-    def cliff(self):
-        bpy.data.objects.remove(bpy.data.objects["Cube"])
-        select(gallery_picture.cliff(levels=4))
-        ops.fill_with_strata(preset="CLIFF")
-        return list(bpy.data.collections["Cube Strata"].objects)
-
     def test_a_cliff(self):
-        beds = self.cliff()
+        bpy.data.objects.remove(bpy.data.objects["Cube"])
+        ops.strata_rock_add(kind="CLIFF", faces=20_000)
+        item = bpy.context.active_object
+        item.realmodel_strata.beds = 10
+        ops.strata_erode()
+        self.assertTrue(strata_modifier.shows_erosion(item))
+        ops.set_up_picture(sun_elevation=math.radians(20.0))
+        picture = self.rendered()
+        self.assertGreater(np.ptp(picture.mean(axis=2)), 0.3)
+        ops.fill_with_strata(use_dialog=False)
+        beds = [bed for bed in item.realmodel_strata.beds_in.objects if "realmodel_bed" in bed]
+        self.assertTrue(8 <= len(beds) <= 10)
+        self.assertTrue(all(not open_edges(bed.data) for bed in beds))
+        self.assertIn("Strata Cliff Scree", item.realmodel_strata.beds_in.objects)
+
+    def test_a_cliff_of_a_mesh_of_ones_own(self):
+        bpy.data.objects.remove(bpy.data.objects["Cube"])
+        item = gallery_picture.cliff(levels=4)
+        select(item)
+        ops.strata_preset(preset="CLIFF")
+        ops.fill_with_strata(use_dialog=False)
+        beds = list(bpy.data.collections["Cube Strata"].objects)
         self.assertEqual(len(beds), 14)
         ops.weathering(plants=1.0)
         self.assertTrue(all(weathering.modifier_of(bed) is not None for bed in beds))

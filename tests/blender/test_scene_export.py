@@ -107,14 +107,16 @@ class SceneExport(PanelCase):
     def test_obj(self):
         select(bpy.data.objects["S1"])
         self.assert_pictured(self.exported("obj"), is_obj=True)
-        self.assertEqual(len(list(self.folder.glob("model_*.png"))), 2)
+        self.assertEqual(len(list(self.folder.glob("model_*_color.png"))), 2)
 
     def test_obj_without_pictures(self):
         self.assert_colored(self.exported("obj", bake_looks=False), is_obj=True)
 
     def test_usd(self):
         if not bpy.app.build_options.usd:
-            with unittest.mock.patch.object(scene_export, "_bake", side_effect=AssertionError):  # before that
+            with unittest.mock.patch.object(
+                scene_export, "Baking", side_effect=AssertionError
+            ):  # before that
                 self.refused(ops.export_scene, "cannot write USD", filepath=str(self.folder / "m.usda"))
             self.skipTest("this Blender cannot write USD")
         self.assert_pictured(self.exported("usdc"))
@@ -159,7 +161,7 @@ class SceneExport(PanelCase):
         before = inventory()
         path = str(self.folder / "nowhere" / "m.glb")
         self.refused(ops.export_scene, "there is no folder", filepath=path)
-        with unittest.mock.patch.object(looks, "show_picture", side_effect=InputRefused("no picture")):
+        with unittest.mock.patch.object(looks, "show_pictures", side_effect=InputRefused("no picture")):
             self.refused(
                 ops.export_scene, "no picture", filepath=str(self.folder / "m.glb"), picture_size=SIZE
             )

@@ -11,7 +11,7 @@ from steps_1_panel import found_tab, idle
 from steps_3_import import invoked
 
 
-def _boulder(n=48):
+def boulder(n=48):
     """A bumpy ball, the active object."""
     i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(2 * n), indexing="ij"))
     u, v = np.pi * j / n, np.pi * (i + 0.5) / n
@@ -42,7 +42,7 @@ def preview_and_cancel(walk):
     """The dialog shows the strata on the mesh; Esc leaves the scene as it was."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield walk.redrawn(2)
-    item = _boulder()
+    item = boulder()
     known = len(bpy.data.objects)
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.fill_with_strata)

@@ -24,7 +24,17 @@ from ..core.base.errors import BuildWarning
 from ..core.exporters import MESH, MODEL, REPORT
 from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.report import model_report
-from .reporting import InBackground, Reporting, a_model, chosen_path, file_filter, not_building, object_mode
+from .baking import MAPS, PICTURE_SIZE, layout_menu
+from .reporting import (
+    InBackground,
+    Reporting,
+    a_model,
+    a_model_or_beds,
+    chosen_path,
+    file_filter,
+    not_building,
+    object_mode,
+)
 from .start import invoke
 
 _OUTDATED = "The model is out of date: its input has changed since the build"
@@ -282,11 +292,11 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
 
 
 class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
-    """Export what is displayed of the model for other 3D programs, with names, materials, looks, and custom
-    properties"""
+    """Export what is displayed of the model, and beds of filled meshes, for other 3D programs, with names,
+    materials, looks, UV maps, and custom properties"""
 
     bl_label = "Export Scene"
-    needs = (a_model, object_mode)
+    needs = (a_model_or_beds, object_mode)
 
     format: format_menu(scene_export.FORMATS)
     filter_glob: format_filter(scene_export.FORMATS)
@@ -296,12 +306,18 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
         description="Write textures of looks to pictures; otherwise materials have the color of the property",
         default=True,
     )
-    picture_size: IntProperty(
-        name="Picture Size",
-        description="Width of the pictures in pixels, one for each material with a look",
-        default=1024,
-        min=64,
-        max=16384,
+    maps: MAPS
+    layout: layout_menu("MATERIAL")
+    picture_size: PICTURE_SIZE
+    levels_of_detail: BoolProperty(
+        name="Levels of Detail",
+        description="Write each object three times, with all its polygons, 30 % and 10 % of them, named "
+        "_LOD0 to _LOD2",
+    )
+    collision: EnumProperty(
+        name="Collision",
+        description="Convex hulls for collisions, named UCX_ and the object, as Unreal expects",
+        items=scene_export.HULLS,
     )
 
     def write(self, context, path):
@@ -310,7 +326,11 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
             items = [obj for obj in items if obj.select_get()]
         if not items:
             raise InputRefused("no object of the model would be exported", advice="display or select blocks")
-        scene_export.write(context, items, path, self.picture_size if self.bake_looks else 0)
+        size = self.picture_size if self.bake_looks and self.maps else 0
+        choices = scene_export.Choices(
+            size, tuple(self.maps), self.layout, self.levels_of_detail, self.collision
+        )
+        scene_export.write(context, items, path, choices)
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):

@@ -8,13 +8,13 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ..bl import overlay
 from ..bl.display import viewpoints
-from ..bl.objects import filled_beds
 from ..bl.objects.viewports import CAMERA_ELEVATION
 from ..bl.pictures import animation, capture, first_picture, picture
 from ..bl.project import library_rows, project_settings, settings
 from ..bl.shading import look_assets, looks, weathering
 from ..core import InputRefused
 from ..core.base.errors import counted
+from .baking import rocks
 from .reporting import Reporting, a_library, a_model, a_model_or_beds
 from .start import invoke
 
@@ -204,15 +204,6 @@ class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
         looks.follow(context.scene, rows, anew=True)
 
 
-def _blocks(context):
-    """The selected blocks and beds of filled meshes, all where none is selected."""
-    items = [row.object for row in context.scene.realmodel.results if row.object is not None]
-    items += filled_beds.of_scene(context.scene)
-    items = [obj for obj in items if obj.type == "MESH" and obj.library is None]
-    selected = set(context.selected_objects)
-    return [obj for obj in items if obj in selected] or items
-
-
 class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     """Weather the selected blocks, or all, for pictures. A modifier changes their appearance; the exact
     blocks do not change"""
@@ -303,7 +294,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     def act(self, context):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
-        items = _blocks(context)
+        items = rocks(context)
         detail, faces, size = weathering.cost(items, self.detail, self.most_faces)
         parameters = weathering.Weathering(*values, *covers, detail, self.plants, self.wear)
         weathering.put_on(context.scene, items, parameters)
@@ -320,7 +311,7 @@ class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
     needs = (a_model_or_beds,)
 
     def act(self, context):
-        items = [obj for obj in _blocks(context) if weathering.modifier_of(obj) is not None]
+        items = [obj for obj in rocks(context) if weathering.modifier_of(obj) is not None]
         if not items:
             raise InputRefused("no block is weathered", advice="use Weathering first, or select other blocks")
         weathering.take_off(items)

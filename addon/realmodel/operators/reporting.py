@@ -106,7 +106,7 @@ def a_model(context):
 
 
 def a_model_or_beds(context):
-    if len(context.scene.realmodel.results) or filled_beds.of_scene(context.scene):
+    if len(context.scene.realmodel.results) or filled_beds.shown(context.scene):
         return None
     return "there is no model yet; press Build first, or fill a mesh with strata"
 
@@ -262,6 +262,7 @@ class InBackground(Reporting):
             return {"PASS_THROUGH"}
         try:
             if not self._job.hand_over(_SLICE):
+                self._show_progress(context)
                 return {"PASS_THROUGH"}
             self._leave(context)
             self.tell_done(self._job.finish())

@@ -84,6 +84,8 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield "assign_property", "Assign Active Property", {}
         yield "weathering", None, {}
         yield "weathering_remove", None, {}
+        yield "unwrap", None, {}
+        yield "bake_looks", "Bake Looks...", {}
         yield "install_looks", None, {}
         yield None
         for operation, name, *_ in OPERATIONS:

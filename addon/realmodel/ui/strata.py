@@ -84,6 +84,9 @@ class REALMODEL_PT_strata_looks(_Step, bpy.types.Panel):
         line = layout.row(align=True)
         line.operator("realmodel.weathering", icon="MOD_NOISE")
         line.operator("realmodel.weathering_remove", text="", icon="X")
+        line = layout.row(align=True)
+        line.operator("realmodel.unwrap", icon="UV")
+        line.operator("realmodel.bake_looks", icon="RENDER_STILL")
         layout.operator("realmodel.set_up_picture", icon="LIGHT_SUN")
 
 
@@ -93,8 +96,8 @@ class REALMODEL_PT_strata_export(_Step, bpy.types.Panel):
 
     def draw_step(self, layout, _obj, values):
         if values is not None:
-            draw_values(layout, values, props_strata.SOLID)
             layout.prop(values, "erosion")
+            draw_values(layout, values, props_strata.SOLID)
         made = layout.operator("realmodel.fill_with_strata", text="Make Solid", icon="MESH_CUBE")
         made.use_dialog = False
         layout.operator("realmodel.export_scene", text="Export Looks...", icon="EXPORT")

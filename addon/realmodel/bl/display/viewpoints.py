@@ -105,13 +105,13 @@ def _remember(space):
 
 def model_points(scene, cut=False):
     """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world.
-    cut: around what a section plane has left of the blocks. Without a model: of the beds of filled meshes."""
+    cut: around what a section plane has left of the blocks. Without a model: of filled meshes and beds."""
     group = scene.realmodel
     framed = modes.body_of if cut and cuts.is_shown(scene) else _framed
     items = [framed(scene, row) for row in group.results]
     if not len(items):
         items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
-        items = items or filled_beds.of_scene(scene)
+        items = items or filled_beds.shown(scene)
     items += list(bodies.of_kind(scene, bodies.SECTION).values())
     corners = []
     for obj in items:

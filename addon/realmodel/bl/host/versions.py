@@ -4,6 +4,8 @@
 The rest of the add-on asks this module and never looks at `bpy.app.version` itself.
 """
 
+import math
+
 import blf
 import bpy
 import numpy as np
@@ -131,6 +133,13 @@ def marks():
         domain: {name: dtype for name, dtype in names.items() if name in kind.bl_rna.properties}
         for domain, (kind, names) in wanted.items()
     }
+
+
+def break_at_flat(mesh):
+    """Shades smooth polygons as if those beside them that are flat were not there, which is the rule from 4.1
+    on."""
+    if bpy.app.version < (4, 1, 0):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
 
 
 def make_glossy(principled):

@@ -19,7 +19,7 @@ from ..host.thread_job import ThreadJob
 from ..objects import filled_beds, meshes, placing
 from ..objects.boolean_job import VOLUME
 from ..objects.filled_beds import BED, named
-from ..shading import strata_modifier, strata_values
+from ..shading import rock_layers, strata_modifier, strata_values
 
 _EROSION, _SHARE = 0.3, 0.9  # of the progress: where erosion and where filling end
 _COARSER = 3  # times as few faces on an area of scree as on the rock
@@ -145,6 +145,7 @@ class FillJob(_StrataJob):
         beds = list(collection.objects)
         if self._has_masks:
             self._add_masks(collection, obj, masks)
+        rock_layers.finish(bpy.data.scenes[self._scene], obj, [bed for bed in beds if BED in bed])
         placing.hide(obj)
         placing.select(beds)
         return collection

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.base.triangles import welded
+from ...core.display.box_projection import area_vectors
 from ...core.filling import ITEM, closed_mesh, without_holes
 from . import exaggeration, meshes, shapes
 from .boolean_job import VOLUME
@@ -21,18 +22,20 @@ def of_scene(scene):
     return [obj for obj in scene.objects if obj.type == "MESH" and BED in obj and VOLUME in obj]
 
 
+def shown(scene):
+    """The beds, and the meshes with strata that are not hidden behind theirs."""
+    has_strata = (obj for obj in scene.objects if obj.type == "MESH" and obj.realmodel_strata.is_shown)
+    return [*of_scene(scene), *(obj for obj in has_strata if not obj.hide_render)]
+
+
 def exposed(shape, matrix):
     """The shape of a bed (PolygonMesh) with what was the surface of the filled mesh as walls, and as ground
     where that is rather level: looks and weathering go by this. matrix: (4, 4) from its coordinates to the
     world."""
     outside = shape.face_surface == _CUT
     ends = shape.coordinates[shape.corners].astype(np.float64) @ matrix[:3, :3].T
-    first = shape.offsets[:-1]
-    after = np.arange(len(shape.corners)) + 1
-    after[shape.offsets[1:] - 1] = first
-    # twice the area of each polygon, as a vector
-    normal = np.add.reduceat(np.cross(ends, ends[after]), first)
-    is_level = normal[:, 2] > _LEVEL * np.linalg.norm(normal, axis=1)
+    area = area_vectors(ends, shape.offsets)
+    is_level = area[:, 2] > _LEVEL * np.linalg.norm(area, axis=1)
     bedding = replace(shape.bedding, is_top=outside & is_level)
     surface = np.where(outside, _WALL, shape.face_surface).astype(np.int32)
     return replace(shape, face_surface=surface, bedding=bedding)

@@ -2,75 +2,178 @@
 """Exports the displayed model to other 3D programs by Blender's exporters, with names, materials and custom
 properties.
 
-Other programs cannot read the nodes of a look (looks.py), so looks are baked: Cycles writes the colors to a
-picture for each material. The export is made from temporary copies with the names of the objects; afterward
-the scene is as before.
+Other programs cannot read the nodes of a look (looks.py), so looks are baked (bake.py). The export is made
+from temporary copies with the names of the objects; afterward the scene is as before.
 """
 
 import contextlib
+import shutil
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
+import bmesh
 import bpy
-import numpy as np
 
 from ...core import InputRefused
 from ...core.base.atomic import Outputs, writable_target
 from ...core.base.formats import Format, by_ending
 from ..display import bodies
-from ..host import versions
-from ..objects import model_tree
-from ..project import library_rows, settings
-from ..shading import looks
+from ..objects import filled_beds, model_tree
+from .bake import Baking, pictures
+from .temporary_copies import copied, select
 
-_KEPT = (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.BLOCK, model_tree.PROPERTY)
-_SAMPLES = 2  # of a pixel
-_STEEPEST = 1.15  # radians between the faces of a part of a picture
-_GAP = 1 / 256  # between parts of a picture, of its width; half of it is filled from either side
+HULLS = (  # items of an enum
+    ("NONE", "None", "No collision meshes"),
+    ("EACH", "One for Each Object", "The convex hull of each object"),
+    ("WHOLE", "One for All", "One convex hull around all objects"),
+)
+_LEVELS = (0.3, 0.1)  # of the polygons, at levels of detail 1 and 2
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What a file has. size: of the pictures of looks, pixels; 0: materials have the color of their property.
+    kinds, layout: as of bake.Baking. has_levels: of detail, named _LOD0 to _LOD2. hulls: a key of HULLS,
+    meshes for collisions, named UCX_ as Unreal expects."""
+
+    size: int
+    kinds: tuple = ("COLOR",)
+    layout: str = "MATERIAL"
+    has_levels: bool = False
+    hulls: str = "NONE"
 
 
 def displayed(context):
-    """The objects of the model of the scene that are displayed and that other programs can show."""
+    """The objects of the model of the scene, and beds of filled meshes, that are displayed and that other
+    programs can show."""
     project = model_tree.model_collection(context.scene)
-    items = () if project is None else project.all_objects
+    items = [] if project is None else [*project.all_objects]
+    items += [obj for obj in filled_beds.of_scene(context.scene) if obj not in items]
     return [obj for obj in items if obj.type == "MESH" and obj.visible_get() and _shows_rock(obj)]
 
 
 def _shows_rock(obj):
-    is_part = obj.get(bodies.KIND, bodies.PLANE) != bodies.PLANE
+    is_part = obj.get(bodies.KIND, bodies.PLANE) != bodies.PLANE or filled_beds.BED in obj
     return (is_part or obj.get(model_tree.TAG) in model_tree.OBJECT_KINDS) and len(obj.data.polygons) > 0
 
 
-def write(context, items, path, size):
+def write(context, items, path, choices):
     """Writes mesh objects to a file of one of FORMATS, and what belongs to it beside it, all or nothing.
-
-    size: of the pictures of looks, pixels; 0: materials have the color of their property. Raises InputRefused
-    where this Blender cannot, OutputFailed.
-    """
+    choices: Choices. Raises InputRefused where this Blender cannot, OutputFailed."""
     file_format, path = by_ending(path, FORMATS, "scenes are not written as {}"), writable_target(path)
     _require_exporter(file_format.write)
     with tempfile.TemporaryDirectory() as place, Outputs() as outputs:
-        target = Path(place) / path.name
-        with _copies(context, items, target if size else None, size):
-            file_format.write(str(target))
-        for made in sorted(Path(place).iterdir()):
+        folder, target = Path(place), Path(place) / path.name
+        with copied(context, items) as copies:
+            if choices.size:
+                baking = Baking(choices.kinds, choices.layout, choices.size, folder, f"{path.stem}_")
+                baking.prepare(context.scene, copies)
+                if baking.steps:
+                    baking.fit(copies)
+                for step in baking.steps:
+                    baking.make(context, copies, step)
+                copies.made += baking.show(copies, folder, same_names=True)
+            shown = list(copies.items)
+            if choices.has_levels:
+                shown += _with_levels(copies)
+            shown += _with_hulls(copies, choices.hulls)
+            select(context.view_layer, shown)
+            with _pictures_in(folder, copies):
+                file_format.write(str(target))
+        for made in sorted(folder.iterdir()):
             if file_format.write is _write_gltf and made != target:
                 continue  # packed pictures
             with outputs.file(path.parent / made.name) as file:
                 file.write(made.read_bytes())
 
 
+@contextlib.contextmanager
+def _pictures_in(folder, copies):
+    """For a while the pictures of copies, which Bake Looks may have put elsewhere, are in a folder."""
+    before = []
+    try:
+        materials = {material for item in copies.items for material in item.data.materials}
+        for image in {node.image for material in materials for node in pictures(material)}:
+            file = Path(bpy.path.abspath(image.filepath))
+            if file.is_file() and file.parent != folder:
+                there = folder / file.name
+                there = there.with_stem(f"{len(before)}_{file.stem}") if there.exists() else there
+                shutil.copyfile(file, there)
+                before.append((image, image.filepath_raw))
+                image.filepath_raw = str(there)
+        yield
+    finally:
+        for image, path in before:
+            image.filepath_raw = path
+
+
+def _with_levels(copies):
+    """Copies become level of detail 0; returns the objects of the others, by Decimate."""
+    added = []
+    for item in list(copies.items):
+        name = item.name
+        item.name = f"{name}_LOD0"
+        for level, ratio in enumerate(_LEVELS, 1):
+            made = copies.add(f"{name}_LOD{level}", item.data.copy(), item.matrix_world)
+            decimate = made.modifiers.new("Decimate", "DECIMATE")
+            decimate.ratio = ratio
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            mesh = bpy.data.meshes.new_from_object(
+                made.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
+            )
+            made.modifiers.clear()
+            made.data = mesh
+            copies.made.append(mesh)
+            added.append(made)
+    return added
+
+
+def _with_hulls(copies, hulls):
+    """Objects that are convex hulls, named after those that they are of."""
+    parts = {"NONE": [], "EACH": [[item] for item in copies.items], "WHOLE": [copies.items]}[hulls]
+    added = []
+    for items in parts:
+        shape = bmesh.new()
+        to_first = items[0].matrix_world.inverted_safe()
+        for item in items:
+            begin = len(shape.verts)
+            shape.from_mesh(item.data)
+            shape.verts.ensure_lookup_table()
+            bmesh.ops.transform(shape, matrix=to_first @ item.matrix_world, verts=shape.verts[begin:])
+        bmesh.ops.delete(shape, geom=shape.edges, context="EDGES_FACES")
+        found = bmesh.ops.convex_hull(shape, input=shape.verts)
+        inside = {*found["geom_interior"], *found["geom_unused"]}.intersection(shape.verts)
+        bmesh.ops.delete(shape, geom=list(inside), context="VERTS")
+        name = f"UCX_{items[0].name}_00"
+        mesh = bpy.data.meshes.new(name)
+        shape.to_mesh(mesh)
+        shape.free()
+        added.append(copies.add(name, mesh, items[0].matrix_world))
+    return added
+
+
 def _require_exporter(export):
     """Before looks are baked, which takes a while."""
     if export is _write_gltf and "gltf" not in dir(bpy.ops.export_scene):
         raise InputRefused("Blender's add-on for glTF is off", advice="enable glTF 2.0 in the preferences")
+    if export is _write_fbx and "fbx" not in dir(bpy.ops.export_scene):
+        raise InputRefused("Blender's add-on for FBX is off", advice="enable FBX in the preferences")
     if export is _write_usd and not bpy.app.build_options.usd:
         raise InputRefused("this Blender cannot write USD", advice="use glTF, or Blender of blender.org")
 
 
 def _write_gltf(path):
+    options = bpy.ops.export_scene.gltf.get_rna_type().properties
+    # viewers multiply the colors of vertices with those of the material, which are the same
+    colors = {"export_colors": False} if "export_colors" in options else {"export_vertex_color": "NONE"}
     bpy.ops.export_scene.gltf(
-        filepath=path, export_format="GLB", use_selection=True, export_extras=True, check_existing=False
+        filepath=path,
+        export_format="GLB",
+        use_selection=True,
+        export_extras=True,
+        check_existing=False,
+        **colors,
     )
 
 
@@ -82,6 +185,17 @@ def _write_usd(path):
     )
     wanted = {name: value for name, value in wanted.items() if name in options}
     bpy.ops.wm.usd_export(filepath=path, selected_objects_only=True, check_existing=False, **wanted)
+
+
+def _write_fbx(path):
+    bpy.ops.export_scene.fbx(
+        filepath=path,
+        use_selection=True,
+        use_custom_props=True,
+        mesh_smooth_type="FACE",
+        path_mode="STRIP",
+        check_existing=False,
+    )
 
 
 def _write_obj(path):
@@ -101,176 +215,6 @@ FORMATS = (
     ),
     Format(".usdc", "USD", _OBJECTS, "For film and visualization; pictures are beside the file", _write_usd),
     Format(".usda", "USD as Text", _OBJECTS, "The same, as text", _write_usd),
+    Format(".fbx", "FBX", _OBJECTS, "For Unreal and Unity; pictures are beside the file", _write_fbx),
     Format(".obj", "Wavefront OBJ", _OBJECTS, "For other programs; no custom properties", _write_obj),
 )
-
-
-@contextlib.contextmanager
-def _copies(context, items, beside, size):
-    """Adds copies of some objects to the scene for a while; only the copies are selected, and they have the
-    names of the objects. beside: the path that the pictures of looks are named after, or None: none are
-    made."""
-    layer = context.view_layer
-    selected, active = list(context.selected_objects), layer.objects.active
-    collection = bpy.data.collections.new("RealModel export")
-    names, made = [], []
-    try:
-        context.scene.collection.children.link(collection)
-        depsgraph = context.evaluated_depsgraph_get()
-        shown = [(obj, obj.evaluated_get(depsgraph)) for obj in items]
-        new = [
-            bpy.data.meshes.new_from_object(seen, preserve_all_data_layers=True, depsgraph=depsgraph)
-            for _, seen in shown
-        ]
-        made += new
-        copies = [_copy(context.scene, obj, mesh, names) for obj, mesh in zip(items, new, strict=True)]
-        made += copies
-        for copy in copies:
-            collection.objects.link(copy)
-        layer.update()
-        if beside is not None:
-            _bake(context, copies, beside, size, names, made)
-        _select(layer, copies)
-        yield
-    finally:
-        bpy.data.batch_remove([collection, *made])
-        for datablock, name in reversed(names):
-            datablock.name = name
-        _select(layer, selected, active)
-
-
-def _take_name(datablock, names):
-    """The name of a datablock, which is free from now on; names of other files are no hindrance."""
-    name = datablock.name
-    if datablock.library is None:
-        names.append((datablock, name))
-        datablock.name = f"~{len(names)}"
-    return name
-
-
-def _copy(scene, obj, mesh, names):
-    """An object that shows the mesh as an object does, with its name and its custom properties."""
-    mesh.name = _take_name(obj.data, names)
-    copy = bpy.data.objects.new(_take_name(obj, names), mesh)
-    copy.matrix_world = obj.matrix_world
-    for key in obj.keys():  # noqa: SIM118 - objects of Blender are not iterable
-        if key in _KEPT or not key.startswith(model_tree.TAG):
-            copy[key] = obj[key]
-    row = library_rows.find(scene, obj.get(model_tree.PROPERTY))
-    if row is not None:
-        copy[f"{model_tree.TAG}_name"] = row.name
-        for key in ("rock", "age", "structure", "description"):
-            if getattr(row, key):
-                copy[f"{model_tree.TAG}_property_{key}"] = getattr(row, key)
-        for key in ("density", "porosity", "permeability"):
-            if settings.number(row, key):
-                copy[f"{model_tree.TAG}_property_{key}"] = settings.number(row, key)
-    return copy
-
-
-def _baked_slots(obj):
-    """The slots of an object whose material is a look to bake, where polygons have it."""
-    material_indices = np.empty(len(obj.data.polygons), np.int32)
-    obj.data.polygons.foreach_get("material_index", material_indices)
-    slots = [int(slot) for slot in np.unique(material_indices) if slot < len(obj.data.materials)]
-    return [slot for slot in slots if _is_baked(obj.data.materials[slot])]
-
-
-def _is_baked(material):
-    return material is not None and material.get(looks.KEY, "FLAT") != "FLAT"
-
-
-def _bake(context, copies, beside, size, names, made):
-    """Assigns to copies new materials with pictures of the looks. New data are appended to `made`."""
-    by_material = {}
-    for copy in copies:
-        for slot in _baked_slots(copy):
-            by_material.setdefault(copy.data.materials[slot], []).append((copy, slot))
-    if not by_material:
-        return
-    if not versions.cycles_available(context.scene):
-        raise InputRefused("this Blender has no Cycles, which bakes looks", advice="switch Bake Looks off")
-    baked = [copy for copy in copies if _baked_slots(copy)]
-    for copy in baked:
-        uvs = copy.data.uv_layers
-        while len(uvs):
-            uvs.remove(uvs[0])
-        uvs.new(name="UVMap")
-    pictures = {}
-    for material, users in by_material.items():
-        _unwrap(context, users)
-        new_material = material.copy()
-        made.append(new_material)
-        new_material.name = _take_name(material, names)
-        looks.level(new_material)
-        pictures[new_material] = image = bpy.data.images.new(new_material.name, size, size)
-        made.append(image)
-        node = new_material.node_tree.nodes.new("ShaderNodeTexImage")
-        node.image = image
-        new_material.node_tree.nodes.active = node
-        for copy, slot in users:
-            copy.data.materials[slot] = new_material
-    _select(context.view_layer, baked)
-    with _renderer(context.scene):
-        bpy.ops.object.bake(
-            type="DIFFUSE",
-            pass_filter={"COLOR"},
-            target="IMAGE_TEXTURES",
-            save_mode="INTERNAL",
-            margin=max(1, int(size * _GAP / 2)),
-            margin_type="EXTEND",  # neighboring faces may be in another picture
-            use_clear=True,
-            use_selected_to_active=False,
-        )
-    for number, (material, image) in enumerate(pictures.items()):
-        name = f"{beside.stem}_{number}_{bpy.path.clean_name(material.name)}.png"
-        image.filepath_raw = str(beside.with_name(name))
-        image.file_format = "PNG"
-        image.save()
-        looks.show_picture(material, image)
-
-
-def _unwrap(context, users):
-    """Unwraps the polygons of some slots of objects into one picture that they share. users: (object,
-    slot)."""
-    settings = context.scene.tool_settings
-    before = tuple(settings.mesh_select_mode)
-    settings.mesh_select_mode = (False, False, True)
-    _select(context.view_layer, [obj for obj, _ in users])
-    for obj, slot in users:
-        polygons = obj.data.polygons
-        material_indices = np.empty(len(polygons), np.int32)
-        polygons.foreach_get("material_index", material_indices)
-        polygons.foreach_set("hide", np.zeros(len(polygons), bool))
-        polygons.foreach_set("select", material_indices == slot)
-    bpy.ops.object.mode_set(mode="EDIT")
-    try:
-        bpy.ops.uv.smart_project(angle_limit=_STEEPEST, island_margin=_GAP)
-    finally:
-        bpy.ops.object.mode_set(mode="OBJECT")
-        settings.mesh_select_mode = before
-
-
-@contextlib.contextmanager
-def _renderer(scene):
-    """Cycles with few samples."""
-    engine, had_settings = scene.render.engine, "cycles" in scene.keys()  # noqa: SIM118
-    scene.render.engine = "CYCLES"
-    cycles = scene.cycles
-    before = cycles.samples, cycles.use_denoising
-    cycles.samples, cycles.use_denoising = _SAMPLES, False  # a build without a denoiser would bake nothing
-    try:
-        yield
-    finally:
-        cycles.samples, cycles.use_denoising = before
-        scene.render.engine = engine
-        if not had_settings:
-            scene.pop("cycles", None)
-
-
-def _select(layer, items, active=None):
-    for obj in layer.objects:
-        obj.select_set(False, view_layer=layer)
-    for obj in items:
-        obj.select_set(True, view_layer=layer)
-    layer.objects.active = active or (items[0] if items else None)

@@ -7,7 +7,7 @@ the model, so that it is continuous from block to block.
 Other programs should find the color of a material. Blender's exporters take the value of the shader's Base
 Color if they cannot interpret its links; the exporter of glTF takes one of two colors that are multiplied;
 that of USD would take the first attribute on the way, so attributes are in a group, which it does not search.
-Textures themselves have to be baked (scene_export.py).
+Textures themselves have to be baked (scene/bake.py).
 """
 
 import math
@@ -40,6 +40,16 @@ ITEMS = (
     *((key, look.label, says(key, look)) for key, look in LOOKS.items()),
 )
 UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
+OCCLUSION = "realmodel_occlusion"  # on the node group of a baked picture
+_GLTF = "glTF Material Output"
+_BETWEEN = {"NORMAL": "ShaderNodeNormalMap", "DISPLACEMENT": "ShaderNodeDisplacement"}
+_INPUTS = {  # that baked pictures go to
+    "COLOR": "Base Color",
+    "ROUGHNESS": "Roughness",
+    "NORMAL": "Color",
+    "OCCLUSION": "Occlusion",
+    "DISPLACEMENT": "Height",
+}
 SIZE = "Texture Size"  # the node that says how large a texture unit is
 _FLAT_LAMINAE = 0.03  # how many times longer than thick laminae are, inverted
 _GROOVE = 0.07  # texture units: half the width of a groove or a crack
@@ -81,24 +91,62 @@ def apply(material, look, scale, seed, diagonal):
     material[KEY] = look
 
 
-def level(material):
-    """Removes the bump mapping of a material that has a look."""
+def reduce(material, kind):
+    """Removes what a picture does not show from the shader of a material: it takes long to compute. kind: one
+    of scene.bake.KINDS."""
+    shown = {"COLOR": "Base Color", "ROUGHNESS": "Roughness", "NORMAL": "Normal"}
+    hidden = {*shown.values()} - {shown.get(kind)}
     for link in list(material.node_tree.links):
-        if link.to_socket.name == "Normal" and link.to_node.type == "BSDF_PRINCIPLED":
+        if link.to_node.type == "BSDF_PRINCIPLED" and link.to_socket.name in hidden:
             material.node_tree.links.remove(link)
 
 
-def show_picture(material, image):
-    """Replaces the nodes of a material that has a look by a baked picture of the look."""
+def show_pictures(material, images):
+    """Replaces the nodes of a material by baked pictures of its look. images: of some of the kinds of
+    scene.bake, by their keys."""
     tree = material.node_tree
+    heights = next((node.outputs[0].default_value for node in tree.nodes if node.name == SIZE), 0.0)
     tree.nodes.clear()
     nodes = _Nodes(tree)
     shader = _new_shader(nodes)
     shader.inputs["Base Color"].default_value = (1.0, 1.0, 1.0, 1.0)  # files multiply both
-    _set_gloss(shader, LOOKS[material[KEY]].roughness)
-    picture = nodes.new("ShaderNodeTexImage")
-    picture.image = image
-    nodes.link(picture.outputs["Color"], shader.inputs["Base Color"])
+    look = LOOKS.get(material.get(KEY))
+    _set_gloss(shader, 1.0 if look is None else look.roughness)
+    for kind, image in images.items():
+        node = nodes.new("ShaderNodeTexImage")
+        node.image = image
+        if kind == "OCCLUSION":
+            to = nodes.new("ShaderNodeGroup")
+            to.node_tree = group_once("ShaderNodeTree", _GLTF, OCCLUSION, _fill_occlusion_group)
+        elif kind in _BETWEEN:
+            to = nodes.new(_BETWEEN[kind])
+        else:
+            to = shader
+        nodes.link(node.outputs["Color"], to.inputs[_INPUTS[kind]])
+        if kind == "NORMAL":
+            nodes.link(to.outputs["Normal"], shader.inputs["Normal"])
+        elif kind == "DISPLACEMENT":
+            to.inputs["Scale"].default_value = 2.0 * heights
+            if "NORMAL" not in images:  # Cycles would count the relief twice
+                output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+                nodes.link(to.outputs[0], output.inputs["Displacement"])
+
+
+def _fill_occlusion_group(group):
+    """Where Blender's exporter of glTF looks for the picture: by the name of the group and of its input."""
+    versions.add_group_socket(group, "Occlusion", "NodeSocketFloat", (1.0,))
+
+
+def show_height(material):
+    """A material shines by the height of its relief: 0.5 is the mesh, 1 a texture unit above it."""
+    nodes = Nodes(material.node_tree)
+    bump = next((node for node in material.node_tree.nodes if node.type == "BUMP"), None)
+    height = bump.inputs["Height"].links[0].from_socket if bump and bump.inputs["Height"].is_linked else 0.0
+    shine = nodes.new("ShaderNodeEmission")
+    nodes.link(nodes.math("MULTIPLY_ADD", height, 0.5, 0.5), shine.inputs["Color"])
+    for node in material.node_tree.nodes:
+        if node.type == "OUTPUT_MATERIAL":
+            nodes.link(shine.outputs[0], node.inputs["Surface"])
 
 
 def _new_shader(nodes):

@@ -61,6 +61,7 @@ def put_on(item):
         modifier = item.modifiers.new(NAME, "NODES")
         modifier.node_group = group_once("GeometryNodeTree", NAME, KEY, _fill, _VERSION)
         versions.set_group_input(modifier, _SHOW_ROCKS, True)
+        item.realmodel_strata.is_shown = True
     return modifier
 
 
@@ -71,6 +72,7 @@ def take_off(item):
         return
     made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED)]
     item.modifiers.remove(modifier)
+    item.realmodel_strata.is_shown = False
     for obj in made:
         if obj is not None and obj.users == 0:
             bpy.data.meshes.remove(obj.data)  # and its object with it
@@ -116,18 +118,19 @@ def beds_of(item):
 
 def base_shape(item, matrix=None):
     """The shape of an object without erosion, filled_beds.FilledShape. Raises InputRefused."""
-    with _without_erosion(item) as depsgraph:
+    with without_erosion(item) as depsgraph:
         return filled_beds.FilledShape.of(item, depsgraph, matrix)
 
 
 def base_mesh(item):
     """A new mesh datablock of an object without erosion, with all attributes."""
-    with _without_erosion(item) as depsgraph:
+    with without_erosion(item) as depsgraph:
         return bpy.data.meshes.new_from_object(item.evaluated_get(depsgraph))
 
 
 @contextmanager
-def _without_erosion(item):
+def without_erosion(item):
+    """For a while an object is evaluated without erosion; yields the dependency graph."""
     modifier = modifier_of(item)
     was_shown = shows_erosion(item)
     if was_shown:

@@ -134,7 +134,7 @@ def _set(obj, values):
         for name in ("Strength", "Grass Slope", "Scree Slope"):
             versions.set_group_input(modifier, name, 0.0)
     if filled_beds.BED in obj:
-        versions.set_group_input(modifier, "Hardness", _hardness_of_bed(obj))
+        versions.set_group_input(modifier, "Hardness", hardness_of_bed(obj))
     obj.pop(HARDNESS, None)
 
 
@@ -194,7 +194,7 @@ def _values(values, thickness, unit):
     }
 
 
-def _hardness_of_bed(obj):
+def hardness_of_bed(obj):
     """That of the look of its rock."""
     names = (slot.material.get(looks.KEY) for slot in obj.material_slots if slot.material)
     return LOOKS[next((look for look in names if look in LOOKS), DEFAULT)].hardness

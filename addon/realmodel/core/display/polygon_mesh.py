@@ -447,7 +447,7 @@ def _triangles_of(
     )
     for number, operand in enumerate(operands):
         mask = source == number
-        of.weights[mask] = _barycentric(
+        of.weights[mask] = barycentric(
             intersection.vertices[of.triangles[mask]], operand.vertices[operand.triangles[origin[mask]]]
         )
         polygon[mask] = operand.triangle_polygons[origin[mask]]
@@ -568,9 +568,9 @@ def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -
     return (total if values.dtype.kind == "f" else np.rint(total)).astype(values.dtype)
 
 
-def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(M, 3, 3): the weights [:, i] of the corners of triangles (M, 3, 3) at places [:, i]; at a corner they
-    are exactly 1, 0, 0."""
+def barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(M, N, 3): the weights [:, i] of the corners of triangles (M, 3, 3) at places [:, i] of (M, N, 3); at a
+    corner they are exactly 1, 0, 0."""
     a, b, c = triangles.transpose(1, 0, 2)
     normal = np.cross(b - a, c - a)
     axis = np.abs(normal).argmax(axis=1)
@@ -584,8 +584,8 @@ def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
     a, b, c = seen(a), seen(b), seen(c)
-    weights = np.empty((len(places), 3, 3))
-    for corner in range(3):
+    weights = np.empty((*places.shape[:2], 3))
+    for corner in range(places.shape[1]):
         p = seen(places[:, corner])
         parts = np.stack([area(p, b, c), area(p, c, a), area(p, a, b)], axis=1)
         whole = parts.sum(axis=1, keepdims=True)
