@@ -24,7 +24,9 @@ def of_scene(scene):
 
 def shown(scene):
     """The beds, and the meshes with strata that are not hidden behind theirs."""
-    has_strata = (obj for obj in scene.objects if obj.type == "MESH" and obj.realmodel_strata.is_shown)
+    has_strata = (  # to read the values of an object stores them in it: only where there is a modifier
+        obj for obj in scene.objects if obj.type == "MESH" and obj.modifiers and obj.realmodel_strata.is_shown
+    )
     return [*of_scene(scene), *(obj for obj in has_strata if not obj.hide_render)]
 
 

@@ -7,7 +7,7 @@ where they stand there, its world, its renderer; or what was added here before, 
 
 import numpy as np
 
-from ..objects import meshes, model_tree
+from ..objects import filled_beds, meshes, model_tree
 from . import picture
 
 _STARTUP = {  # name, location and rotation of what the startup file has
@@ -39,9 +39,11 @@ def is_free(scene):
 def is_empty(scene):
     """Whether a scene has no light, camera, world, renderer, view transform or rendered object but those of
     RealModel and of the startup file."""
-    sources = {row.object for rock in scene.realmodel.rocks for row in rock.surfaces}
+    ours = {row.object for rock in scene.realmodel.rocks for row in rock.surfaces}
+    ours.update(filled_beds.shown(scene))
     for obj in scene.objects:
-        is_ours = obj in sources or any(key.startswith(model_tree.TAG) for key, _ in obj.items())
+        keys = {key for key, _ in obj.items()} - {"realmodel_strata"}  # any object may have the last one
+        is_ours = obj in ours or any(key.startswith(model_tree.TAG) for key in keys)
         if is_ours or obj.hide_render or obj.type in _NOT_RENDERED:
             continue
         if not (_is_startup_cube(obj) if obj.type not in ("CAMERA", "LIGHT") else _is_of_startup(obj)):
