@@ -21,7 +21,7 @@ from gallery_picture import blocks_of, sample
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "guide"
-SIZE = (880, 560)
+SIZE = (440, 280)
 RAYS, SECONDS = 8, 12.0  # of a pixel, and of a frame at most
 STEP, REST = 170, 1200  # milliseconds: of a moving picture, and where it stands
 MOST = 1_500_000  # bytes of a file

@@ -305,6 +305,8 @@ class REALMODEL_OT_strata_rock_add(Reporting, bpy.types.Operator):
 
 def _is_shape_of(obj, bed):
     """Whether an object is the mesh that a bed was made of, or the bed itself is that mesh."""
+    if obj.type != "MESH" or strata_modifier.modifier_of(obj) is None:
+        return False
     collection = obj.realmodel_strata.beds_in
     return collection is not None and bed is not None and (obj == bed or bed.name in collection.objects)
 

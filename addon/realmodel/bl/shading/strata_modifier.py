@@ -93,7 +93,19 @@ def changed(values, _context):
 
 
 def set_values(item, values):
-    """Sets several values, given by their names, at once. Raises RealModelError."""
+    """Sets several values, given by their names, at once. Raises RealModelError: then they stay as they
+    are."""
+    before = {name: getattr(item.realmodel_strata, name) for name in values}
+    _assign(item, values)
+    if modifier_of(item) is not None:
+        try:
+            update(item)
+        except RealModelError:
+            _assign(item, before)
+            raise
+
+
+def _assign(item, values):
     global _is_changing
     _is_changing = True
     try:
@@ -101,8 +113,6 @@ def set_values(item, values):
             setattr(item.realmodel_strata, name, value)
     finally:
         _is_changing = False
-    if modifier_of(item) is not None:
-        update(item)
 
 
 def beds_of(item):
