@@ -217,7 +217,9 @@ class RealModelStrata(bpy.types.PropertyGroup):
     problem: why the last change had no effect. is_shown: whether the object has the modifier Strata."""
 
     __annotations__ = {
-        **{name: with_update(prop, strata_modifier.changed) for name, prop in VALUES.items()},
+        **VALUES,
+        **{name: with_update(VALUES[name], strata_modifier.changed) for name in strata_modifier.LAYING},
+        "stones": with_update(VALUES["stones"], strata_modifier.stones_changed),
         "beds_in": PointerProperty(type=bpy.types.Collection, options={"HIDDEN"}),
         "problem": StringProperty(options={"HIDDEN"}),
         "is_shown": BoolProperty(options={"HIDDEN"}),

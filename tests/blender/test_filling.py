@@ -198,6 +198,11 @@ class Filling(PanelCase):
         item.data.update()
         after = numbers_of(evaluated(item))
         self.assertEqual(np.flatnonzero(before != after).tolist(), [] if before[top] == after[top] else [top])
+        beds, _ = strata_modifier.beds_of(item)
+        item.realmodel_strata.faces, item.realmodel_strata.scree = 5000, 0.5
+        ops.strata_erode()
+        self.assertEqual(strata_modifier.beds_of(item)[0].to_json(), beds.to_json())
+        strata_modifier.show_eroded(item, None)
         ops.strata_fit()
         self.assertGreater((numbers_of(evaluated(item)) != after).mean(), 0.5)
 

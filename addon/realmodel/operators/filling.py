@@ -11,6 +11,7 @@ from ..bl.jobs.fill_job import ErosionJob, FillJob
 from ..bl.objects import meshes, placing
 from ..bl.objects.boolean_job import VOLUME
 from ..bl.shading import strata_modifier, strata_presets
+from ..bl.shading.strata_modifier import SCREE
 from ..bl.shading.strata_presets import PRESETS, SHAPES
 from ..core import RealModelError, rock_shape
 from ..core.base.errors import counted
@@ -30,7 +31,7 @@ def a_mesh(context):
 
 def some_strata(context):
     obj = context.active_object
-    if obj is None or obj.type != "MESH" or strata_modifier.modifier_of(obj) is None:
+    if obj is None or obj.type != "MESH" or strata_modifier.modifier_of(obj) is None or SCREE in obj:
         return "the active object has no strata; choose a preset first (Strata, Beds)"
     return None
 
@@ -196,7 +197,8 @@ class REALMODEL_OT_strata_preset(Reporting, bpy.types.Operator):
     def act(self, context):
         obj = context.active_object
         strata_modifier.set_values(obj, strata_presets.values(self.preset))
-        strata_modifier.update(obj)
+        if strata_modifier.modifier_of(obj) is None:
+            strata_modifier.update(obj)
 
 
 class REALMODEL_OT_strata_fit(Reporting, bpy.types.Operator):
@@ -297,10 +299,15 @@ class REALMODEL_OT_strata_rock_add(Reporting, bpy.types.Operator):
         placing.select([obj])
         values = strata_presets.values(given["preset"]) | {k: v for k, v in given.items() if k != "preset"}
         erosion = {"erosion": self.strength > 0, "strength": self.strength, "faces": self.faces}
-        strata_modifier.set_values(obj, {**values, **erosion, "seed": self.seed})
-        strata_modifier.update(obj)
-        if self.strength > 0:
-            ErosionJob(context.scene, obj).run()
+        try:
+            strata_modifier.set_values(obj, {**values, **erosion, "seed": self.seed})
+            strata_modifier.update(obj)
+            if self.strength > 0:
+                ErosionJob(context.scene, obj).run()
+        except RealModelError:
+            strata_modifier.take_off(obj)
+            bpy.data.meshes.remove(mesh)  # and its object with it
+            raise
 
 
 def _is_shape_of(obj, bed):

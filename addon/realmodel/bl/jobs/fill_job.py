@@ -153,10 +153,9 @@ class FillJob(_StrataJob):
     def _emptied(self, obj):
         """The collection of the object's beds, without those that were there."""
         collection = obj.realmodel_strata.beds_in
-        if collection is None:
-            where = (
-                obj.users_collection[0] if obj.users_collection else bpy.data.scenes[self._scene].collection
-            )
+        scene = bpy.data.scenes[self._scene]
+        if collection is None or collection not in scene.collection.children_recursive:
+            where = obj.users_collection[0] if obj.users_collection else scene.collection
             collection = bpy.data.collections.new(f"{obj.name} Strata")
             where.children.link(collection)
             obj.realmodel_strata.beds_in = collection

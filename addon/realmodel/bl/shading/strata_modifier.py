@@ -28,9 +28,7 @@ from . import looks, scatter, strata_values
 NAME = "Strata"
 KEY = "realmodel_strata_group"  # on the group: its version
 ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from 0
-SCREE = (
-    "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree, not of a bed; on its object
-)
+SCREE = "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree; on the object of scree
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
 _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
@@ -45,6 +43,14 @@ _FAR = 1e30  # the elevation of an unconformity where there is none
 _WHOLE = ("x", "y", "z", "shift", "lean", "middle", "slope", "across", "wave", "fault_across", "levels")
 _OF_POINTS = ("bed", "rock", "base", "top", "hardness", "throw")
 
+# values that lay the beds anew; the others say what Erode and Make Solid do
+LAYING = frozenset(
+    (
+        *("palette", "rock_looks", "seed", "beds", "thickness", "variation", "dip", "dip_direction"),
+        *("fold_amplitude", "fold_wavelength", "fold_axis", "axial_dip", "faults", "throw", "fault_strike"),
+        *("unconformity", "base_depth", "close_holes"),
+    )
+)
 _is_changing = False  # values are being set in turn: the last one updates
 
 
@@ -79,7 +85,7 @@ def take_off(item):
 
 
 def changed(values, _context):
-    """A value of an object's strata was changed: by hand or by a script."""
+    """A value of LAYING was changed: by hand or by a script."""
     item = values.id_data
     if _is_changing or modifier_of(item) is None:
         return
@@ -97,12 +103,19 @@ def set_values(item, values):
     are."""
     before = {name: getattr(item.realmodel_strata, name) for name in values}
     _assign(item, values)
-    if modifier_of(item) is not None:
+    if modifier_of(item) is not None and not LAYING.isdisjoint(values):
         try:
             update(item)
         except RealModelError:
             _assign(item, before)
             raise
+
+
+def stones_changed(values, _context):
+    """The density of stones was changed."""
+    modifier = modifier_of(values.id_data)
+    if modifier is not None:
+        versions.set_group_input(modifier, _STONES, values.stones)
 
 
 def _assign(item, values):
@@ -197,6 +210,8 @@ def put_scree_on(heap, item):
 
 def is_made(item):
     """Whether an object was made by filling another."""
+    if item.type != "MESH":
+        return False
     return filled_beds.BED in item or SCREE in item or filled_beds.BED in item.data.attributes
 
 
