@@ -17,6 +17,7 @@ from .bl.objects import viewports
 from .bl.overlay import rendered
 from .bl.project import settings
 from .bl.scene import live, migration, quality, region_size
+from .bl.shading import strata_modifier
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
 _evaluated = caches.new()  # by the name of a scene: the names of objects and data that Blender evaluated
@@ -101,6 +102,9 @@ def _take_undone():
 @persistent
 def _changed(scene, depsgraph):
     live.evaluate_sculpted(scene, depsgraph)
+    item = depsgraph.view_layer.objects.active
+    if item is not None and item.mode in strata_modifier.MODES and strata_modifier.shows_erosion(item):
+        afterwards.call(strata_modifier.show_edited, item.name)
     names = display.evaluated(depsgraph)
     if names and not live.is_at_work():
         _evaluated.setdefault(scene.name, set()).update(names)

@@ -275,6 +275,12 @@ class Filling(PanelCase):
         self.assertAlmostEqual(sum(abs(volume(bed.data)) for bed in beds) / left, 1.0, places=4)
         ops.strata_edit()
         self.assertFalse(strata_modifier.shows_erosion(item))
+        ops.strata_erode()
+        self.assertTrue(strata_modifier.shows_erosion(item))
+        bpy.ops.object.mode_set(mode="SCULPT")
+        bpy.context.view_layer.update()
+        self.assertFalse(strata_modifier.shows_erosion(item), "strokes change the mesh itself")
+        bpy.ops.object.mode_set(mode="OBJECT")
 
     def test_rocks_of_the_add_menu(self):
         for kind in strata_presets.SHAPES:

@@ -43,6 +43,7 @@ _FAR = 1e30  # the elevation of an unconformity where there is none
 _WHOLE = ("x", "y", "z", "shift", "lean", "middle", "slope", "across", "wave", "fault_across", "levels")
 _OF_POINTS = ("bed", "rock", "base", "top", "hardness", "throw")
 
+MODES = ("EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT")  # that change the mesh
 # values that lay the beds anew; the others say what Erode and Make Solid do
 LAYING = frozenset(
     (
@@ -234,6 +235,13 @@ def show_eroded(item, mesh):
     versions.set_group_input(modifier, _SHOW_ERODED, mesh is not None)
     item.update_tag()
     viewports.redraw()
+
+
+def show_edited(name):
+    """Shows the mesh of an object that is being edited, without erosion: it is what strokes change."""
+    item = bpy.data.objects.get(name)
+    if item is not None and shows_erosion(item):
+        show_eroded(item, None)
 
 
 def shows_erosion(item):
