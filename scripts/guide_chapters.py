@@ -319,6 +319,7 @@ WITH_MANY_PANELS = (  # with a longer sidebar
     features.residuals,
     features.misfits,
     features.ensemble,
+    features.strata_tab,
 )
 OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures, features.tiles)  # of the viewport alone
 AS_FOUND = (start, window)  # with panels open or closed as users find them

@@ -18,6 +18,7 @@ from guide_window import (
     keep,
     keep_below,
     labeled,
+    open_tab,
     place_in_view,
     settled,
     to_the_end,
@@ -220,6 +221,20 @@ def filling(walk):
     walk.key("ESC")
     yield lambda: not bpy.data.objects[item.name].modifiers
     yield walk.redrawn(3)
+
+
+def strata_tab(walk):
+    """The tab Strata beside an arch that it has made."""
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.strata_rock_add(kind="ARCH", faces=300_000)
+    item = bpy.context.active_object
+    item.select_set(False)
+    yield from open_tab(walk, "strata_shape")
+    fill_view(walk, [item], 0.95, azimuth=math.radians(155.0))
+    yield from keep(walk, "strata_tab")
+    yield from open_tab(walk)
 
 
 def meshing(walk):

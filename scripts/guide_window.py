@@ -26,10 +26,12 @@ def open_panels(are_as_found):
         cls.bl_options = options - (set() if are_as_found else {"DEFAULT_CLOSED"})
 
 
-def open_tab(walk):
-    """Opens the tab RealModel of the sidebar; the names of the tabs stand at its right border."""
+def open_tab(walk, first="start"):
+    """Opens the tab of the sidebar that begins with a panel; the names of tabs stand at its right border."""
+    import bpy
+
     drawn = []
-    panel = next(cls for cls in TAB if cls.__name__ == "REALMODEL_PT_start")
+    panel = getattr(bpy.types, f"REALMODEL_PT_{first}")
     before = panel.draw
 
     def draw(self, context):
@@ -45,7 +47,7 @@ def open_tab(walk):
             break
     panel.draw = before
     if not drawn:
-        raise AssertionError("the tab RealModel was not found")
+        raise AssertionError(f"the tab {panel.bl_category} was not found")
     walk.over_viewport()
     yield walk.redrawn()
 

@@ -64,7 +64,7 @@ def _heaped(
     seed: int,
 ) -> np.ndarray:
     """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls."""
-    highest, lowest = ground, ground
+    highest, lowest = ground, np.where(is_ground, ground, -math.inf)  # nor beside the end of the rock
     for _ in range(_AROUND):
         highest = _greatest(highest, 0.0)
     for _ in range(_BEFORE):
