@@ -28,7 +28,7 @@ from realmodel.core.filling import (
     lay_beds,
     scree_within,
 )
-from realmodel.core.filling.erosion import Lattice, winding
+from realmodel.core.filling.erosion import cubic_lattice, winding
 from solids import box, moved, together, torus, volume
 from test_filling import ball
 
@@ -126,7 +126,7 @@ def test_the_same_for_any_number_of_threads():
 def test_winding_numbers_of_nodes_on_edges_and_corners():
     solid = together(box((0, 0, 0), (4, 4, 4)), moved(box((0, 0, 0), (1, 1, 1)), (6, 1, 1)))
     corners = solid[0][solid[1]]
-    lattice = Lattice(np.array([-1.0, -1.0, -0.5]), 1.0, (10, 7, 7))
+    lattice = cubic_lattice(np.array([-1.0, -1.0, -0.5]), 1.0, np.array([10, 7, 7]))
     around = winding(lattice, corners)
     assert set(np.unique(around)) == {0, 1}
     # a node above an edge counts as a little farther to the right and up

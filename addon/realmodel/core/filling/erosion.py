@@ -21,6 +21,7 @@ from ..base.algebra import cos, dot, exp, ranks_in_runs, sin
 from ..base.errors import InputRefused, UsageError
 from ..base.triangles import cross, edges_of
 from ..base.work import Work, native_module
+from ..fields.lattice import Lattice
 from ..structures.shapes.continued import connected
 from .beds import Beds
 from .noise import chance, fractal, noise
@@ -65,30 +66,30 @@ class DifferentialErosion:
                 raise UsageError(f"{name} must be from {low:g} to {high:g}, not {value!r}")
 
 
-@dataclass(frozen=True, eq=False)
-class Lattice:
-    """Nodes at origin + spacing * (i, j, k)."""
+def cubic_lattice(origin: np.ndarray, spacing: float, counts: np.ndarray) -> Lattice:
+    """Nodes (i, j, k) at origin + spacing * (i, j, k)."""
+    x, y, z = origin.tolist()
+    nx, ny, nz = counts.tolist()
+    return Lattice((x, y, z), (spacing, spacing, spacing), (nx, ny, nz))
 
-    origin: np.ndarray
-    spacing: float
-    counts: tuple[int, int, int]
 
-    @staticmethod
-    def around(vertices: np.ndarray, corners: np.ndarray, faces: int) -> Lattice:
-        low, high = vertices.min(axis=0), vertices.max(axis=0)
-        spacing = math.sqrt(_OF_AREA * float(_areas(corners).sum()) / faces)
-        while True:
-            counts = np.ceil((high - low) / spacing).astype(int) + 2 * _MARGIN + 1
-            if counts.prod() <= _MOST_NODES:
-                break
-            spacing *= 1.02
-        # so that no plane of nodes lies in a face that is level or upright
-        offset = spacing * (_MARGIN - np.array([0.313, 0.421, 0.367]))
-        return Lattice(low - offset, spacing, tuple(counts.tolist()))
+def lattice_around(vertices: np.ndarray, corners: np.ndarray, faces: int) -> Lattice:
+    """A lattice around a mesh, so fine that a level set like it has about so many faces."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    spacing = math.sqrt(_OF_AREA * float(_areas(corners).sum()) / faces)
+    while True:
+        counts = np.ceil((high - low) / spacing).astype(int) + 2 * _MARGIN + 1
+        if counts.prod() <= _MOST_NODES:
+            break
+        spacing *= 1.02
+    # so that no plane of nodes lies in a face that is level or upright
+    offset = spacing * (_MARGIN - np.array([0.313, 0.421, 0.367]))
+    return cubic_lattice(low - offset, spacing, counts)
 
-    def points(self, index: np.ndarray) -> np.ndarray:
-        """(N, 3) where nodes (N, 3) are."""
-        return self.origin + self.spacing * index
+
+def _points(lattice: Lattice, index: np.ndarray) -> np.ndarray:
+    """(N, 3) where nodes (N, 3) are."""
+    return np.array(lattice.origin) + lattice.spacing[0] * index
 
 
 def kept_of(vertices: np.ndarray, triangles: np.ndarray, count: int) -> np.ndarray:
@@ -112,7 +113,7 @@ def eroded_within(
     if kept.all():
         return mesh
     with work.phase(0.0, 0.1, "finding the inside"):
-        lattice = Lattice.around(vertices, corners, erosion.faces)
+        lattice = lattice_around(vertices, corners, erosion.faces)
         inside = winding(lattice, corners) != 0
     if not inside.any():
         raise InputRefused("it holds no volume that erosion could see", advice="choose more faces")
@@ -141,8 +142,8 @@ def winding(lattice: Lattice, corners: np.ndarray) -> np.ndarray:
     """(nx, ny, nz) int8: how often the mesh goes around each node, by the triangles that the vertical line
     through it crosses. Decisions in plan are exact; a node above an edge counts as beside it, in the sense of
     a shift by (e, e * e)."""
-    counts, spacing = np.array(lattice.counts), lattice.spacing
-    plan = (corners[:, :, :2] - lattice.origin[:2]) / spacing
+    origin, spacing, counts = np.array(lattice.origin), lattice.spacing[0], np.array(lattice.counts)
+    plan = (corners[:, :, :2] - origin[:2]) / spacing
     low = np.maximum(np.ceil(plan.min(axis=1)).astype(int) - 1, 0)
     high = np.minimum(np.floor(plan.max(axis=1)).astype(int) + 1, counts[:2] - 1)
     wide = np.maximum(high - low + 1, 0)
@@ -152,14 +153,14 @@ def winding(lattice: Lattice, corners: np.ndarray) -> np.ndarray:
     for triangles in np.split(np.arange(len(corners)), np.flatnonzero(np.diff(chunk)) + 1):
         of, rank = np.repeat(triangles, columns[triangles]), ranks_in_runs(columns[triangles])
         i, j = low[of, 0] + rank % wide[of, 0], low[of, 1] + rank // wide[of, 0]
-        places = lattice.origin[:2] + spacing * np.column_stack([i, j])
+        places = origin[:2] + spacing * np.column_stack([i, j])
         a, b, c = corners[of].transpose(1, 0, 2)
         first = _turns(a, b, places)
         hit = (first == _turns(b, c, places)) & (first == _turns(c, a, places)) & (first != 0)
         a, b, c, places, i, j = a[hit], b[hit], c[hit], places[hit], i[hit], j[hit]
         normal = cross(b - a, c - a)
         z = a[:, 2] - ((places - a[:, :2]) * normal[:, :2]).sum(axis=1) / normal[:, 2]
-        k = np.maximum(np.ceil((z - lattice.origin[2]) / spacing).astype(int), 0)
+        k = np.maximum(np.ceil((z - origin[2]) / spacing).astype(int), 0)
         below = k < counts[2]
         np.add.at(change, (i[below], j[below], k[below]), -first[hit][below])
     return np.cumsum(change, axis=2, dtype=np.int8)
@@ -189,12 +190,12 @@ class _Values:
 def _distances(
     work: Work, lattice: Lattice, corners: np.ndarray, kept: np.ndarray, inside: np.ndarray, deepest: float
 ) -> _Values:
-    spacing = lattice.spacing
+    spacing = lattice.spacing[0]
     border = _beside(inside)
     near = border | (_widened(border, math.ceil(deepest / spacing) + 1) & inside)
     index = np.argwhere(near)
     is_inside = inside[near]
-    points = lattice.points(index)
+    points = _points(lattice, index)
     with work.phase(0.1, 0.4, "measuring distances"):
         reach = deepest + 2.0 * spacing
         eroding = _away(work, corners[~kept], points, reach)
@@ -237,7 +238,7 @@ def _widened(found: np.ndarray, by: int) -> np.ndarray:
 
 def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None:
     """Sets the field to that of what is left."""
-    inward, spacing = values.inward, lattice.spacing
+    inward, spacing = values.inward, lattice.spacing[0]
     most = _thickness(lattice, values, math.ceil(depth.deepest / spacing))
     most *= _LEFT
     chosen = np.flatnonzero((inward > 0) & (inward < np.minimum(most, depth.deepest) + spacing))
@@ -246,7 +247,7 @@ def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None
     with work.phase(0.4, 0.9, "eroding"):
         for begin in range(0, len(chosen), _CHUNK):
             rows = slice(begin, begin + _CHUNK)
-            points = lattice.points(values.index[chosen[rows]])
+            points = _points(lattice, values.index[chosen[rows]])
             deep[tuple(axis[rows] for axis in at)] = depth.at(points)
             work.step(begin / len(chosen))
     known[at] = 1.0
@@ -299,7 +300,7 @@ def _blurred(field: np.ndarray) -> np.ndarray:
 def meshed(work: Work, lattice: Lattice, field: np.ndarray) -> Mesh:
     """The boundary of where a field (nx, ny, nz) is negative, without small parts that are loose."""
     native = native_module()
-    of_native = (tuple(lattice.origin.tolist()), (lattice.spacing,) * 3, lattice.counts)
+    of_native = (lattice.origin, lattice.spacing, lattice.counts)
     values = np.ascontiguousarray(field.transpose(2, 1, 0)).ravel()
     level = np.zeros(1)
     values = native.moved_onto_levels(of_native, values, level)

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.algebra import hypot
 from ..base.errors import InputRefused
 from ..base.work import Work
-from .erosion import Lattice, Mesh, meshed, winding
+from .erosion import Mesh, lattice_around, meshed, winding
 from .noise import fractal
 
 REPOSE = 34.0  # degrees: of angular stones (Carson 1977, "Angles of repose, angles of shearing resistance and
@@ -32,9 +32,9 @@ def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int,
     vertices, triangles = mesh
     corners = np.ascontiguousarray(vertices[triangles])
     with work.phase(0.0, 0.5, "finding the ground"):
-        lattice = Lattice.around(vertices, corners, faces)
+        lattice = lattice_around(vertices, corners, faces)
         inside = winding(lattice, corners) != 0
-    spacing, levels = lattice.spacing, np.arange(lattice.counts[2])
+    spacing, levels = lattice.spacing[0], np.arange(lattice.counts[2])
     top = np.where(inside, levels, -1).max(axis=2)
     is_ground = top >= 0
     ground = lattice.origin[2] + spacing * (top + 0.5)

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.algebra import atan2, cos, hypot, norm, sin
 from ..base.errors import UsageError
 from ..base.work import Work
-from .erosion import Lattice, Mesh, meshed
+from .erosion import Mesh, cubic_lattice, meshed
 from .noise import chance, fractal
 
 _ACROSS = 72  # nodes of the lattice along the longest side
@@ -29,7 +29,7 @@ def rock_shape(kind: str, size: float = 1.0, seed: int = 0) -> Mesh:
 
     >>> vertices, triangles = rock_shape("arch", size=20.0, seed=4)
     >>> round(float(vertices[:, 0].max() - vertices[:, 0].min()))
-    18
+    20
     """
     if kind not in SHAPES:
         raise UsageError(f"kind must be one of {', '.join(SHAPES)}, not {kind!r}")
@@ -40,7 +40,7 @@ def rock_shape(kind: str, size: float = 1.0, seed: int = 0) -> Mesh:
     sides = np.array([box[0], box[1], box[2] + _GROUND])
     counts = np.round(sides / spacing).astype(int) + 2 * _PAD + 1
     origin = -spacing * np.array([0.5 * (counts[0] - 1), 0.5 * (counts[1] - 1), _PAD])
-    lattice = Lattice(origin, spacing, tuple(counts.tolist()))
+    lattice = cubic_lattice(origin, spacing, counts)
     x, y, z = np.ix_(*(origin[axis] + spacing * np.arange(counts[axis]) for axis in range(3)))
     bounds = np.minimum(0.5 * box[0] - np.abs(x), 0.5 * box[1] - np.abs(y))
     inside = np.minimum(field(x, y, z - _GROUND, seed), np.minimum(bounds, z))
