@@ -267,22 +267,22 @@ def _thickness(lattice: Lattice, values: _Values, by: int) -> np.ndarray:
     inward = np.zeros(lattice.counts, np.float32)
     inward[tuple(values.index.T)] = values.inward
     for axis in range(3):
-        width = 1
-        while width < by + 1:  # the greatest of so many from each node on, then of those around it
-            step = min(width, by + 1 - width)
-            inward = _at_least(inward, axis, step)
-            width += step
-        inward = np.maximum(inward, np.roll(inward, by, axis))
+        inward = np.maximum(
+            _onward(inward, axis, by), np.flip(_onward(np.flip(inward, axis), axis, by), axis)
+        )
     return inward[tuple(values.index.T)].astype(float)
 
 
-def _at_least(field: np.ndarray, axis: int, step: int) -> np.ndarray:
-    """The greater of the value at each node and of that some steps on."""
-    result = field.copy()
-    here = tuple(slice(None, -step) if a == axis else slice(None) for a in range(3))
-    there = tuple(slice(step, None) if a == axis else slice(None) for a in range(3))
-    np.maximum(field[here], field[there], out=result[here])
-    return result
+def _onward(field: np.ndarray, axis: int, by: int) -> np.ndarray:
+    """The greatest of the values at each node and so many after it along an axis."""
+    field, width = field.copy(), 1
+    while width < by + 1:
+        step = min(width, by + 1 - width)
+        here = tuple(slice(None, -step) if a == axis else slice(None) for a in range(3))
+        there = tuple(slice(step, None) if a == axis else slice(None) for a in range(3))
+        field[here] = np.maximum(field[here], field[there])
+        width += step
+    return field
 
 
 def _blurred(field: np.ndarray) -> np.ndarray:
