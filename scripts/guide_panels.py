@@ -36,7 +36,7 @@ def shown(context, name):
     import recording_layout
 
     if name == START:
-        drawing = recording_layout.draw_tab(context)
+        drawing = recording_layout.draw_tab(context, "RealModel")
     else:
         drawing = recording_layout.Drawing()
         for part in (name, *PARTS.get(name, ())):

@@ -163,11 +163,12 @@ def draw(cls, context, drawing):
             getattr(_Self(cls, layout=Layout(drawing, context)), name)(context)
 
 
-def draw_tab(context):
-    """Draws all panels of the tab that are shown now, unfolded. Returns the Drawing."""
+def draw_tab(context, tab=None):
+    """Draws all panels of a tab of the sidebar, or of all tabs, that are shown now, unfolded. Returns the
+    Drawing."""
     drawing, shown = Drawing(), set()
     panels = [cls for cls in bpy.types.Panel.__subclasses__() if cls.__module__.startswith("realmodel")]
-    panels = [cls for cls in panels if cls.is_registered]
+    panels = [cls for cls in panels if cls.is_registered and tab in (None, getattr(cls, "bl_category", None))]
     panels.sort(key=lambda cls: hasattr(cls, "bl_parent_id"))
     for cls in panels:
         parent = getattr(cls, "bl_parent_id", None)

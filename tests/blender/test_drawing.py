@@ -8,6 +8,7 @@ from unittest import mock
 import bpy
 import numpy as np
 from blender_state import empty_file, inventory
+from boolean_case import ball
 from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
 from realmodel.bl.display import ensembles
@@ -312,6 +313,9 @@ class States(PanelCase):
         problem.kind, problem.hole, problem.action = "gap", "B1", "repaired"
         self.model.proposal.add().hole = "B1"
         self.model.active_reason = 0
+        drawn |= self.draw().operators
+        select(ball("Rock", n=8))
+        ops.strata_preset(preset="CLIFF")
         drawn |= self.draw().operators
         drawn |= drawn_preferences().operators
         known = {

@@ -18,7 +18,7 @@ REPOSE = 34.0  # degrees: of angular stones (Carson 1977, "Angles of repose, ang
 _STEEP = 1.5  # a step of the ground by so many times the spacing is a wall
 _SHARE = 0.35  # of the height of a wall: that of the scree at its foot
 _AROUND = 3  # spacings: within them the ground rises by the height of the wall that supplies scree
-_BEFORE = 10  # spacings: so wide is the ground before a wall at which scree can lie
+_BEFORE = 0.07  # of the width of the rock: that of the ground before a wall at which scree can lie
 _MOST = 0.09  # of the width of the rock: the height of scree at amount 1
 _THIN = 0.4  # spacings: thinner scree is not seen
 
@@ -67,10 +67,11 @@ def _heaped(
     highest, lowest = ground, np.where(is_ground, ground, -math.inf)  # nor beside the end of the rock
     for _ in range(_AROUND):
         highest = _greatest(highest, 0.0)
-    for _ in range(_BEFORE):
+    before = max(round(_BEFORE * max(ground.shape)), 2)
+    for _ in range(before):
         lowest = -_greatest(-lowest, 0.0)
     is_wall = _greatest(ground, 0.0) - ground > _STEEP * spacing
-    is_foot = is_wall & is_ground & (ground - lowest < _BEFORE * slope * spacing)  # no ledge high in a wall
+    is_foot = is_wall & is_ground & (ground - lowest < before * slope * spacing)  # no ledge high in a wall
     places = np.stack(np.meshgrid(*map(np.arange, ground.shape), indexing="ij"), axis=-1).reshape(-1, 2)
     places = np.column_stack([places * (6.0 / max(ground.shape)), np.zeros(len(places))])
     uneven = 0.4 + 1.2 * fractal(places, seed + 31).reshape(ground.shape)
