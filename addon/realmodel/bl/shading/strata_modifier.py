@@ -73,11 +73,11 @@ def put_on(item):
 
 
 def take_off(item):
-    """Removes the modifier, with its table and its eroded mesh."""
+    """Removes the modifier, with its table, its eroded mesh, and the stone where no other object has it."""
     modifier = modifier_of(item)
     if modifier is None:
         return
-    made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED)]
+    made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED, scatter.STONE)]
     item.modifiers.remove(modifier)
     item.realmodel_strata.is_shown = False
     for obj in made:
