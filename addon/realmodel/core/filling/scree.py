@@ -79,19 +79,18 @@ def _heaped(
     surface = np.where(is_foot, ground + amount * uneven * height, -math.inf)
     while True:
         work.check()
-        wider = _greatest(surface, slope * spacing)
+        wider = _greatest(surface, slope * spacing, 2)  # cones are nearly round
         wider[~is_ground | (wider <= ground - spacing)] = -math.inf  # it ends in the ground
         if np.array_equal(wider, surface):
             return surface
         surface = wider
 
 
-def _greatest(field: np.ndarray, fall: float) -> np.ndarray:
-    """The greatest value of each node and its eight neighbors, less a fall by their distance."""
-    wide = np.pad(field, 1, constant_values=-math.inf)
+def _greatest(field: np.ndarray, fall: float, reach: int = 1) -> np.ndarray:
+    """The greatest value of each node and those within so many nodes, less a fall by their distance."""
+    wide = np.pad(field, reach, constant_values=-math.inf)
     result = field
-    for i in range(3):
-        for j in range(3):
-            there = wide[i : i + field.shape[0], j : j + field.shape[1]]
-            result = np.maximum(result, there - fall * float(hypot(i - 1.0, j - 1.0)))
+    for i, j in np.ndindex(2 * reach + 1, 2 * reach + 1):
+        there = wide[i : i + field.shape[0], j : j + field.shape[1]]
+        result = np.maximum(result, there - fall * float(hypot(i - float(reach), j - float(reach))))
     return result
