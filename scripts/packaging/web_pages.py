@@ -20,8 +20,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 # What the guide and the reference refer to beside themselves.
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
-LARGE, WIDTH = 8_000, 800  # bytes of a picture that is made smaller; pixels, a little more than a page has
-QUALITY = 52  # of a picture as WebP, which takes half of what JPEG does
+LARGE, WIDTH = 8_000, 736  # bytes of a picture that is made smaller; pixels, as wide as a page
+QUALITY = 48  # of a picture as WebP, which takes half of what JPEG does
 _SOURCE = re.compile(r'<img[^>]* src="([^"]+)"')
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
