@@ -12,12 +12,13 @@ from .beds import Beds
 Mesh = tuple[np.ndarray, np.ndarray]
 
 _MOST_ROUNDS = 12  # an edge passes through a bed in each
-_ENDS = 1e-3  # of an edge: a boundary this near to its end passes through the end
+_ENDS = 0.04  # of an edge: a boundary this near to its end passes through the end
 
 
 def divided_at_beds(vertices: np.ndarray, triangles: np.ndarray, beds: Beds) -> Mesh:
     """A mesh, vertices (V, 3) and triangles (T, 3), with a vertex where an edge passes from one bed to
     another; the given vertices come first. Edges stay straight, so closed meshes stay closed."""
+    whole = []  # triangles without a split edge: as edges do not change, they stay so
     for _ in range(_MOST_ROUNDS):
         edges = edges_of(triangles)
         numbers, of_edge = np.unique(edge_numbers(edges, len(vertices)), return_inverse=True)
@@ -33,9 +34,12 @@ def divided_at_beds(vertices: np.ndarray, triangles: np.ndarray, beds: Beds) -> 
         places = places + share[is_split, None] * (vertices[chosen[:, 1]] - places)
         middle = np.full(len(numbers), -1)
         middle[is_split] = len(vertices) + np.arange(len(chosen))
-        triangles = _split(triangles, middle[of_edge].reshape(3, -1).T)
+        middles = middle[of_edge].reshape(3, -1).T
+        is_whole = (middles < 0).all(axis=1)
+        whole.append(triangles[is_whole])
+        triangles = _split(triangles[~is_whole], middles[~is_whole])
         vertices = np.concatenate([vertices, places])
-    return vertices, triangles.astype(np.int32)
+    return vertices, np.concatenate([*whole, triangles]).astype(np.int32)
 
 
 def _shares(a: np.ndarray, b: np.ndarray, beds: Beds) -> np.ndarray:
@@ -64,7 +68,7 @@ def _shares(a: np.ndarray, b: np.ndarray, beds: Beds) -> np.ndarray:
 def _split(triangles: np.ndarray, middles: np.ndarray) -> np.ndarray:
     """Triangles (T, 3) divided at new vertices in their edges. middles: (T, 3) of those from corners 0 to 1,
     1 to 2 and 2 to 0; -1: none."""
-    made = [triangles[(middles < 0).all(axis=1)]]
+    made = []
     for corner in range(3):
         order = np.roll(np.arange(3), -corner)
         has = middles[:, order] >= 0  # from the corner on
