@@ -302,7 +302,9 @@ def fill_view(walk, items, share=0.92, elevation=ELEVATION, left=0.0, **more):
     view.view_distance = eye[2] - middle
     space = walk.area.spaces.active
     space.clip_end = max(space.clip_end, 10.0 * view.view_distance)
-    space.clip_start = max(space.clip_start, view.view_distance / 200.0)  # else outlines are torn
+    space.clip_start = max(
+        space.clip_start, view.view_distance / 200.0
+    )  # with a nearer clip plane outlines are jagged
 
 
 def _places(item):

@@ -214,7 +214,7 @@ def copy(values, item):
 
 class RealModelStrata(bpy.types.PropertyGroup):
     """The strata of an object. beds_in: the collection of the beds that Fill with Strata has made of it.
-    problem: why the last change had no effect. is_shown: whether the object has the modifier Strata."""
+    problem: why the last change had no effect."""
 
     __annotations__ = {
         **VALUES,
@@ -222,7 +222,6 @@ class RealModelStrata(bpy.types.PropertyGroup):
         "stones": with_update(VALUES["stones"], strata_modifier.stones_changed),
         "beds_in": PointerProperty(type=bpy.types.Collection, options={"HIDDEN"}),
         "problem": StringProperty(options={"HIDDEN"}),
-        "is_shown": BoolProperty(options={"HIDDEN"}),
     }
 
 

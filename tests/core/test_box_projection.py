@@ -19,7 +19,7 @@ STRATA = {
 
 
 def boulder(n=24, size=6.0):
-    """A closed mesh that is no box: vertices and triangles."""
+    """A closed mesh other than a box: vertices and triangles."""
     u, v = np.meshgrid(np.arange(2 * n) * math.pi / n, np.arange(1, n) * math.pi / n)
     way = np.column_stack(
         [(np.sin(v) * np.cos(u)).ravel(), (np.sin(v) * np.sin(u)).ravel(), np.cos(v).ravel()]

@@ -28,8 +28,9 @@ def nothing_left_to_do():
 
 
 def tab_panels():
-    """The panels of the tab, each after the one that it is within."""
+    """The panels of the tab RealModel, each after the one that it is within."""
     of_tab = [cls for cls in bpy.types.Panel.__subclasses__() if issubclass(cls, TabPanel)]
+    of_tab = [cls for cls in of_tab if cls.bl_category == TabPanel.bl_category]
     return sorted((cls for cls in of_tab if cls.is_registered), key=lambda cls: hasattr(cls, "bl_parent_id"))
 
 

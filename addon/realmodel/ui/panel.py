@@ -9,7 +9,7 @@ from ..core.settings.setting import property_name, switch_name
 
 
 class TabPanel:
-    """A panel in the tab RealModel of the sidebar."""
+    """A panel of the sidebar, in the tab RealModel unless it says otherwise."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"

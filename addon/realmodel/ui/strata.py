@@ -7,20 +7,15 @@ from .. import props_strata
 from ..bl.shading import strata_modifier
 from ..bl.shading.strata_presets import PRESETS, SHAPES
 from ..operators.filling import draw_presets, draw_values
-from .panel import hint
+from .panel import TabPanel, hint
 
 
-class _Step:
+class _Step(TabPanel):
     """A panel of the tab Strata."""
 
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
     bl_category = "Strata"
 
-    def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+    def draw_in(self, layout, context, _group):
         obj = context.active_object
         is_mesh = obj is not None and obj.type == "MESH"
         has_strata = is_mesh and strata_modifier.modifier_of(obj) is not None

@@ -19,6 +19,12 @@ def group_once(kind, name, key, fill, version=True):
     return group
 
 
+def modifier_with(item, key):
+    """The modifier of an object whose node group has a property `key`, or None."""
+    modifiers = (m for m in item.modifiers if m.type == "NODES" and m.node_group and key in m.node_group)
+    return next(modifiers, None)
+
+
 class Nodes:
     """Makes nodes of a tree, in columns by their number."""
 

@@ -9,9 +9,12 @@ from ...core import InputRefused
 from ...core.base.triangles import welded
 from ...core.display.box_projection import area_vectors
 from ...core.filling import ITEM, closed_mesh, without_holes
+from ..host.nodes import modifier_with
 from . import exaggeration, meshes, shapes
 from .boolean_job import VOLUME
 
+STRATA = "realmodel_strata_group"  # on the node group of the modifier Strata: its version
+SCREE = "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree; on the object of scree
 BED = "realmodel_bed"  # on the object of a bed, and on the vertices of a mask: its number, 1 for the oldest
 _CUT, _WALL = -3, -1  # surfaces of faces: where a model was cut, and where it ends
 _LEVEL = 0.6  # least upward part of the normal of a face that is ground
@@ -24,10 +27,8 @@ def of_scene(scene):
 
 def shown(scene):
     """The beds, and the meshes with strata that are not hidden behind theirs."""
-    has_strata = (  # to read the values of an object stores them in it: only where there is a modifier
-        obj for obj in scene.objects if obj.type == "MESH" and obj.modifiers and obj.realmodel_strata.is_shown
-    )
-    return [*of_scene(scene), *(obj for obj in has_strata if not obj.hide_render)]
+    has_strata = (obj for obj in scene.objects if obj.type == "MESH" and modifier_with(obj, STRATA))
+    return [*of_scene(scene), *(obj for obj in has_strata if not obj.hide_render and SCREE not in obj)]
 
 
 def exposed(shape, matrix):

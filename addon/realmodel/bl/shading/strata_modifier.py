@@ -21,14 +21,14 @@ from ...core.filling import PALETTES, Beds, hardness_of_beds, lay_beds, rocks_of
 from ...core.project.looks import look_of
 from ..host import versions
 from ..host.geometry_nodes import GeometryNodes
-from ..host.nodes import group_once
+from ..host.nodes import group_once, modifier_with
 from ..objects import filled_beds, materials, meshes, viewports
+from ..objects.filled_beds import SCREE
+from ..objects.filled_beds import STRATA as KEY
 from . import looks, scatter, strata_values
 
 NAME = "Strata"
-KEY = "realmodel_strata_group"  # on the group: its version
 ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from 0
-SCREE = "realmodel_scree"  # on faces of an eroded mesh: whether they are of scree; on the object of scree
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
 _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
@@ -57,8 +57,7 @@ _is_changing = False  # values are being set in turn: the last one updates
 
 def modifier_of(item):
     """The modifier Strata of an object, or None."""
-    modifiers = (m for m in item.modifiers if m.type == "NODES" and m.node_group and KEY in m.node_group)
-    return next(modifiers, None)
+    return modifier_with(item, KEY)
 
 
 def put_on(item):
@@ -68,7 +67,6 @@ def put_on(item):
         modifier = item.modifiers.new(NAME, "NODES")
         modifier.node_group = group_once("GeometryNodeTree", NAME, KEY, _fill, _VERSION)
         versions.set_group_input(modifier, _SHOW_ROCKS, True)
-        item.realmodel_strata.is_shown = True
     return modifier
 
 
@@ -79,7 +77,6 @@ def take_off(item):
         return
     made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED, scatter.STONE)]
     item.modifiers.remove(modifier)
-    item.realmodel_strata.is_shown = False
     for obj in made:
         if obj is not None and obj.users == 0:
             bpy.data.meshes.remove(obj.data)  # and its object with it

@@ -16,7 +16,7 @@ import numpy as np
 from ...core.project.looks import DEFAULT, LOOKS
 from ..host import versions
 from ..host.geometry_nodes import GeometryNodes
-from ..host.nodes import group_once
+from ..host.nodes import group_once, modifier_with
 from ..objects import filled_beds, materials, meshes
 from ..project import library_rows
 from . import edge_wear, looks, scatter
@@ -79,8 +79,7 @@ def hardness_of(row):
 
 def modifier_of(item):
     """The modifier of a block that weathers it, or None."""
-    modifiers = (m for m in item.modifiers if m.type == "NODES" and m.node_group and KEY in m.node_group)
-    return next(modifiers, None)
+    return modifier_with(item, KEY)
 
 
 @dataclass(frozen=True)

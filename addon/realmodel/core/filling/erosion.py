@@ -192,7 +192,7 @@ def _distances(
 ) -> _Values:
     spacing = lattice.spacing[0]
     border = _beside(inside)
-    near = border | (_widened(border, math.ceil(deepest / spacing) + 1) & inside)
+    near = border | (greatest_around(border, math.ceil(deepest / spacing) + 1) & inside)
     index = np.argwhere(near)
     is_inside = inside[near]
     points = _points(lattice, index)
@@ -220,19 +220,6 @@ def _beside(inside: np.ndarray) -> np.ndarray:
         differs = inside[here] != inside[there]
         found[here] |= differs
         found[there] |= differs
-    return found
-
-
-def _widened(found: np.ndarray, by: int) -> np.ndarray:
-    """The nodes within a cube of so many nodes around those that are found."""
-    for axis in range(3):
-        count = found.shape[axis]
-        total = np.cumsum(found, axis=axis, dtype=np.int32)
-        upper = np.take(total, np.minimum(np.arange(count) + by, count - 1), axis=axis)
-        lower = np.take(total, np.maximum(np.arange(count) - by - 1, 0), axis=axis)
-        is_first = np.arange(count) <= by
-        lower[tuple(is_first if a == axis else slice(None) for a in range(3))] = 0
-        found = upper > lower
     return found
 
 
@@ -266,11 +253,15 @@ def _thickness(lattice: Lattice, values: _Values, by: int) -> np.ndarray:
     thin walls and arches stay."""
     inward = np.zeros(lattice.counts, np.float32)
     inward[tuple(values.index.T)] = values.inward
-    for axis in range(3):
-        inward = np.maximum(
-            _onward(inward, axis, by), np.flip(_onward(np.flip(inward, axis), axis, by), axis)
-        )
-    return inward[tuple(values.index.T)].astype(float)
+    return greatest_around(inward, by)[tuple(values.index.T)].astype(float)
+
+
+def greatest_around(field: np.ndarray, by: int) -> np.ndarray:
+    """The greatest of the values of each node and those in the square or cube of so many around it."""
+    for axis in range(field.ndim):
+        backward = np.flip(_onward(np.flip(field, axis), axis, by), axis)
+        field = np.maximum(_onward(field, axis, by), backward)
+    return field
 
 
 def _onward(field: np.ndarray, axis: int, by: int) -> np.ndarray:
@@ -278,8 +269,8 @@ def _onward(field: np.ndarray, axis: int, by: int) -> np.ndarray:
     field, width = field.copy(), 1
     while width < by + 1:
         step = min(width, by + 1 - width)
-        here = tuple(slice(None, -step) if a == axis else slice(None) for a in range(3))
-        there = tuple(slice(step, None) if a == axis else slice(None) for a in range(3))
+        here = tuple(slice(None, -step) if a == axis else slice(None) for a in range(field.ndim))
+        there = tuple(slice(step, None) if a == axis else slice(None) for a in range(field.ndim))
         field[here] = np.maximum(field[here], field[there])
         width += step
     return field

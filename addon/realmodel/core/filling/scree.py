@@ -10,7 +10,7 @@ import numpy as np
 from ..base.algebra import hypot
 from ..base.errors import InputRefused
 from ..base.work import Work
-from .erosion import Mesh, lattice_around, meshed, winding
+from .erosion import Mesh, greatest_around, lattice_around, meshed, winding
 from .noise import fractal
 
 REPOSE = 34.0  # degrees: of angular stones (Carson 1977, "Angles of repose, angles of shearing resistance and
@@ -47,8 +47,8 @@ def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int,
         )
     z = lattice.origin[2] + spacing * levels
     # It goes on a little into the walls, and its lower side lies in the rock.
-    upper = np.where(is_ground & np.isneginf(surface), _greatest(surface, 0.0), surface)
-    lower = -_greatest(-ground, 0.0) - 2.0 * spacing
+    upper = np.where(is_ground & np.isneginf(surface), greatest_around(surface, 1), surface)
+    lower = -greatest_around(-ground, 1) - 2.0 * spacing
     field = np.maximum(z - upper[:, :, None], lower[:, :, None] - z)
     with work.phase(0.8, 1.0, "meshing"):
         return meshed(work, lattice, np.clip(field, -2.0 * spacing, 2.0 * spacing))
@@ -64,13 +64,12 @@ def _heaped(
     seed: int,
 ) -> np.ndarray:
     """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls."""
-    highest, lowest = ground, np.where(is_ground, ground, -math.inf)  # nor beside the end of the rock
-    for _ in range(_AROUND):
-        highest = _greatest(highest, 0.0)
     before = max(round(_BEFORE * max(ground.shape)), 2)
-    for _ in range(before):
-        lowest = -_greatest(-lowest, 0.0)
-    is_wall = _greatest(ground, 0.0) - ground > _STEEP * spacing
+    highest = greatest_around(ground, _AROUND)
+    lowest = -greatest_around(
+        np.where(is_ground, -ground, math.inf), before
+    )  # none beside the end of the rock
+    is_wall = greatest_around(ground, 1) - ground > _STEEP * spacing
     is_foot = is_wall & is_ground & (ground - lowest < before * slope * spacing)  # no ledge high in a wall
     places = np.stack(np.meshgrid(*map(np.arange, ground.shape), indexing="ij"), axis=-1).reshape(-1, 2)
     places = np.column_stack([places * (6.0 / max(ground.shape)), np.zeros(len(places))])
@@ -79,18 +78,18 @@ def _heaped(
     surface = np.where(is_foot, ground + amount * uneven * height, -math.inf)
     while True:
         work.check()
-        wider = _greatest(surface, slope * spacing, 2)  # cones are nearly round
+        wider = _fallen(surface, slope * spacing)  # cones are nearly round
         wider[~is_ground | (wider <= ground - spacing)] = -math.inf  # it ends in the ground
         if np.array_equal(wider, surface):
             return surface
         surface = wider
 
 
-def _greatest(field: np.ndarray, fall: float, reach: int = 1) -> np.ndarray:
-    """The greatest value of each node and those within so many nodes, less a fall by their distance."""
-    wide = np.pad(field, reach, constant_values=-math.inf)
+def _fallen(field: np.ndarray, fall: float) -> np.ndarray:
+    """The greatest value of each node and those within two nodes, less a fall by their distance."""
+    wide = np.pad(field, 2, constant_values=-math.inf)
     result = field
-    for i, j in np.ndindex(2 * reach + 1, 2 * reach + 1):
+    for i, j in np.ndindex(5, 5):
         there = wide[i : i + field.shape[0], j : j + field.shape[1]]
-        result = np.maximum(result, there - fall * float(hypot(i - float(reach), j - float(reach))))
+        result = np.maximum(result, there - fall * float(hypot(i - 2.0, j - 2.0)))
     return result
