@@ -383,7 +383,7 @@ std::vector<double> field_at(const LatticeField& field, std::span<const double> 
 
 TetrahedraAt tetrahedra_at(const LatticeField& field, std::span<const double> positions,
                            const Execution& execution) {
-    const RefinedLattice lattice(field, {});
+    const RefinedLattice lattice(field, {}, positions);
     TetrahedraAt tetrahedra;
     tetrahedra.corners.resize(positions.size() / 3);
     tetrahedra.weights.resize(positions.size() / 3);

@@ -51,7 +51,8 @@ void check_field(const LatticeField& field, std::span<const double> levels) {
 
 }  // namespace
 
-RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double> levels)
+RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double> levels,
+                               std::optional<std::span<const double>> positions)
     : origin_(field.lattice.origin),
       spacing_(field.lattice.spacing),
       counts_(field.lattice.counts) {
@@ -59,6 +60,14 @@ RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double
     stride_ = {1, counts_[0], std::int64_t{counts_[0]} * counts_[1]};
     nodes_ = stride_[2] * counts_[2];
     values_.assign(field.values.begin(), field.values.end());
+    if (positions) {
+        wanted_cells_.emplace();
+        for (std::size_t i = 0; i + 2 < positions->size(); i += 3) {
+            for (const CellIndex& cell :
+                 cells_at({(*positions)[i], (*positions)[i + 1], (*positions)[i + 2]}))
+                wanted_cells_->insert(node(cell));
+        }
+    }
     for (std::size_t p = 0; p < field.point_values.size(); ++p) {
         points_.push_back({field.points[3 * p], field.points[3 * p + 1], field.points[3 * p + 2]});
         point_values_.push_back(field.point_values[p]);
@@ -179,6 +188,12 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
     if (cells.empty())
         throw InputError("outside", "a point is outside of the lattice", -1,
                          {static_cast<std::int64_t>(point)}, p);
+    if (wanted_cells_ && std::ranges::none_of(cells, [&](const CellIndex& cell) {
+            return wanted_cells_->contains(node(cell));
+        })) {
+        corner_of_point_.push_back(nodes_ + static_cast<std::int64_t>(point));
+        return;
+    }
     const exact::SpacePointId at = exact_.add(p);
     std::optional<std::vector<std::int64_t>> simplex;
     for (const CellIndex& cell : cells) {

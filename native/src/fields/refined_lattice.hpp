@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "base/vectors.hpp"
@@ -42,8 +43,11 @@ public:
     /// it is greatest.
     using BoxFace = std::uint8_t;
 
+    /// @param positions  only points in cells of these, 3 N coordinates, divide tetrahedra; none:
+    /// all
     /// @throws InputError  as level_sets does
-    RefinedLattice(const LatticeField& field, std::span<const double> levels);
+    RefinedLattice(const LatticeField& field, std::span<const double> levels,
+                   std::optional<std::span<const double>> positions = {});
 
     std::int32_t cells(std::size_t axis) const { return counts_[axis] - 1; }
     std::int64_t node(const CellIndex& at) const {
@@ -129,7 +133,8 @@ private:
     std::vector<std::int64_t> corner_of_point_;
     std::map<std::int64_t, std::size_t> point_at_node_;
     std::map<std::int64_t, std::vector<LatticeTetrahedron>>
-        divided_;  ///< by the cell's lowest corner
+        divided_;                                         ///< by the cell's lowest corner
+    std::optional<std::set<std::int64_t>> wanted_cells_;  ///< by their lowest corners; none: all
     exact::SpacePoints exact_;
 };
 

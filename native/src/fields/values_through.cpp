@@ -4,7 +4,7 @@
 #ifndef EIGEN_DONT_PARALLELIZE
 #define EIGEN_DONT_PARALLELIZE
 #endif
-#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstddef>
@@ -20,7 +20,6 @@ namespace {
 
 /// Of the share of a contact in its tetrahedron: where contacts share corners, none moves far.
 constexpr double kLoose = 1e-2;
-constexpr int kSteps = 200;         ///< of each solution
 constexpr double kReached = 1e-12;  ///< of what contacts miss their levels by at first: nothing
 
 /// The weights of contacts, a row for each, by those values alone that are corners.
@@ -61,12 +60,11 @@ ValuesThrough values_through(std::span<const double> initial, const LevelsAtCont
     Eigen::SparseMatrix<double> square(weights.cols(), weights.cols());
     square.setIdentity();
     square = kLoose * square + weights.transpose() * weights;
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> moves;
-    moves.setMaxIterations(kSteps);
-    moves.compute(square);
+    if (execution.progress != nullptr) execution.progress->check();
+    // contacts lie on surfaces: that is a graph of two dimensions, and the factor is small
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> moves(square);
     for (int round = 0; round < rounds && missed.norm() > reached; ++round) {
         if (execution.progress != nullptr) execution.progress->check();
-        moves.setTolerance(reached / missed.norm());
         values += moves.solve(weights.transpose() * missed);
         missed = levels - weights * values;
     }

@@ -314,6 +314,11 @@ TEST(TetrahedraAtTest, WeightsGiveThePositionsAndTheValuesBack) {
     const std::vector<double> values = field_at(view, positions, {1, nullptr});
     const auto nodes = static_cast<std::int64_t>(field.values.size());
     for (std::size_t n = 0; n < found.corners.size(); ++n) {
+        // asked for alone, only the points of its cell divide tetrahedra
+        const TetrahedraAt alone =
+            tetrahedra_at(view, std::span(positions).subspan(3 * n, 3), {1, nullptr});
+        EXPECT_EQ(alone.corners[0], found.corners[n]);
+        EXPECT_EQ(alone.weights[0], found.weights[n]);
         Point at{};
         double value = 0;
         for (std::size_t k = 0; k < 4; ++k) {

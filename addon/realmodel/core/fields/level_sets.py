@@ -18,6 +18,9 @@ _Field = TypeVar("_Field", bound=ScalarField)
 _SHARED = 0.1  # of what contacts miss their levels by: where more is left at first they share corners
 _ROUNDS = 10  # in which what is left is made less
 _LEAST = 2.0**-10  # of the edges of the lattice: shorter ones are not halved
+_HALVINGS = 3  # they make a tetrahedron half as large
+_NEAR = 3  # tetrahedra from one contact to another, over corners that they share
+_EDGES = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]  # of a tetrahedron
 _BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss its level by
 
 
@@ -71,26 +74,15 @@ def fields_with_contacts(
     moved onto it. What fields share stays the same in them. held: then fields have as few critical points as
     contacts and these allow, and those that are left."""
     levels = fields[0].levels[surfaces]
-    made = _Joined(work, fields, np.ascontiguousarray(contacts, np.float64), shared)
-
-    def through(corners: np.ndarray, weights: np.ndarray, rounds: int) -> tuple[np.ndarray, np.ndarray]:
-        solve = native_module().values_through
-        return work.native(solve, made.values, corners, weights, levels, rounds)
-
+    made = _Joined(work, fields, np.ascontiguousarray(contacts, np.float64), levels, shared)
+    everything = np.arange(len(contacts))
     while True:
-        corners, weights = made.tetrahedra()
-        missed = [np.abs(through(corners, weights, rounds)[1]) for rounds in (0, 1)]
-        off = (missed[1] > _BESIDE * np.ptp(made.values[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
-        ends = made.halved(corners[off])
-        if not len(ends):
-            values, _ = through(corners, weights, _ROUNDS)
-            ends = made.halved(corners[made.missed(made.fields_through(values, levels))])
-        if not made.add_middles(ends):
-            break
-    corners, weights = made.tetrahedra()
-    values, _ = through(corners, weights, _ROUNDS)
-    joined = made.fields_through(values, levels)
-    return joined if held is None else made.rising(joined, held)
+        made.find_tetrahedra(everything)
+        if made.refine(made.crowded(everything)):
+            continue
+        joined = made.fields_through()
+        if not made.refine(made.missed(joined), _HALVINGS):
+            return joined if held is None else made.rising(joined, held)
 
 
 class _Joined:
@@ -99,27 +91,39 @@ class _Joined:
     M)."""
 
     def __init__(
-        self, work: Work, fields: Sequence[ScalarField], contacts: np.ndarray, shared: SharedCorners
+        self,
+        work: Work,
+        fields: Sequence[ScalarField],
+        contacts: np.ndarray,
+        levels: np.ndarray,
+        shared: SharedCorners,
     ):
-        self.work, self.fields, self.contacts, self.shared = work, fields, contacts, shared
+        self.work, self.fields, self.contacts, self.levels, self.shared = (
+            work,
+            fields,
+            contacts,
+            levels,
+            shared,
+        )
         self.values = np.concatenate([field.values for field in fields])
         self.middles = np.empty((0, 3))
         self.of_middles = np.empty((len(fields), 0), bool)
+        # of each contact the corners of its tetrahedron, by their places in the array, and their weights
+        self.corners = np.empty((len(contacts), 4), np.int64)
+        self.weights = np.empty((len(contacts), 4))
 
     def _numbers(self, field: int) -> np.ndarray:
         """Where the corners of a field, nodes and then middles, are in the array of all values."""
         middles = self.shared.same.size + np.flatnonzero(self.of_middles[field])
         return np.concatenate([self.shared.same[field], middles])
 
-    def tetrahedra(self) -> tuple[np.ndarray, np.ndarray]:
-        """(C, 4) the corners of the tetrahedra of the contacts, by their places in the array, and the weights
-        of these; each contact in the first field that has it."""
-        corners = np.empty((len(self.contacts), 4), np.int64)
-        weights = np.empty((len(self.contacts), 4))
-        first = self.shared.has.argmax(axis=0)
+    def find_tetrahedra(self, contacts: np.ndarray) -> None:
+        """Finds the tetrahedra of contacts, given by their numbers (N,), each in the first field that has
+        it."""
+        first = self.shared.has[:, contacts].argmax(axis=0)
         for number, field in enumerate(self.fields):
             numbers = self._numbers(number)
-            of_middles, here = numbers[field.lattice.nodes :], np.flatnonzero(first == number)
+            of_middles, here = numbers[field.lattice.nodes :], contacts[first == number]
             at = replace(
                 field,
                 values=self.values[numbers[: field.lattice.nodes]],
@@ -130,12 +134,50 @@ class _Joined:
             tetrahedra = self.work.native(
                 native_module().tetrahedra_at, lattice, values, points, self.contacts[here]
             )
-            corners[here], weights[here] = numbers[tetrahedra[0]], tetrahedra[1]
-        return corners, weights
+            self.corners[here], self.weights[here] = numbers[tetrahedra[0]], tetrahedra[1]
 
-    def fields_through(self, values: np.ndarray, levels: np.ndarray) -> list:
-        """The fields with these values, and contacts with levels (C,) as corners. A node that fields share is
-        moved onto a level as the first of them has it."""
+    def _through(self, contacts: np.ndarray, rounds: int) -> tuple[np.ndarray, np.ndarray]:
+        """The values with which contacts (N,) have their levels nearly, and what each misses its level by."""
+        at = (self.corners[contacts], self.weights[contacts], self.levels[contacts])
+        return self.work.native(native_module().values_through, self.values, *at, rounds)
+
+    def crowded(self, contacts: np.ndarray) -> np.ndarray:
+        """Those of some contacts (N,) that share corners with others, so that the field cannot have their
+        levels."""
+        values = self.values[self.corners[contacts]]
+        at_first = self.levels[contacts] - (self.weights[contacts] * values).sum(axis=1)
+        missed = np.abs(self._through(contacts, 1)[1])
+        return contacts[(missed > _BESIDE * np.ptp(values, axis=1)) & (missed > _SHARED * np.abs(at_first))]
+
+    def refine(self, contacts: np.ndarray, halvings: int = 1) -> bool:
+        """Halves the tetrahedra of contacts (N,) so many times, and then those of contacts near them that are
+        crowded, until none is, as far as is seen from near them. False where nothing could be halved."""
+        is_refined = False
+        while len(contacts) and self._halve(contacts):
+            is_refined = True
+            if halvings > 1:
+                halvings -= 1
+                continue
+            near = np.zeros(len(self.values), bool)
+            for _ in range(_NEAR):
+                near[self.corners[contacts]] = True
+                contacts = np.flatnonzero(near[self.corners].any(axis=1))
+            contacts = self.crowded(contacts)
+        return is_refined
+
+    def _halve(self, contacts: np.ndarray) -> bool:
+        """Halves the tetrahedra of contacts (N,); False where none of them could be."""
+        ends = self.halved(self.corners[contacts])
+        if not self.add_middles(ends):
+            return False
+        has_halved = np.isin(self._edge_numbers(self.corners[:, _EDGES]), self._edge_numbers(ends))
+        self.find_tetrahedra(np.flatnonzero(has_halved.any(axis=1)))
+        return True
+
+    def fields_through(self) -> list:
+        """The fields with contacts as corners, and as little moved as they must be to have their levels
+        there. A node that fields share is moved onto a level as the first of them has it."""
+        values, _ = self._through(np.arange(len(self.contacts)), _ROUNDS)
         nodes, moved_fields = self.fields[0].lattice.nodes, []
         moved = np.empty(self.shared.same.size)
         for number, field in enumerate(self.fields):
@@ -149,7 +191,7 @@ class _Joined:
                     field,
                     values=moved[self.shared.same[number]],
                     points=np.concatenate([self.middles[self.of_middles[number]], self.contacts[has]]),
-                    point_values=np.concatenate([values[numbers[nodes:]], levels[has]]),
+                    point_values=np.concatenate([values[numbers[nodes:]], self.levels[has]]),
                 )
             )
         return moved_fields
@@ -172,19 +214,19 @@ class _Joined:
         return rising_fields
 
     def missed(self, fields: list) -> np.ndarray:
-        """(C,) bool: the contacts that the level sets of some field do not pass through."""
+        """(N,) the contacts that the level sets of some field do not pass through."""
         is_missed = np.zeros(len(self.contacts), bool)
         for number, field in enumerate(fields):
             lattice, values, points = field.native()
             passed = self.work.native(native_module().points_between, lattice, values, points)
             numbers = np.flatnonzero(self.shared.has[number])
             is_missed[numbers] |= passed[len(passed) - len(numbers) :] == 0
-        return is_missed
+        return np.flatnonzero(is_missed)
 
     def halved(self, tetrahedra: np.ndarray) -> np.ndarray:
         """(N, 2) the ends of the longest edges of tetrahedra (T, 4), each once, but of those that are
         small."""
-        edges = tetrahedra[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]]
+        edges = tetrahedra[:, _EDGES]
         ends = self._positions(edges)
         length = norm(ends[:, :, 1] - ends[:, :, 0])
         longest = edges[np.arange(len(edges)), length.argmax(axis=1)]
@@ -209,6 +251,10 @@ class _Joined:
         self.values = np.concatenate([values[:nodes], values[nodes:][used]])
         self.middles, self.of_middles = middles[used], of_middles[:, used]
         return True
+
+    def _edge_numbers(self, ends: np.ndarray) -> np.ndarray:
+        """(...) a number for each edge (..., 2)."""
+        return ends.min(axis=-1) * len(self.values) + ends.max(axis=-1)
 
     def _positions(self, corners: np.ndarray) -> np.ndarray:
         """(..., 3) of corners: nodes and middles by their places in the array."""

@@ -28,8 +28,7 @@ struct ValuesThrough {
 /// Values near those given with which a field has its levels at contacts, as far as these do not
 /// pull at the same corners: in rounds A^T y is added, where A has the weights of the contacts and
 /// (A A^T + loose) y is what they miss their levels by (iterated regularization of A. N. Tikhonov;
-/// H. W. Engl 1987), by conjugate gradients (Hestenes and Stiefel 1952). In one thread: the sums
-/// are always the same.
+/// H. W. Engl 1987), by a sparse Cholesky factor. In one thread: the sums are always the same.
 /// @throws InputError  kind option: corners that are no values; Cancelled
 ValuesThrough values_through(std::span<const double> initial, const LevelsAtContacts& at,
                              int rounds, const Execution& execution);
