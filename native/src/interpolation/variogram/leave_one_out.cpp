@@ -159,9 +159,9 @@ private:
 /// times: below about a millisecond the threads of OpenMP would use more time waiting for the next
 /// call than they save.
 std::size_t points_in_chunk(std::size_t neighbors) {
-    return neighbors <= 16 ? 2048 : neighbors <= 32 ? 256 : kChunk;
+    return neighbors <= 16 ? 768 : neighbors <= 32 ? 256 : kChunk;
 }
-static_assert(2048 % kLanes == 0 && 256 % kLanes == 0);
+static_assert(768 % kLanes == 0 && 256 % kLanes == 0);
 
 }  // namespace
 

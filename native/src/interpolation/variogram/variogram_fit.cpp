@@ -21,8 +21,9 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t kPointsLeftOut = 10'000;
-constexpr std::size_t kPointsSearched = 4000;
+// More take longer and predict no better (docs/dev/log/mechanisms.md).
+constexpr std::size_t kPointsLeftOut = 4000;
+constexpr std::size_t kPointsSearched = 1500;
 constexpr std::size_t kNeighborsSearched = 16;
 constexpr std::size_t kPointsLeftOutOfDrift = 1000;
 constexpr double kAsGood = 1.004;     // of mean squares: RMS errors within 0.2 % are equally good
