@@ -143,6 +143,10 @@ def check_series(rock: Rock) -> None:
 def _check_sheets(rock: Rock, series: Series, members: list[int], refuse: Refuse) -> None:
     if series.resolution != BY_DATA:
         raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
+    for key in ("error", "dip_error", "range"):
+        if getattr(series, key):
+            what = f"'{key}' is of a field; sheets have the nugget and the range of their variogram"
+            raise refuse(what, key, "leave it out, or give the surfaces a variogram")
     if series.thickness != BY_DATA:
         what = "'thickness' has no effect, as sheets always share how their thickness varies"
         raise refuse(what, "thickness", "leave it out")

@@ -136,6 +136,7 @@ OBSERVED = {
     "use": ("use",),
     "on": ("seen_on",),
     "error": ("height_error",),
+    "thickness": ("thickness", "true_thickness"),
 }
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
@@ -143,7 +144,7 @@ _STEP = 5000  # rows
 _MOST_TURNED = 720.0  # degrees
 _ANGLES = frozenset(("azimuth", "dip", "inclination", "dip_direction", "strike"))
 _DEGREES = {"rad": 180 / np.pi, "radian": 180 / np.pi, "radians": 180 / np.pi, "gon": 0.9, "grad": 0.9}
-LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
+LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end", "thickness"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
 
