@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +59,14 @@ class HoleTables:
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     lines: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
+
+    def copy(self) -> HoleTables:
+        """The same rows in other lists, which may be repaired."""
+        copied = replace(self, factors={kind: dict(of) for kind, of in self.factors.items()})
+        for name in ("collars", "survey", "picks", "intervals", "problems", "warnings"):
+            rows = getattr(self, name)
+            setattr(copied, name, None if rows is None else list(rows))
+        return copied
 
     def scale(self, model_unit: str) -> np.ndarray:
         """(3,) the factors of x, y and of heights and depths to the model's unit."""
