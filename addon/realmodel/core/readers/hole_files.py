@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import replace
@@ -36,13 +36,14 @@ def read_hole_files(
     model_unit: str,
     step: Step = no_step,
     needed: tuple[str, ...] | None = None,
+    sheets: Mapping[str, str] | None = None,
 ) -> HoleTables:
-    """read_hole_rows of tables and of files that hold all of them. Raises InputRefused naming file and
-    line."""
+    """read_hole_rows of tables and of files that hold all of them. sheets: the names of those of a workbook.
+    Raises InputRefused naming file and line."""
     known, key = _read.get(), repr((boreholes, model_unit, needed))
     if known is None or key not in known:
-        whole, sheets = _whole_files(boreholes)
-        tables = read_hole_rows(whole, model_unit, step, needed, sheets)
+        whole, tables_of = _whole_files(boreholes)
+        tables = read_hole_rows(whole, model_unit, step, needed, {**tables_of, **(sheets or {})})
         if known is None:
             return tables
         known[key] = tables

@@ -278,10 +278,12 @@ class Row:
         return value
 
 
-def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
+def rows(
+    given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step, sheet: str | None = None
+) -> Iterator[Row]:
     """The rows of a table as they are written, with those of the known columns that it has. Raises
-    InputRefused where it lacks one that is needed."""
-    table = _opened(given, file, known, needed)
+    InputRefused where it lacks one that is needed. sheet: of a workbook; None: the only one with these."""
+    table = _opened(given, file, known, needed, sheet)
     layout = table.layout
     header = _header(given, file, layout, known)
     _require(given, header, needed)
@@ -372,17 +374,19 @@ def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -
     return warnings
 
 
-def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
-    """The known columns that a table has, by their meaning: their names in the header, in small letters.
-    Raises InputRefused if it is not a table."""
-    table = _opened(given, file, known)
+def columns_in(given: Reading, file: Path, known: Columns, sheet: str | None = None) -> dict[str, str]:
+    """The known columns that a table, or the sheet of a workbook, has, by their meaning: their names in the
+    header, in small letters. Raises InputRefused if it is not a table."""
+    table = _opened(given, file, known, sheet=sheet)
     written = table.layout.names or ()
     names = [plain_name(name) for name in written]
     columns = _columns(given, file, table.layout, known)
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = ()) -> TextTable:
+def _opened(
+    reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = (), sheet: str | None = None
+) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
     for aliases in meanings.values():
         names.update(*map(_spellings, aliases))
@@ -391,7 +395,7 @@ def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[st
         columns = _columns(reading, file, TableLayout("\t", tuple(cells), 0, 0, None), meanings)
         return set(needed) <= columns.keys() and len(columns) > 2
 
-    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header))
+    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header), sheet)
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:
