@@ -201,11 +201,11 @@ def format_of(file: str | Path, *holds: str) -> FileFormat | None:
             raise InputRefused(f"it is {what}, which is not read", file=file, advice=advice)
     able = [entry for entry in FORMATS if entry.holds in holds]
     by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)
-    begins = next((entry for entry in able if entry.begins(head, size)), None) or next(by_ending, None)
+    begins = next((entry for entry in able if entry.begins(head, size)), None)
     if begins is None and head[:4] in _ZIPS and not any(entry.begins(head, size) for entry in FORMATS):
         raise InputRefused("it is an archive (zip), which is not read", file=file, advice="unpack it")
     tables = (entry for entry in able if entry.holds == TABLE)  # of which the refusal is then
-    return begins or next(tables, None)
+    return begins or next(by_ending, next(tables, None))
 
 
 def endings(*holds: str) -> tuple[str, ...]:
