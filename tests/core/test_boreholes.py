@@ -334,3 +334,29 @@ def test_a_workbook_holds_all_tables(tmp_path):
         read_boreholes(twice)
     with pytest.raises(InputRefused, match="no sheet has the columns"):
         read_boreholes(workbook(tmp_path / "none.xlsx", Notes=sheets["Notes"]))
+
+
+@pytest.mark.parametrize(("of_collars", "of_log"), [("1", "1.0"), ("007", "7"), ("12", "0012"), ("7.0", "7")])
+def test_holes_whose_names_are_numbers(tmp_path, of_collars, of_log):
+    (collars := tmp_path / "c.csv").write_text(f"hole,x,y,z\n{of_collars},0,0,10\nB7,5,5,10\n")
+    (intervals := tmp_path / "i.csv").write_text(f"hole,from,to,block\n{of_log},0,4,sand\nB7,0,4,sand\n")
+    read = read_boreholes(collars=collars, intervals=intervals)
+    assert read.intervals["hole"].tolist() == [of_collars, "B7"]
+    assert [problem.kind for problem in read.problems] == ["hole_name"]
+
+
+def test_columns_with_one_name_are_said(tmp_path):
+    (collars := tmp_path / "c.csv").write_text("hole,x,y,z,Z\nA,0,0,10,99\n")
+    (intervals := tmp_path / "i.csv").write_text("hole,from,to,block\nA,0,4,sand\n,,,\n")
+    read = read_boreholes(collars=collars, intervals=intervals)
+    (said,) = read.warnings
+    assert "2 columns are named 'z'" in said and "columns = { z = 5 }" in said
+    other = read_boreholes(collars=collars, intervals=intervals, columns={"z": 5})
+    assert (other.collars["z"][0], other.warnings, other.problems) == (99, [], [])
+
+
+def test_decimal_commas_in_quotes_between_commas(tmp_path):
+    (collars := tmp_path / "c.csv").write_text('hole,x,y,z\nA,0,0,"10,5"\n')
+    (intervals := tmp_path / "i.csv").write_text('hole,from,to,block\nA,0,"4,25",sand\n')
+    read = read_boreholes(collars=collars, intervals=intervals)
+    assert (read.collars["z"][0], read.intervals["to"][0]) == (10.5, 4.25)

@@ -141,6 +141,8 @@ OBSERVED = {
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
+_SEPARATORS = ",;|\t "  # a row of these alone is empty, as Excel writes them
+_GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _MOST_TURNED = 720.0  # degrees
 _ANGLES = frozenset(("azimuth", "dip", "inclination", "dip_direction", "strike"))
 _DEGREES = {"rad": 180 / np.pi, "radian": 180 / np.pi, "radians": 180 / np.pi, "gon": 0.9, "grad": 0.9}
@@ -290,17 +292,19 @@ def rows(
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
-    if given.decimal is None and separator != ",":
+    if given.decimal is None:
         entries = list(_parts(body, separator))
         has_points = any("." in entry and is_number(entry) for entry in entries)
-        has_commas = any("," in entry and is_number(entry, ",") for entry in entries)
+        of_commas = [entry for entry in entries if "," in entry and is_number(entry, ",")]
+        # in quotes between commas 1,234 may have a sign between thousands
+        has_commas = any(separator != "," or not _GROUPED.fullmatch(entry) for entry in of_commas)
         decimal = "," if has_commas and not has_points else "."
     total = max(body.count("\n"), 1)
     for number, line in enumerate(body.split("\n")):
         if number % _STEP == 0:
             step(number / total)
         stripped = line.strip()
-        if not stripped or stripped.startswith("#"):
+        if not stripped.strip(_SEPARATORS) or stripped.startswith("#"):
             continue
         yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
 
@@ -353,6 +357,7 @@ def header_factors(
         for (meaning, key), unit in zip(keys.items(), stated, strict=True)
         if key is None and unit not in (None, model_unit)
     }
+    warnings += _doubled(header)
     if "z" in factors:
         factors["error"] = factors["z"]
     for meaning in _ANGLES & header.columns.keys():
@@ -365,6 +370,20 @@ def header_factors(
                 "header if that is wrong"
             )
     return factors, warnings
+
+
+def _doubled(header: TableHeader) -> list[str]:
+    """Warnings about columns of which others have the name."""
+    warnings = []
+    for meaning, at in header.columns.items():
+        name = header.names[at].strip() if at < len(header.names) else ""
+        same = [n for n, other in enumerate(header.names) if name and column_key(other) == column_key(name)]
+        if len(same) > 1 and at == same[0] and not set(same[1:]) & set(header.columns.values()):
+            warnings.append(
+                f"{header.file}:{header.line}: {len(same)} columns are named '{name}'; the first is used: if "
+                f"another one is meant, set columns = {{ {meaning} = {same[1] + 1} }}"
+            )
+    return warnings
 
 
 def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
