@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.no_value import NO_VALUE
+from ...base.no_value import NO_VALUE, OFTEN_NO_VALUE
 from ...base.text import Step
 from ...base.units import factor, stated_units, unit_text_of_column
 from .points import AXES, TextTable, open_table
@@ -146,6 +146,7 @@ _GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _MOST_TURNED = 720.0  # degrees
 _ANGLES = frozenset(("azimuth", "dip", "inclination", "dip_direction", "strike"))
 _DEGREES = {"rad": 180 / np.pi, "radian": 180 / np.pi, "radians": 180 / np.pi, "gon": 0.9, "grad": 0.9}
+_WITH_NULLS = _ANGLES | {"z", "thickness", "error"}  # of observations and dips
 LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end", "thickness"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
@@ -264,13 +265,19 @@ class Row:
         return plain_name(names[at]) if at < len(names) else ""
 
     def number(self, column: str, advice: str | None = None) -> float:
-        entry = self.text(column)
+        entry = self.text(column).removesuffix("°")
         if not is_number(entry, self.decimal):
             raise self.refuse(f"{column} is not a number: '{entry:.40}'", advice)
         value = float(entry.replace(",", "."))
         if not np.isfinite(value):
             raise self.refuse(f"{column} is {entry}, not a finite number")
         return value
+
+    def number_of(self, column: str) -> float | None:
+        """The number in a column; None where there is none."""
+        if not self.has(column) or not is_number(self.text(column), self.decimal):
+            return None
+        return float(self.text(column).replace(",", "."))
 
     def azimuth(self, column: str) -> float:
         """An angle in plan, degrees: also one beyond 360, but none that stands for no value."""
@@ -330,11 +337,29 @@ def rows_in_one_unit(
     given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step, model_unit: str
 ) -> Iterator[Row]:
     """The same, in the unit of the key `units`, or else in that of the model."""
-    factors: dict[str, float] | None = None
-    for row in rows(given, file, known, needed, step):
-        if factors is None:
-            factors, _ = header_factors(row.header, given.units, model_unit)
+    every = _without_nulls(list(rows(given, file, known, needed, step)))
+    factors = header_factors(every[0].header, given.units, model_unit)[0] if every else {}
+    for row in every:
         yield row.scaled(factors) if factors else row
+
+
+def _without_nulls(every: list[Row]) -> list[Row]:
+    """Rows without numbers that mean no value: angles and thicknesses of -9999, and elevations that are far
+    from all others as well."""
+    heights = [z for row in every if (z := row.number_of("z")) is not None and z not in OFTEN_NO_VALUE]
+    low, high = min(heights, default=0.0), max(heights, default=0.0)
+
+    def is_null(row: Row, column: str) -> bool:
+        value = row.number_of(column)
+        if value not in OFTEN_NO_VALUE:
+            return False
+        return column != "z" or not 2 * low - high <= value <= 2 * high - low
+
+    nulls = [[c for c in row.columns if c in _WITH_NULLS and is_null(row, c)] for row in every]
+    return [
+        row.with_values(dict.fromkeys(columns, "")) if columns else row
+        for row, columns in zip(every, nulls, strict=True)
+    ]
 
 
 def header_factors(
