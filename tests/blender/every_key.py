@@ -148,6 +148,9 @@ name = "folded"
 dips = "in_space.csv"
 resolution = 7.5
 thickness = "parallel"
+error = 0.5
+dip_error = 3.0
+range = 900.0
 
 [[rock.surface]]
 name = "bed"

@@ -53,6 +53,29 @@ class Codes(PanelCase):
         self.assertEqual(set(observations.blocks), set(UNITS))
         self.assertEqual(len(np.unique(observations.holes)), 6)
 
+    def test_a_regular_expression_and_what_is_none(self):
+        self.import_holes()
+        ops.codes_assign(pattern="/^(MA|SA)[0-3]$/", unit="Old")
+        self.assertEqual(
+            {row.name for row in self.rock.codes if row.unit == "Old"}, set(CODES[:4] + CODES[5:9])
+        )
+        self.refused(ops.codes_assign, "no regular expression", pattern="/(/", unit="Old")
+
+    def test_they_move_to_the_next_unit(self):
+        self.import_holes()
+        for unit in UNITS:
+            ops.codes_assign(pattern=f"{unit[:2]}*", unit=unit)
+        self.rock.active_code = self.rock.codes.find("MA4")
+        ops.codes_move(direction="UP")
+        self.assertEqual(self.rock.codes["MA4"].unit, "Sand")
+        self.assertFalse(any(row.chosen for row in self.rock.codes))
+        self.rock.codes["MA4"].chosen = self.rock.codes["CL0"].chosen = True
+        ops.codes_move(direction="DOWN")
+        self.assertEqual([self.rock.codes[code].unit for code in ("MA4", "CL0")], ["Marl", "Sand"])
+        self.refused(ops.codes_move, "oldest unit", pattern="MA4", direction="DOWN")
+        ops.codes_ignore(pattern="MA4")
+        self.refused(ops.codes_move, "means no surface", pattern="MA4", direction="UP")
+
     def test_picks_take_the_place_of_their_earlier_points(self):
         self.import_holes(picks=True)
         for unit in UNITS:

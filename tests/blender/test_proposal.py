@@ -2,11 +2,13 @@
 """A project proposed in the panel: in the scene with its reasons, or nothing changes; undone in one step."""
 
 import json
+from unittest.mock import patch
 
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops
 from realmodel.bl.project import imported, observed_blocks
+from realmodel.core.readers import hole_files
 
 UNITS = ("Chalk", "Marl", "Sand", "Clay")  # the oldest first
 
@@ -52,6 +54,45 @@ class Proposals(PanelCase):
         choices = {row.name for row in self.reasons("choice")}
         self.assertLessEqual({"Order", "Region", "Edge Length", "Ground", "Method"}, choices)
         self.assertTrue(all(row.text for row in self.model.proposal))
+        ops.build()
+        self.assertEqual({row.name for row in self.model.results if row.cells}, set(UNITS))
+
+    def test_codes_mean_what_names_say(self):
+        ops.boreholes_read(
+            **write_tables(self.folder), propose=True, names="/^(Marl|Sand)$/ = Beds; Cl* = Clay"
+        )
+        self.assertEqual(self.blocks(), ["Chalk", "Beds", "Clay"])
+        rock = self.model.rocks[0]
+        meant = {row.name: imported.unit_text(rock, row) for row in rock.codes}
+        self.assertEqual(meant, {"Chalk": "Chalk", "Marl": "Beds", "Sand": "Beds", "Clay": "Clay"})
+        ops.codes_reset(pattern="Sand")
+        self.assertIn("Sand", self.blocks())
+
+    def test_tables_are_read_once(self):
+        with patch.object(hole_files, "read_hole_rows", side_effect=hole_files.read_hole_rows) as read:
+            ops.propose_project(**write_tables(self.folder))
+        self.assertEqual(read.call_count, 1)
+
+    def test_of_a_file_that_holds_all_tables(self):
+        groups = {
+            "LOCA": ["LOCA_ID,LOCA_NATE,LOCA_NATN,LOCA_GL", ",m,m,m", "ID,2DP,2DP,2DP"],
+            "GEOL": ["LOCA_ID,GEOL_TOP,GEOL_BASE,GEOL_LEG", ",m,m,", "ID,2DP,2DP,PA"],
+        }
+        rows = {"LOCA": [], "GEOL": []}
+        for n in range(6):
+            rows["LOCA"].append(f"B{n},{500000 + 80 * (n % 3)},{200000 + 70 * (n // 3)},{40 + n}")
+            rows["GEOL"] += [f"B{n},{10 * k},{10 * k + 10},{unit}" for k, unit in enumerate(UNITS[::-1])]
+        lines = []
+        for group, (names, units, types) in groups.items():
+            lines += [f"GROUP,{group}", f"HEADING,{names}", f"UNIT,{units}", f"TYPE,{types}"]
+            lines += [f"DATA,{row}" for row in rows[group]] + [""]
+        text = "\r\n".join(
+            ",".join(f'"{cell}"' for cell in line.split(",")) if line else "" for line in lines
+        )
+        (self.folder / "site.ags").write_text(text)
+        ops.boreholes_read(filepath=str(self.folder / "site.ags"), propose=True)
+        self.assertEqual(self.blocks(), list(UNITS))
+        self.assertEqual({row.name for row in self.model.rocks[0].codes}, set(UNITS))
         ops.build()
         self.assertEqual({row.name for row in self.model.results if row.cells}, set(UNITS))
 

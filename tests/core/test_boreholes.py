@@ -3,8 +3,18 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Boreholes, InputRefused, Project, Rock, Surface, build, load_project
+from realmodel.core import (
+    Boreholes,
+    InputRefused,
+    Project,
+    Rock,
+    Surface,
+    build,
+    load_project,
+    read_boreholes,
+)
 from realmodel.core.readers import read_picks
+from test_point_formats import workbook
 
 COLLARS = "hole,x,y,z\nB1,0,0,10\nB2,4,0,11\nB3,4,4,12\nB4,0,4,11\nB5,2,2,11\n"
 PICKS = "hole,surface,depth\nB1,clay,4\nB2,clay,5\nB3,clay,6\nB1,sand,1\nB3,sand,\nB4,sand,2\n"
@@ -302,3 +312,51 @@ def test_a_column_that_is_not_to_be_read(tmp_path, meaning):
             read_picks(Boreholes(picks=file, columns=named))
         said.append(refused.value.what)
     assert said[0] == said[1]
+
+
+def test_a_workbook_holds_all_tables(tmp_path):
+    sheets = {
+        "Notes": [["made by", "somebody"], ["on", "monday"]],
+        "Collars": [["Hole ID", "Easting", "Northing", "RL"], ["A", 0, 0, 10], ["B", 90, 0, 12]],
+        "Survey": [["Hole ID", "Depth", "Azimuth", "Dip"], ["A", 0, 90, -60], ["B", 0, 0, -90]],
+        "Lithology": [["Hole ID", "From", "To", "Lithology"], ["A", 0, 4, "sand"], ["B", 0, 5, "sand"]],
+        "Tops": [["Hole ID", "Surface", "MD"], ["A", "top", 0]],
+    }
+    file = workbook(tmp_path / "site.xlsx", **sheets)
+    read = read_boreholes(file)
+    assert [len(table) for table in (read.collars, read.survey, read.intervals, read.picks)] == [2, 2, 2, 1]
+    np.testing.assert_array_equal(read.intervals["to"], [4, 5])
+    other = tmp_path / "other.csv"
+    other.write_text("hole,from,to,block\nA,0,7,clay\n")
+    assert read_boreholes(file, intervals=other).intervals["block"].tolist() == ["clay"]
+    twice = workbook(tmp_path / "twice.xlsx", **sheets, More=sheets["Lithology"])
+    with pytest.raises(InputRefused, match="'Lithology' and 'More' both have intervals"):
+        read_boreholes(twice)
+    with pytest.raises(InputRefused, match="no sheet has the columns"):
+        read_boreholes(workbook(tmp_path / "none.xlsx", Notes=sheets["Notes"]))
+
+
+@pytest.mark.parametrize(("of_collars", "of_log"), [("1", "1.0"), ("007", "7"), ("12", "0012"), ("7.0", "7")])
+def test_holes_whose_names_are_numbers(tmp_path, of_collars, of_log):
+    (collars := tmp_path / "c.csv").write_text(f"hole,x,y,z\n{of_collars},0,0,10\nB7,5,5,10\n")
+    (intervals := tmp_path / "i.csv").write_text(f"hole,from,to,block\n{of_log},0,4,sand\nB7,0,4,sand\n")
+    read = read_boreholes(collars=collars, intervals=intervals)
+    assert read.intervals["hole"].tolist() == [of_collars, "B7"]
+    assert [problem.kind for problem in read.problems] == ["hole_name"]
+
+
+def test_columns_with_one_name_are_said(tmp_path):
+    (collars := tmp_path / "c.csv").write_text("hole,x,y,z,Z\nA,0,0,10,99\n")
+    (intervals := tmp_path / "i.csv").write_text("hole,from,to,block\nA,0,4,sand\n,,,\n")
+    read = read_boreholes(collars=collars, intervals=intervals)
+    (said,) = read.warnings
+    assert "2 columns are named 'z'" in said and "columns = { z = 5 }" in said
+    other = read_boreholes(collars=collars, intervals=intervals, columns={"z": 5})
+    assert (other.collars["z"][0], other.warnings, other.problems) == (99, [], [])
+
+
+def test_decimal_commas_in_quotes_between_commas(tmp_path):
+    (collars := tmp_path / "c.csv").write_text('hole,x,y,z\nA,0,0,"10,5"\n')
+    (intervals := tmp_path / "i.csv").write_text('hole,from,to,block\nA,0,"4,25",sand\n')
+    read = read_boreholes(collars=collars, intervals=intervals)
+    assert (read.collars["z"][0], read.intervals["to"][0]) == (10.5, 4.25)

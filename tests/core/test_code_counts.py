@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, DipFile, MapFile, ObservationFile, count_codes
+from realmodel.core.readers.tables.unit_names import UnitNames, fits
 
 _MAP = """{"type": "FeatureCollection", "features": [
 {"type": "Feature", "properties": {"UNIT": "Qa"}, "geometry": {"type": "Polygon",
@@ -56,3 +57,28 @@ def test_of_all_kinds(tmp_path):
         "Qa": (1, 3),
         "Ss": (0, 2),
     }
+
+
+@pytest.mark.parametrize(
+    ("pattern", "code", "is_fit"),
+    [
+        ("Qal*", "qal-2", True),
+        ("Qal*", "Sand", False),
+        ("S?nd", "Sand", True),
+        ("/^Q[0-9]+$/", "q12", True),
+        ("/^Q[0-9]+$/", "q12a", False),
+        ("/a|b/", "xbx", True),
+    ],
+)
+def test_patterns_of_codes(pattern, code, is_fit):
+    assert fits(pattern, code) == is_fit
+
+
+def test_names_come_before_patterns_and_these_in_their_order():
+    names = UnitNames(
+        ["Silt", "Sand", "Clay"], ["Silt", "Sand", "Clay"], names={"S 9": "Clay", "S*": "Sand", "*": ""}
+    )
+    meant = [names.block(code) for code in ("Silt", "silt", "S 9", "s-9", "S1", "sst")]
+    assert meant == ["Silt", "Silt", "Clay", "Clay", "Sand", "Sand"]
+    assert names.says_nothing("anything") and names.says_nothing("lost core")
+    assert UnitNames(names={"Sand?": "Clay"}).meaning("Sandy") == "Sandy"  # an uncertain code is no pattern

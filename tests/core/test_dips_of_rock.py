@@ -22,6 +22,7 @@ from realmodel.core import (
 )
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import UnitNames, read_dips, read_dips_of_rock, read_observed_places
+from realmodel.core.readers.tables.dips import read_space_dips
 from realmodel.core.settings.rules import RULES
 from realmodel.core.surfaces.observed.dip_surfaces import beside_blocks, blocks_at, runs_of_blocks
 
@@ -267,3 +268,27 @@ def test_units_in_the_header_of_observations_and_dips_are_obeyed(tmp_path):
     file.write_text("x (fathoms),y,z,dip,azimuth\n10,2,30,5,1\n")
     with pytest.raises(InputRefused, match="set units"):
         read_dips(DipFile(file))
+
+
+def test_names_signs_and_nulls_of_the_trade(tmp_path):
+    file = tmp_path / "d.csv"
+    for names in (
+        "Fallen;Fallrichtung",
+        "buzamiento;dirección de buzamiento",
+        "pendage;direction de pendage",
+    ):
+        file.write_text(f"X;Y;Z;{names}\n0;0;5,5;30,0°;90°\n;;;;\n", encoding="utf-8")
+        dips = read_space_dips(DipFile(file))
+        np.testing.assert_allclose(dips.normals, [[0.5, 0, np.sqrt(0.75)]])
+    file.write_text("x,y,z,dip,dip_direction\n0,0,5,30,90\n1,0,5,-9999,-9999\n")
+    with pytest.raises(InputRefused, match="it has no dip; fill it in"):
+        read_space_dips(DipFile(file))
+
+
+def test_elevations_that_stand_for_none_are_none(tmp_path):
+    (file := tmp_path / "o.csv").write_text("x,y,z,block\n0,0,5,a\n1,0,-9999,a\n2,0,9,a\n")
+    seen, left_out = read_observed_places(ObservationFile(file), UnitNames(["a"], ["a"]))
+    assert seen.places[:, 2].tolist() == [5, 9]
+    assert [(entry.kind, "line 3" in entry.text) for entry in left_out] == [("no_depth", True)]
+    file.write_text("x,y,z,block\n0,0,-9990,a\n1,0,-9999,a\n2,0,-10010,a\n")  # deep, and all of them real
+    assert len(read_observed_places(ObservationFile(file), UnitNames(["a"], ["a"]))[0]) == 3

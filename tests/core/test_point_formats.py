@@ -333,6 +333,11 @@ def test_what_is_not_read_is_called_by_its_name(write, tmp_path):
         "LAZ": b"LASF\0\0",
         "PDF": b"%PDF-1.4\n",
         "gzip": b"\x1f\x8b\x08\0",
+        "bzip2": b"BZh91AY&SY",
+        "RAR": b"Rar!\x1a\x07\x01\0",
+        "7z": b"7z\xbc\xaf\x27\x1c",
+        "tar": b"points.csv" + bytes(247) + b"ustar",
+        "zip": b"PK\3\4" + bytes(26) + b"points.csv",
         "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
         "web": b"\n<!DOCTYPE html><html></html>",
     }

@@ -12,6 +12,7 @@ from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import (
+    Boreholes,
     InputRefused,
     OutputFailed,
     PointFile,
@@ -19,6 +20,7 @@ from realmodel.core import (
     build,
     load_project,
     propose_project,
+    read_boreholes,
 )
 from realmodel.core.proposal.order import evidence_of, find_order
 from test_hole_files import ags4
@@ -236,6 +238,30 @@ def test_any_names_of_units(tmp_path, names):
 def test_spellings_of_one_unit_are_one(tmp_path):
     holes = [PLAIN] * 4 + [[("soil", 2), ("SAND", 5), ("Clay", 18), ("rock", 20)]]
     assert proposed(tmp_path, holes).proposal.order == ["Rock", "Clay", "Sand", "Soil"]
+
+
+def test_codes_mean_what_names_say(tmp_path):
+    hole = [("S1", 2), ("LC", 1), ("Qal-2", 3), ("Qal old", 2), ("k7", 18), ("Rock", 20)]
+    tables = write_tables(tmp_path, [hole] * 9)
+    names = {"Qal*": "Alluvium", "/^k[0-9]$/": "Chalk", "S1": "Soil", "LC": "", "X*": "not there"}
+    project = propose_project(boreholes=tables, names=names)
+    assert project.proposal.order == ["Rock", "Chalk", "Alluvium", "Soil"]
+    assert "X*" not in project.rocks[0].names
+    assert build(project).observed().share == 1.0
+    load_project(project.save(tmp_path / "saved"))
+    with pytest.raises(InputRefused, match="no regular expression"):
+        propose_project(boreholes=tables, names={"/(/": "Chalk"})
+
+
+def test_boreholes_are_given_in_one_way(tmp_path):
+    tables = write_tables(tmp_path, [PLAIN] * 9)
+    assert len(read_boreholes(tables).collars) == len(read_boreholes(**tables).collars) == 9
+    given = Boreholes(**tables)
+    assert len(read_boreholes(given).intervals) == len(propose_project(boreholes=given).rocks[0].surfaces) * 9
+    for wrong in ({"collar": "c.csv"}, {"collars": 3}):
+        for reader in (read_boreholes, lambda tables: propose_project(boreholes=tables)):
+            with pytest.raises(UsageError):
+                reader(wrong)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

@@ -42,8 +42,8 @@ from .reporting import Reporting, a_rock, a_surface
 from .rocks import add_rock
 from .start import invoke
 
-_SHOWN = ("collars", "survey", "downward_dip", "columns", "units", "layer")
-_OF_IMPORTS = ("names", "add_surfaces")  # a proposal has all units, as they are called
+_SHOWN = ("collars", "survey", "downward_dip", "columns", "units", "layer", "names")
+_OF_IMPORTS = ("add_surfaces",)  # a proposal has all units
 _OF_MAPS = ("map_layer", "map_block", "map_ground", "map_accuracy")
 _MOST_DETAILED = 8  # chosen files of which columns and codes are shown
 _MOST_CODES = 20
@@ -65,11 +65,6 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
 
     bl_label = "Import Field Data"
 
-    names: StringProperty(
-        name="Names",
-        description="Meaning of the codes in the tables: surfaces, blocks or bodies, such as SST = "
-        "Sandstone; LC = (empty: ignored, as for lost core)",
-    )
     series: StringProperty(
         name="Dips Of Series",
         description="Series that gets the dips, at any angle and with polarity, whatever their rows name. "
@@ -191,7 +186,8 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
 
     def _of_proposal(self):
         called = self.called()
-        return {key: called[key] for key in called if key not in ("series", "add_surfaces")}
+        others = {key: called[key] for key in called if key not in ("series", "add_surfaces")}
+        return others | {"names": self.names}
 
     def draw(self, context):
         layout = self.layout

@@ -109,6 +109,11 @@ class ChosenTables(TableDialog, FilesImportHelper):
         description="Unit of all the tables",
         items=items(READING["units"].parts["z"].words),
     )
+    names: StringProperty(
+        name="Names",
+        description="Meaning of the codes in the tables: surfaces, blocks or bodies, such as SST = "
+        "Sandstone; Qal* = Alluvium; /^Q[0-9]/ = Alluvium; LC = (empty: ignored, as for lost core)",
+    )
     unrepaired: StringProperty(
         name="Unrepaired",
         description="Rows of tables of boreholes that are used as they are written, such as collars.csv:17; "

@@ -42,7 +42,8 @@ class _Regrouping(Reporting):
 
     pattern: StringProperty(
         name="Pattern",
-        description="Use the codes that match, instead of the ticked ones: Qal*, or several with commas",
+        description="Use the codes that match, instead of the ticked ones: Qal*, several with commas, or a "
+        "regular expression such as /^Q[0-9]/",
         options={"SKIP_SAVE"},
     )
 
@@ -142,6 +143,36 @@ class REALMODEL_OT_codes_reset(_Regrouping, bpy.types.Operator):
         return row.name
 
 
+class REALMODEL_OT_codes_move(_Regrouping, bpy.types.Operator):
+    """Move the ticked codes of field data, those that match a pattern, or the active one, to the next younger
+    or older unit of the list of surfaces. Their files are read again"""
+
+    bl_label = "Move Codes"
+
+    direction: EnumProperty(
+        name="Direction",
+        description="The unit that they move to",
+        items=(("UP", "Up", "The next younger unit"), ("DOWN", "Down", "The next older unit")),
+    )
+
+    def act(self, context):
+        rock = settings.active_rock(context.scene)
+        if not self.pattern.strip() and not any(row.chosen for row in rock.codes):
+            rock.codes[rock.active_code].chosen = True
+        super().act(context)
+
+    def unit_of(self, row):
+        surfaces = [surface.name for surface in settings.active_rock(bpy.context.scene).surfaces]
+        if row.unit not in surfaces:
+            what = f"code '{row.name}' means no surface"
+            raise InputRefused(what, advice="assign it to a unit, or reset it")
+        place = surfaces.index(row.unit) + (1 if self.direction == "UP" else -1)
+        if not 0 <= place < len(surfaces):
+            age = "youngest" if self.direction == "UP" else "oldest"
+            raise InputRefused(f"code '{row.name}' is of the {age} unit", advice="move it the other way")
+        return surfaces[place]
+
+
 class REALMODEL_OT_codes_choose(Reporting, bpy.types.Operator):
     """Tick the codes that match a pattern"""
 
@@ -150,8 +181,8 @@ class REALMODEL_OT_codes_choose(Reporting, bpy.types.Operator):
 
     pattern: StringProperty(
         name="Pattern",
-        description="Pattern of codes: Qal*, or several with commas. Empty: untick all, or tick all if "
-        "none is ticked",
+        description="Pattern of codes: Qal*, several with commas, or a regular expression such as "
+        "/^Q[0-9]/. Empty: untick all, or tick all if none is ticked",
         options={"SKIP_SAVE"},
     )
 

@@ -5,7 +5,7 @@ import bpy
 
 from ..bl.field import hole_validation
 from ..bl.jobs.proposal_job import ProposalJob
-from ..bl.project import imported, observed_blocks, settings
+from ..bl.project import imported, observed_blocks, reading_text, settings
 from ..bl.scene import live, proposed
 from ..core import BuildFailed, InputRefused
 from ..core.base.errors import counted
@@ -27,7 +27,8 @@ class REALMODEL_OT_propose_project(InBackground, ChosenTables, bpy.types.Operato
 
     def begin(self, context):
         self._scene = context.scene.name
-        job = ProposalJob(self.tables(context), context.scene.realmodel.units)
+        names = reading_text.named_texts(self.names)
+        job = ProposalJob(self.tables(context), context.scene.realmodel.units, names)
         live.postpone_work()
         return job
 
@@ -39,7 +40,7 @@ class REALMODEL_OT_propose_project(InBackground, ChosenTables, bpy.types.Operato
         proposal = done.project.proposal
         proposed.keep(scene, proposal)
         rock = settings.active_rock(scene)
-        known = observed_blocks.units_of(scene, rock)
+        known = observed_blocks.units_of(scene, rock, reading_text.named_texts(self.names))
         imported.record(rock, self.called() | {"add_surfaces": True}, done.counts, done.problems, known)
         with settings.filling():
             scene.realmodel.view.show_boreholes = bool(rock.hole_picks)

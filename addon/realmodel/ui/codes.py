@@ -55,6 +55,8 @@ class REALMODEL_PT_codes(FoldedPanel, bpy.types.Panel):
         row.operator("realmodel.codes_choose", text="None" if chosen else "All", icon="CHECKBOX_HLT")
         row.operator("realmodel.codes_reset", text="Reset", icon="LOOP_BACK")
         row.operator("realmodel.codes_ignore", text="Ignore", icon="X")
+        row.operator("realmodel.codes_move", text="", icon="TRIA_UP").direction = "UP"
+        row.operator("realmodel.codes_move", text="", icon="TRIA_DOWN").direction = "DOWN"
         text = f"Assign {chosen} to Unit..." if chosen else "Assign by Pattern..."
         layout.operator("realmodel.codes_assign", text=text, icon="FORWARD")
         if 0 <= rock.active_code < len(rock.codes):

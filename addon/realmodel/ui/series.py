@@ -64,6 +64,8 @@ def _draw_series(layout, rock, row):
         if not row.resolution:
             hint(layout, "0: chosen from the size of the rock mass")
         panel.draw(layout, row, "thickness", SERIES)
+        for key in ("error", "dip_error", "range"):
+            panel.draw(layout, row, key, SERIES)
     _draw_dips(layout, row)
     if not (row.kind == FIELD and _draw_needs(layout, rock)):
         _draw_refusal(layout, rock, row)

@@ -7,6 +7,7 @@ from ...core import InputRefused, propose_project
 from ...core.proposal import ProposedProject
 from ...core.readers.borehole_input import read_repaired
 from ...core.readers.code_counts import count_codes
+from ...core.readers.hole_files import read_once
 from ...core.surfaces.prepare import with_arrays
 from ..host.thread_job import ThreadJob
 
@@ -25,9 +26,10 @@ class Proposed:
 
 
 class ProposalJob(ThreadJob):
-    """Proposes a project from FieldTables, and returns what was Proposed. units: of the model."""
+    """Proposes a project from FieldTables, and returns what was Proposed. units: of the model. names: what
+    codes mean."""
 
-    def __init__(self, tables, units):
+    def __init__(self, tables, units, names):
         """Raises InputRefused."""
         self._tables, self._units = tables, units
         dips = [*tables.rock_dips, *tables.dips]
@@ -47,14 +49,16 @@ class ProposalJob(ThreadJob):
             "map": replace(tables.maps[0], ground=None) if tables.maps else None,
             "ground": ground or None,
             "dips": next(iter(dips), None),
+            "names": names,
         }
 
     def _work(self, job):
-        with job.part(0.0, _SHARE):
-            project = propose_project(**self._given, units=self._units)
-        with job.part(_SHARE, 1.0):
-            arrays = with_arrays(project)
-            counts = count_codes(*self._tables.coded, units=self._units)
-            holes = self._tables.boreholes
-            problems = [] if holes is None else read_repaired(holes, self._units).problems
+        with read_once():
+            with job.part(0.0, _SHARE):
+                project = propose_project(**self._given, units=self._units)
+            with job.part(_SHARE, 1.0):
+                arrays = with_arrays(project)
+                counts = count_codes(*self._tables.coded, units=self._units)
+                holes = self._tables.boreholes
+                problems = [] if holes is None else read_repaired(holes, self._units).problems
         return Proposed(project, arrays, counts, problems)

@@ -4,9 +4,9 @@ another meaning, or a repair is refused, the files are read again."""
 
 import json
 import math
-from fnmatch import fnmatchcase
 from pathlib import Path
 
+from ...core.readers.tables.unit_names import fits
 from . import settings
 
 _MOST_PROBLEMS = 1000  # of an import
@@ -77,9 +77,11 @@ def unit_text(rock, row):
 
 
 def fitting(rock, pattern):
-    """The codes that a pattern fits, whatever the capitals: several, with commas, of * and ?."""
-    parts = [part.strip().casefold() for part in pattern.split(",") if part.strip()]
-    return [row for row in rock.codes if any(fnmatchcase(row.name.casefold(), part) for part in parts)]
+    """The codes that a pattern fits: several of * and ?, with commas, or one regular expression between
+    slashes. Raises InputRefused for what is none."""
+    is_regular = pattern.strip().startswith("/")
+    parts = [pattern.strip()] if is_regular else [part.strip() for part in pattern.split(",") if part.strip()]
+    return [row for row in rock.codes if any(fits(part, row.name) for part in parts)]
 
 
 def rename(rock, old, new):

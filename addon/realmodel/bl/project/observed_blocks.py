@@ -12,7 +12,7 @@ from ..host import caches
 from . import settings
 
 _shown = caches.new(most=8)  # by digest
-NAMES = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors")
+NAMES = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors", "thicknesses")
 
 
 def keep(row, observations):

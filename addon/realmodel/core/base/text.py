@@ -23,6 +23,7 @@ LINES_AT_ONCE = 20_000
 BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 
 BOM = codecs.BOM_UTF8
+_END_OF_FILE = re.compile(rb"\x1a[\s\0]*\Z")
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 # Letters of code page 850 (ü, ä, ö, é and others) that cp1252 does not have, or has as signs.
 _OF_DOS = re.compile(rb"[\x81\x8d\x8f\x90\x9d]|[A-Za-z][\x82\x84\x85\x87-\x8a\x93\x94][a-z\x81-\xa5\xe1]")
@@ -35,13 +36,17 @@ def no_step(_fraction: float) -> None:
 
 
 class FileBytes:
-    """The bytes of a file for readers: read on demand, not cached. Raises InputRefused."""
+    """The bytes of a file for readers, or some in a row: read on demand, not cached. Raises InputRefused."""
 
-    def __init__(self, file: Path):
-        self._file = file
+    def __init__(self, file: Path, first: int = 0, stop: int | None = None):
+        self._file, self._first = file, first
         self._block, self._begin = b"", 0  # the block read last, and its position
         with reading(file):
-            self._size = file.stat().st_size
+            self._size = (file.stat().st_size if stop is None else stop) - first
+
+    def some(self, first: int, stop: int) -> FileBytes:
+        """Those from one position to another."""
+        return FileBytes(self._file, self._first + first, self._first + stop)
 
     def __len__(self) -> int:
         return self._size
@@ -60,7 +65,7 @@ class FileBytes:
     def _read(self, begin: int, end: int) -> bytes:
         content = bytearray()
         with reading(self._file), self._file.open("rb", buffering=0) as opened:
-            opened.seek(begin)
+            opened.seek(self._first + begin)
             while len(content) < end - begin and (more := opened.read(end - begin - len(content))):
                 content += more
         if len(content) < end - begin:
@@ -107,7 +112,17 @@ def text_content(file: Path) -> Content:
     """content_of a text file, with lines that end in \\n. Raises InputRefused."""
     content = content_of(file)
     require_text(file, content[:4096])
-    return with_newlines(content)
+    return with_newlines(_between_marks(content))
+
+
+def _between_marks(content: Content) -> Content:
+    """Text without the mark of UTF-8 before it, and without the sign with which files of DOS end."""
+    first = len(BOM) if content[: len(BOM)] == BOM else 0
+    sign = _END_OF_FILE.search(content[-64:])
+    stop = len(content) - (0 if sign is None else len(sign[0]))
+    if first == 0 and stop == len(content):
+        return content
+    return content[first:stop] if isinstance(content, bytes) else content.some(first, stop)
 
 
 def with_newlines(content: Content) -> Content:
@@ -132,11 +147,11 @@ def text_lines(file: Path) -> Iterator[tuple[int, list[str], float]]:
     share of the file is done then. Raises InputRefused."""
     content = content_of(file)
     require_text(file, content[:4096])
+    content = _between_marks(content)
     encoding, number = encoding_of(content), 1
-    begin = len(BOM) if encoding == "utf-8" and content[: len(BOM)] == BOM else 0
     decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder(encoding)(), translate=True)
     rest: list[str] = []  # of a line that continues
-    for at in range(begin, len(content), BYTES_AT_ONCE):
+    for at in range(0, len(content), BYTES_AT_ONCE):
         end = min(at + BYTES_AT_ONCE, len(content))
         whole, newline, more = decoder.decode(content[at:end], final=end == len(content)).rpartition("\n")
         rest.append(whole if newline else more)
@@ -169,7 +184,8 @@ def encoding_of(content: Content) -> str:
 
 
 def read_bytes(file: Path) -> bytes:
-    """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
+    """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8; without a mark of these.
+    Raises InputRefused."""
     with reading(file):
         raw = Path(file).read_bytes()
     if encoding := _utf_16(raw[:64]):
@@ -177,7 +193,7 @@ def read_bytes(file: Path) -> bytes:
             return raw.decode(encoding).encode()
         except UnicodeDecodeError as error:
             raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
-    return raw
+    return raw.removeprefix(BOM)
 
 
 def _utf_16(head: bytes) -> str | None:
@@ -192,9 +208,11 @@ def _utf_16(head: bytes) -> str | None:
 
 
 def as_utf8(head: bytes) -> bytes:
-    """The beginning of a file as UTF-8 where it is text in UTF-16."""
+    """The beginning of a file, as UTF-8 where it is text in UTF-16, without a mark of these."""
     encoding = _utf_16(head[:64])
-    return head if encoding is None else head[: len(head) // 2 * 2].decode(encoding, "ignore").encode()
+    if encoding is not None:
+        head = head[: len(head) // 2 * 2].decode(encoding, "ignore").encode()
+    return head.removeprefix(BOM)
 
 
 def line_of_word(content: Content, number: int, begin: int = 0, stop: int | None = None) -> int:
@@ -224,7 +242,8 @@ def read_text(file: Path) -> str:
     """The text of a file. Numbers are ASCII, so that names in any 8-bit encoding do no harm."""
     raw = read_bytes(file)
     require_text(file, raw)
-    return _with_plain_ends(raw.removeprefix(BOM).decode(encoding_of(raw)))
+    text = _between_marks(raw)[:]
+    return _with_plain_ends(text.decode(encoding_of(text)))
 
 
 def column_numbers(

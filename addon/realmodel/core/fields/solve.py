@@ -7,6 +7,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ..base.algebra import dot, norm
 from ..base.errors import InputRefused, place_text
 from ..base.stored_objects import NOT_STORED
 from ..base.work import NativeError, Work, refused_as
+from .given_kind import Kind, solved_as_given
 from .lattice import Lattice, ScalarField
 
 _NO_POINTS = np.empty((0, 3))
@@ -71,10 +73,11 @@ class LevelSetData:
     names: of the surfaces. contacts: (N, 3) points on surfaces; contact_surfaces: (N,) which. dips: (M, 3)
     points; normals: (M, 3) of length 1, the direction there in which rock gets younger. bounds: (B, 3)
     points between surfaces: above surface bound_below (B,) and below surface bound_above (B,), -1: none.
-    slits: faults that die out. error: how far contacts may be off, as a standard deviation. item: names a
-    datum in errors, from "contact", "dip" or "bound" and its row. keeps_thickness: whether beds keep their
-    thickness around bends and beyond the data, as in parallel folds; None: if this predicts data better that
-    are left out.
+    slits: faults that die out. error: how far contacts may be off, as a standard deviation, at least; the
+    data may show more. item: names a datum in errors, from "contact", "dip" or "bound" and its row.
+    keeps_thickness: whether beds keep their thickness around bends and beyond the data, as in parallel folds;
+    None: if this predicts data better that are left out. dip_error: the same of dips, in degrees. range:
+    beyond this distance data say nothing of the field but its tilt; None: as they show.
     """
 
     names: Sequence[str]
@@ -89,6 +92,8 @@ class LevelSetData:
     item: Callable[[str, int], str] = _item
     error: float = 0.0
     keeps_thickness: bool | None = None
+    dip_error: float = 0.0
+    range: float | None = None
 
 
 @dataclass(frozen=True)
@@ -156,18 +161,28 @@ def solve_field(
     a dip whose polarity is against that of its neighbors.
     """
     of_lattice = (lattice.origin, lattice.spacing, lattice.counts)
+    slits = None if data.slits is None else data.slits.native()
     with refused_as(lambda error: _refusal(error, data)) as native:
-        with work.phase(0.0, 0.95, "fitting the field", has_steps=True):
-            solution = work.native(
+
+        def solved(drawn: tuple | None) -> dict[str, Any]:
+            return work.native(
                 native.solve_field,
                 of_lattice,
                 (len(data.names), data.contacts, data.contact_surfaces, data.error),
                 (data.dips, data.normals),
                 (data.bounds, data.bound_below, data.bound_above),
                 (tolerance, MOST_CENTERS, data.keeps_thickness),
-                None if data.slits is None else data.slits.native(),
-                None if draw is None else draw.native(data),
+                slits,
+                drawn,
             )
+
+        def of_kind(kind: Kind) -> dict[str, Any]:
+            return solved(kind.without_chance(0 if slits is None else slits[0], len(data.dips)))
+
+        with work.phase(0.0, 0.95, "fitting the field", has_steps=True):
+            solution = solved(None if draw is None else draw.native(data))
+            if draw is None and (data.dip_error or data.range is not None):
+                solution = solved_as_given(solution, lattice, data.dip_error, data.range, of_kind)
         every = solution["values"].reshape(-1, lattice.nodes)
         with work.phase(0.95, 1.0, "critical points of the field"):
             points = [
@@ -313,6 +328,7 @@ class FieldDraws:
     def field(self, lattice: Lattice, data: LevelSetData, work: Work, number: int) -> SolvedField:
         """The field of the data, drawn. number: of the field in its series. Raises as solve_field."""
         digest = hashlib.sha256(repr(lattice).encode())
+        digest.update(repr((data.error, data.dip_error, data.range)).encode())
         for array in (data.contacts, data.dips, data.normals, data.bounds):
             digest.update(np.ascontiguousarray(array))
         key = digest.digest()

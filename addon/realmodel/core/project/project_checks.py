@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import InputRefused, UsageError
+from ..base.errors import InputRefused, UsageError, naming
+from ..readers.tables.unit_names import fits
 from ..settings.data_files import MapFile, MapLayer
 from ..settings.dips import DipFile, Dips, SpaceDips
 from ..settings.meshers import AUTO, local_lengths
@@ -109,6 +110,8 @@ def _check_names_of_data(project: Project, rock: Rock) -> None:
         raise rock.refused(f"'names' must be a table of names, not {rock.names!r}", "names", advice)
     unit_names = project.names_of_units(rock)
     for code, name in rock.names.items():
+        with naming(rock.item):
+            fits(code, "")  # refuses what is no pattern
         if not is_name(code) or not isinstance(name, str):
             raise rock.refused(f"'names' must give a name for each name, not {name!r}", "names", advice)
         if name and name not in unit_names:
@@ -143,6 +146,10 @@ def check_series(rock: Rock) -> None:
 def _check_sheets(rock: Rock, series: Series, members: list[int], refuse: Refuse) -> None:
     if series.resolution != BY_DATA:
         raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
+    for key in ("error", "dip_error", "range"):
+        if getattr(series, key):
+            what = f"'{key}' is of a field; sheets have the nugget and the range of their variogram"
+            raise refuse(what, key, "leave it out, or give the surfaces a variogram")
     if series.thickness != BY_DATA:
         what = "'thickness' has no effect, as sheets always share how their thickness varies"
         raise refuse(what, "thickness", "leave it out")

@@ -371,6 +371,8 @@ def observations_text(rock: Rock) -> bytes:
         more["seen_on"] = observations.on.tolist()
     if observations.errors.any():
         more["height_error"] = observations.errors.tolist()
+    if not np.isnan(observations.thicknesses_there).all():
+        more["thickness"] = ["" if np.isnan(t) else t for t in observations.thicknesses.tolist()]
     table.writerow(("x", "y", "z", "block", "hole", "depth", *more))
     for place, block, hole, depth, *others in zip(
         observations.places.tolist(),

@@ -24,7 +24,10 @@ class Series(Entry):
     together. dips: of the bedding, a file, a DipFile or SpaceDips; of sheets also Dips: each counts for the
     surface that it names, those of the series under and over its block, or for all where it names nothing.
     resolution: edge length of the lattice of a field, in model units, or "auto". thickness: of the beds of a
-    field away from the data: "parallel", they keep it; "free"; or "auto", what the data say.
+    field away from the data: "parallel", they keep it; "free"; or "auto", what the data say. error,
+    dip_error: of a field, by how much its contacts (model units) and dips (degrees) are off at least, as a
+    standard deviation. range: of a field, the distance beyond which they say nothing of it but its tilt;
+    None: as they show.
     """
 
     name: str = declared(kind="name", label="Name", tip="Name of the series", is_needed=True)
@@ -49,6 +52,34 @@ class Series(Entry):
         tip="How thick the beds of a field are away from the data",
         words=THICKNESSES,
         shapes=(FIELD,),
+    )
+    error: float = declared(
+        0.0,
+        kind="length",
+        label="Error",
+        tip="Standard deviation of the errors of contacts. 0: as the data show it",
+        low=0.0,
+        shapes=(FIELD,),
+        more="A given one is the least; see [errors and range](methods.md#errors-and-range-of-a-field)",
+    )
+    dip_error: float = declared(
+        0.0,
+        label="Dip Error",
+        tip="Standard deviation of the errors of dips, in degrees. 0: as the data show it",
+        low=0.0,
+        below=90.0,
+        shapes=(FIELD,),
+        more="A given one is the least",
+    )
+    range: float | None = declared(
+        kind="length",
+        label="Range",
+        tip="Distance beyond which contacts and dips do not influence the field",
+        above=0.0,
+        zero_is_none=True,
+        shapes=(FIELD,),
+        unset="as the data show it",
+        more="Default: as the data show it",
     )
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 

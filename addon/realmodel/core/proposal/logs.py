@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,6 +18,8 @@ from ..readers.tables.hole_tables import Row, normalized_name
 from ..readers.tables.observations import Observations
 from ..readers.tables.unit_names import UnitNames, may_be_a_unit
 from ..settings.data_files import Boreholes
+
+_NONE: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True)
@@ -82,13 +84,14 @@ class HoleLogs:
         return np.vstack([np.array([*ends, *collars]).reshape(-1, 3), *self.picks.values()])
 
 
-def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
-    """The logs and picks of boreholes, read as a project reads them, in order of their names. Raises
-    InputRefused naming file and line."""
+def read_logs(given: Boreholes, units: str = MODEL_UNIT, meanings: Mapping[str, str] = _NONE) -> HoleLogs:
+    """The logs and picks of boreholes, read as a project reads them, in order of their names. meanings: as
+    `names` of UnitNames. Raises InputRefused naming file and line."""
     tables = read_repaired(given, units)
-    short_codes, warnings = _short_codes(tables.intervals or ())
-    names = _unit_names(_codes(tables), short_codes)
-    picks = read_picks(given, units, no_step, UnitNames(names, names))
+    named = UnitNames(names=meanings)
+    short_codes, warnings = _short_codes(tables.intervals or (), named)
+    names = _unit_names(_codes(tables), UnitNames(tuple(short_codes), names=meanings))
+    picks = read_picks(given, units, no_step, UnitNames(names, names, names=meanings))
     logs: list[Log] = []
     for observations in picks.observations:
         for hole in sorted(set(observations.holes.tolist())):
@@ -114,17 +117,17 @@ def read_logs(given: Boreholes, units: str = MODEL_UNIT) -> HoleLogs:
     return HoleLogs(logs, given, picks.points, orders, tables.system, scale == 1.0, texts)
 
 
-def _short_codes(intervals: Iterable[Row]) -> tuple[set[str], list[str]]:
+def _short_codes(intervals: Iterable[Row], named: UnitNames) -> tuple[set[str], list[str]]:
     """Of the codes that may mean lost core or a unit those that are units: in half of the holes or more where
     they occur nothing else lies at the end, where there is no reason to log core that is not there. With
-    warnings of how all of them are taken."""
+    warnings of how all of them are taken; but for those that are `named`."""
     last: dict[str, Row] = {}
     holes: dict[str, set[str]] = {}
     for row in intervals:
         hole, code = row.text("hole"), row.text("block")
         if hole not in last or row.number("to") > last[hole].number("to"):
             last[hole] = row
-        if may_be_a_unit(code):
+        if may_be_a_unit(code) and code not in named.names:
             holes.setdefault(code, set()).add(hole)
     units, warnings = set(), []
     for code, within in sorted(holes.items()):
@@ -149,13 +152,13 @@ def _codes(tables: HoleTables) -> list[str]:
     return [row.text(column) for row, column in named if row.has(column)]
 
 
-def _unit_names(codes: Iterable[str], short_codes: Iterable[str]) -> list[str]:
+def _unit_names(codes: Iterable[str], known: UnitNames) -> list[str]:
     """The names of units: of spellings that differ in capitals, spaces and hyphens alone the commonest.
-    short_codes: those that are units."""
-    empty = UnitNames(tuple(short_codes))
-    count = Counter(code.strip() for code in codes if not empty.says_nothing(code))
+    known: what codes mean that are not their own names."""
+    count = Counter(known.meaning(code).strip() for code in codes if not known.says_nothing(code))
     names: dict[str, str] = {}
-    for code in sorted(count, key=lambda code: (-count[code], code)):
+    meant = set(known.names.values())
+    for code in sorted(count, key=lambda code: (code not in meant, -count[code], code)):
         names.setdefault(normalized_name(code), code)
     return sorted(names.values())
 

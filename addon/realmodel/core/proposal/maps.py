@@ -92,10 +92,17 @@ def read_map_units(
     dips: DipFile | None,
     heights: Callable[[np.ndarray], np.ndarray] | None,
     units: str,
+    meanings: Mapping[str, str],
 ) -> MapUnits:
-    """The units of a map and the evidence of their order. heights: of the ground at places (N, 2)."""
+    """The units of a map and the evidence of their order. heights: of the ground at places (N, 2). meanings:
+    as `names` of UnitNames."""
     polygons, _, warnings = read_unit_polygons(map_file, units)
-    polygons = [polygon for polygon in polygons if not UnitNames().says_nothing(polygon.unit)]
+    known = UnitNames(names=meanings)
+    polygons = [
+        replace(polygon, unit=known.meaning(polygon.unit))
+        for polygon in polygons
+        if not known.says_nothing(polygon.unit)
+    ]
     if not polygons:
         raise InputRefused(f"no feature has a unit in '{map_file.block}'", file=map_file.file)
     names = sorted({polygon.unit for polygon in polygons})
@@ -108,7 +115,8 @@ def read_map_units(
     found = MapUnits(polygons, evidence, touches, box, ground[np.isfinite(ground)], warnings=warnings)
     _add_ages(found, map_file)
     if dips is not None:
-        _add_dips(found, dips, polygons, units)
+        of_dips = UnitNames(names, names, names=meanings)
+        _add_dips(found, dips, of_dips, units)
     if heights is not None:
         _add_heights(found, grid.ravel(), ground)
     return found
@@ -171,10 +179,10 @@ def _age(value: Any) -> float | None:
     return None if not numbers else 1e4 - float(np.mean(numbers))
 
 
-def _add_dips(found: MapUnits, dips: DipFile, polygons: Sequence[UnitPolygon], units: str) -> None:
+def _add_dips(found: MapUnits, dips: DipFile, known: UnitNames, units: str) -> None:
     """A bed that dips beneath the next unit is older than that."""
     names = list(found.evidence.names)
-    measured, _ = read_dips_of_rock(dips, UnitNames(names, names), units)
+    measured, _ = read_dips_of_rock(dips, known, units)
     far = _FAR * float(np.ptp(found.box, axis=0).max())
     steepness = np.hypot(*measured.gradients.T)
     used = measured.in_use & (steepness > np.tan(np.radians(_LEVEL)))
@@ -184,7 +192,7 @@ def _add_dips(found: MapUnits, dips: DipFile, polygons: Sequence[UnitPolygon], u
         downward = -gradient / steep
         for sign in (1.0, -1.0):
             way = place + sign * np.linspace(0, far, _STEPS + 1)[:, None] * downward
-            beds = _units_at(polygons, names, way)
+            beds = _units_at(found.polygons, names, way)
             others = np.flatnonzero((beds != beds[0]) & (beds >= 0))
             if beds[0] < 0 or not len(others):
                 continue

@@ -21,9 +21,10 @@ from ..project.project import Project, Rock, Surface
 from ..project.project_checks import check_project
 from ..project.structure_entries import Body
 from ..readers import read_mesh
+from ..readers.borehole_tables import boreholes_of
 from ..readers.formats import MESH, RASTER, format_of
 from ..readers.map_input import system_of_map
-from ..readers.point_input import read_point_file, read_raster_heights, reading_keys
+from ..readers.point_input import read_point_file, read_raster_heights
 from ..readers.rasters.geotiff import geotiff_system
 from ..settings.crs import projected_code
 from ..settings.data_files import Boreholes, MapFile, MapLayer, MeshFile, PointFile
@@ -63,6 +64,7 @@ class _Data:
     map: MapFile | None
     dips: DipFile | None
     ground: PointFile | MeshFile | None
+    names: Mapping[str, str]
     holes: HoleLogs | None = None
     mapped: MapUnits | None = None
 
@@ -79,16 +81,19 @@ def propose_project(
     ground: PointFile | MeshFile | str | Path | None = None,
     region: ArrayLike | MapLayer | str | Path | None = None,
     dips: DipFile | str | Path | None = None,
+    names: Mapping[str, str] | None = None,
     units: str = MODEL_UNIT,
     name: str | None = None,
     crs: str | None = None,
 ) -> ProposedProject:
     """A project that builds at once, from data alone.
 
-    boreholes: a file that holds all tables, or Boreholes or their keys: {"collars": ..., "intervals": ...}.
+    boreholes: as the first argument of read_boreholes: a file that holds all tables, or the keys of
+    Boreholes: {"collars": ..., "intervals": ...}.
     map: a file of polygons, or a MapFile or its keys; without `block`, the attribute of units is found.
     ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None: around the data.
-    dips: a table. units: of the model. name: of the project. crs: as of Project; None: as files say.
+    dips: a table. names: what codes of the data mean, as `names` of Rock: {"SST": "Sandstone", "Qal*":
+    "Alluvium", "LC": ""}. units: of the model. name: of the project. crs: as of Project; None: as files say.
 
     The order of units follows from which lies over which; see `ProposedProject.proposal`. Raises InputRefused
     naming the file, UsageError.
@@ -97,18 +102,19 @@ def propose_project(
     ...     boreholes={"collars": "c.csv", "intervals": "i.csv"}
     ... )  # doctest: +SKIP
     """
-    data = _Data(_boreholes(boreholes, units), _map(map, ground), dip_file_of(dips), _ground_of(ground))
+    of_files = _map(map, ground), dip_file_of(dips), _ground_of(ground)
+    data = _Data(_boreholes(boreholes, units), *of_files, dict(names or {}))
     if data.boreholes is None and data.map is None:
         raise UsageError("propose_project needs boreholes or a map")
     if data.map is not None and data.ground is None and data.boreholes is None:
         advice = "give the elevations of the ground as well: ground = a raster, points or a mesh (--ground)"
         raise UsageError(f"a map alone has no elevations: {advice}")
     if data.boreholes is not None:
-        data.holes = read_logs(data.boreholes, units)
+        data.holes = read_logs(data.boreholes, units, data.names)
         data.boreholes = data.holes.boreholes
     if data.map is not None:
         heights = None if data.ground is None else _heights_of(data.ground, units)
-        data.mapped = read_map_units(data.map, data.dips, heights, units)
+        data.mapped = read_map_units(data.map, data.dips, heights, units, data.names)
     order = _order(data)
     out = sort_out(data.holes, order) if data.holes is not None else Sorted([])
     lens_units = {lens.unit for lens in out.lenses}
@@ -130,11 +136,7 @@ def propose_project(
 
 
 def _boreholes(given: Any, units: str) -> Boreholes | None:
-    if given is None or isinstance(given, Boreholes):
-        return given
-    keys = dict(given) if isinstance(given, Mapping) else {"file": given}
-    keys = {key: value for key, value in keys.items() if value is not None}
-    return reading_keys(Boreholes, keys.pop("file", None), units, keys.pop("units", None), keys)
+    return None if given is None else boreholes_of(given, units)
 
 
 def _map(given: Any, ground: Any) -> MapFile | None:
@@ -257,6 +259,7 @@ class _Maker:
             boreholes=data.boreholes,
             map=data.map,
             dips=data.dips,
+            names={code: unit for code, unit in data.names.items() if unit in ("", *names)},
         )
         return ProposedProject(
             name or self._name(),

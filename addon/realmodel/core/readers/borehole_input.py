@@ -15,6 +15,7 @@ from .hole_files import read_hole_files
 from .hole_values import read_logs
 from .object_input import hole_sheets, is_object_file
 from .point_input import refuse_keys
+from .table_kind import with_sheets
 from .tables.boreholes import Picks, picks_of_tables
 from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
 from .tables.hole_repair import repair
@@ -71,6 +72,7 @@ def read_repaired(
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     else:
-        tables = read_hole_files(given, model_unit, step)
+        given, names = with_sheets(given)
+        tables = read_hole_files(given, model_unit, step, sheets=names)
     repair(tables, units)
     return tables

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.errors import UsageError
 from ..base.table import Table
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
@@ -45,7 +46,7 @@ class BoreholeTables:
 
 
 def read_boreholes(
-    file: str | Path | None = None,
+    file: Boreholes | Mapping | str | Path | None = None,
     units: str = MODEL_UNIT,
     *,
     file_units: str | Mapping | None = None,
@@ -54,12 +55,13 @@ def read_boreholes(
     """Boreholes as a project reads them, repaired.
 
     file: of a format that holds all tables; else keys say which there are: collars, survey, intervals, picks,
-    and the other keys of Boreholes. units: of the model; file_units: of files that do not state one. Raises
-    InputRefused naming file and line, UsageError for an unknown unit or key.
+    and the other keys of Boreholes, here or as a mapping in the place of the file. units: of the model;
+    file_units: of files that do not state one. Raises InputRefused naming file and line, UsageError for an
+    unknown unit or key.
 
     >>> holes = read_boreholes(collars="collars.csv", intervals="lithology.csv")  # doctest: +SKIP
     """
-    boreholes = reading_keys(Boreholes, file, units, file_units, keys)
+    boreholes = boreholes_of(file, units, file_units, keys)
     tables = read_repaired(boreholes, units)
     scale = tables.scale(units)
     height = scale[2]
@@ -72,6 +74,22 @@ def read_boreholes(
         tables.problems,
         tables.warnings,
     )
+
+
+def boreholes_of(
+    given: Any, units: str, file_units: Any = None, keys: Mapping[str, Any] | None = None
+) -> Boreholes:
+    """The Boreholes of a file, or of their keys as a mapping, with other `keys`; as read_boreholes. Raises
+    UsageError."""
+    if isinstance(given, Boreholes) and not keys and file_units is None:
+        return given
+    if isinstance(given, Boreholes):
+        raise UsageError("Boreholes have keys already; leave the others out")
+    every = {**given, **(keys or {})} if isinstance(given, Mapping) else {"file": given, **(keys or {})}
+    every = {key: value for key, value in every.items() if value is not None}
+    if file_units is None:
+        file_units = every.pop("units", None)
+    return reading_keys(Boreholes, every.pop("file", None), units, file_units, every)
 
 
 def _texts(rows: list[Row], column: str) -> np.ndarray:

@@ -178,10 +178,15 @@ _NOT_READ = (
     ),
     (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
     (rb"%PDF-", "a PDF", "save its table as CSV"),
-    (rb"\x1f\x8b", "compressed by gzip", "unpack it"),
+    (rb"\x1f\x8b|BZh\d|\xfd7zXZ", "compressed by gzip, bzip2 or xz", "unpack it"),
+    (rb"Rar!\x1a|7z\xbc\xaf", "an archive (RAR or 7z)", "unpack it"),
+    (rb".{257}ustar", "an archive (tar)", "unpack it"),
     (rb"version https://git-lfs", "a Git LFS pointer instead of the file", "fetch it: git lfs pull"),
     (rb"(?i)\s*<(?:!doctype )?html", "a page of the web", "download the file itself"),
 )
+
+
+_ZIPS = (b"PK\3\4", b"PK\5\6")  # also of formats that are read
 
 
 def format_of(file: str | Path, *holds: str) -> FileFormat | None:
@@ -192,12 +197,15 @@ def format_of(file: str | Path, *holds: str) -> FileFormat | None:
         head = as_utf8(opened.read(_HEAD))
         size = opened.seek(0, os.SEEK_END)
     for beginning, what, advice in _NOT_READ:
-        if re.match(beginning, head):
+        if re.match(beginning, head, re.DOTALL):
             raise InputRefused(f"it is {what}, which is not read", file=file, advice=advice)
     able = [entry for entry in FORMATS if entry.holds in holds]
     by_ending = (entry for entry in able if entry.by_ending and file.suffix.lower() in entry.endings)
+    begins = next((entry for entry in able if entry.begins(head, size)), None)
+    if begins is None and head[:4] in _ZIPS and not any(entry.begins(head, size) for entry in FORMATS):
+        raise InputRefused("it is an archive (zip), which is not read", file=file, advice="unpack it")
     tables = (entry for entry in able if entry.holds == TABLE)  # of which the refusal is then
-    return next((entry for entry in able if entry.begins(head, size)), next(by_ending, next(tables, None)))
+    return begins or next(by_ending, next(tables, None))
 
 
 def endings(*holds: str) -> tuple[str, ...]:

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,17 +17,37 @@ from .formats import HOLES, format_of
 from .tables.hole_data import MEANINGS, HoleTables, read_hole_rows
 from .tables.hole_tables import RawTable
 
+_read: ContextVar[dict[str, HoleTables] | None] = ContextVar("read_tables", default=None)
+
+
+@contextmanager
+def read_once() -> Iterator[None]:
+    """Within it the same boreholes are read from their files once: for a job that needs them several times,
+    with other meanings of codes."""
+    token = _read.set({})
+    try:
+        yield
+    finally:
+        _read.reset(token)
+
 
 def read_hole_files(
     boreholes: Boreholes,
     model_unit: str,
     step: Step = no_step,
     needed: tuple[str, ...] | None = None,
+    sheets: Mapping[str, str] | None = None,
 ) -> HoleTables:
-    """read_hole_rows of tables and of files that hold all of them. Raises InputRefused naming file and
-    line."""
-    boreholes, sheets = _whole_files(boreholes)
-    return read_hole_rows(boreholes, model_unit, step, needed, sheets)
+    """read_hole_rows of tables and of files that hold all of them. sheets: the names of those of a workbook.
+    Raises InputRefused naming file and line."""
+    known, key = _read.get(), repr((boreholes, model_unit, needed))
+    if known is None or key not in known:
+        whole, tables_of = _whole_files(boreholes)
+        tables = read_hole_rows(whole, model_unit, step, needed, {**tables_of, **(sheets or {})})
+        if known is None:
+            return tables
+        known[key] = tables
+    return known[key].copy()
 
 
 def _whole_files(boreholes: Boreholes) -> tuple[Boreholes, dict[str, RawTable]]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 from ..base.errors import InputRefused
 from ..base.text import no_step
@@ -14,7 +15,9 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from .formats import HOLES, format_of
 from .hole_files import read_hole_files
+from .tables.dialects.workbook import is_workbook, sheet_names
 from .tables.dips import DIPS, NAMED
+from .tables.hole_data import MEANINGS
 from .tables.hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, Row, columns_in, rows
 
 _KNOWN = {
@@ -30,8 +33,10 @@ TABLE_KINDS = tuple(_KNOWN)
 _LOOKED_AT = 2000  # rows whose codes are listed
 
 
-def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None) -> str:
-    """One of TABLE_KINDS: what a table is, by the usual names of its columns.
+def table_kind(
+    file: str | Path, columns: Mapping[str, str | int] | None = None, sheet: str | None = None
+) -> str:
+    """One of TABLE_KINDS: what a table, or the sheet of a workbook, is, by the usual names of its columns.
 
     columns: names or numbers of those that are called otherwise, by meaning, as of Boreholes, ObservationFile
     and DipFile; they decide where the names in the header do not: a column that is named as `surface` makes a
@@ -48,7 +53,8 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
             return "assays"
         return "picks" if whole.intervals is None else "intervals"
     hole, logged, survey, seen, dips = (
-        columns_in(reading, file, meanings) for meanings in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
+        columns_in(reading, file, meanings, sheet)
+        for meanings in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
     )
     are_picks = {"hole", "surface"} <= hole.keys() and not {"depth", "elevation", "z"}.isdisjoint(hole)
     are_seen = {"x", "y", "z", "block"} <= seen.keys()
@@ -78,6 +84,36 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
         file=file,
         advice="name its columns, as in hole = BHID; depth = FROM",
     )
+
+
+def with_sheets(boreholes: Boreholes) -> tuple[Boreholes, dict[str, str]]:
+    """The same with the sheets of a workbook that is its `file` in the places of those tables that are not
+    named, and the names of these sheets by their kind; other sheets are ignored. Raises InputRefused where
+    there are several of a kind, or none."""
+    file = None if boreholes.file is None else Path(boreholes.file)
+    if file is None or not is_workbook(file):
+        return boreholes, {}
+    sheets: dict[str, str] = {}
+    for name in sheet_names(file):
+        try:
+            kind = table_kind(file, boreholes.columns, name)
+        except InputRefused:
+            continue
+        if kind not in MEANINGS or getattr(boreholes, kind) is not None:
+            continue
+        if kind in sheets:
+            what = f"sheets '{sheets[kind]}' and '{name}' both have {kind}"
+            raise InputRefused(
+                what, file=file, advice="save one of them as a file of its own, or rename its columns"
+            )
+        sheets[kind] = name
+    if not sheets:
+        advice = "a sheet of intervals has the columns hole, from, to and block"
+        raise InputRefused(
+            "no sheet has the columns of collars, surveys, picks or intervals", file=file, advice=advice
+        )
+    tables: dict[str, Any] = dict.fromkeys(sheets, file)
+    return replace(boreholes, file=None, **tables), sheets
 
 
 def _are_dips(columns: Mapping[str, str]) -> bool:

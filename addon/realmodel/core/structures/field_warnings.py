@@ -111,6 +111,13 @@ def warn_of_volumes(entry: RockInput, series: Series, numbers: list[int], field:
         _add(entry, series, text, "volumes", listed)
 
 
+def warn_of_thicknesses(entry: RockInput, series: Series, missed: list[str]) -> None:
+    """Adds the warning that beds have other thicknesses than given ones, as texts say."""
+    if missed:
+        text = "beds are thicker or thinner than was measured, as other data want it"
+        _add(entry, series, text, "observations", missed)
+
+
 def within_rock(work: Work, entry: RockInput, points: np.ndarray) -> np.ndarray:
     """(P,) bool: which points (P, 3) lie over the region and on or above the base of a rock mass."""
     base = entry.rock.base_elevation

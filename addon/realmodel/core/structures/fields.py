@@ -16,6 +16,7 @@ from ..base.work import Work, refused_as
 from ..fields import (
     HeldData,
     Lattice,
+    LevelSetData,
     ScalarField,
     SolvedField,
     fields_with_contacts,
@@ -28,6 +29,7 @@ from ..settings.series_kinds import BY_DATA, FIELD
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import RockStructure, joined, sides_of
 from ..surfaces.surface_heights import where_known
+from .bed_thicknesses import ROUNDS, BedThicknesses
 from .field_warnings import (
     leave_out,
     warn_of_contacts,
@@ -36,6 +38,7 @@ from .field_warnings import (
     warn_of_distance,
     warn_of_field,
     warn_of_lacks,
+    warn_of_thicknesses,
     warn_of_volumes,
     within_rock,
 )
@@ -186,6 +189,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     fields: dict[int, ScalarField] = {}
     critical = [np.empty((0, 3))]
     draws = entry.field_draws.get(series.name)
+    thicknesses = BedThicknesses.of(entry, numbers)
     for number, family in enumerate(work.share_out(shared)):
         within = CompartmentTest(work, structure, numbers[-1], family)
         names = [structure.names[compartment] for compartment in family.members]
@@ -195,17 +199,23 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
         with naming(f"{entry.rock.item}, {series.item}"):
             slits = Slits.of(entry, family, within, lattice)
             where = slits.numbers(sides[chosen])
-            parts = [chosen_data.contacts, chosen_data.dips, chosen_data.bounds]
-            level_data = chosen_data.level_set_data(slits.data(work, parts, where), series.keeps_thickness)
+            level_data = _level_set_data(work, series, chosen_data, slits, where, None)
+            sides_of_beds = sides_of(work, thicknesses.places, structure.faults)
+            is_here = within.has(sides_of_beds)
+            beds = thicknesses.some(is_here), slits.numbers(sides_of_beds[is_here])
+            if len(beds[0]):
+                level_data = _with_thicknesses(work, series, chosen_data, slits, where, beds, level_data)
             if draws is None:
                 field = solve_field(lattice, level_data, work)
             else:
                 field = draws.field(lattice, level_data, work, number)
+            field = chosen_data.known_to(field)
         leave_out(entry, series, chosen_data, field)
         warn_of_volumes(entry, series, numbers, field)
         kept_rows = chosen_data.kept_rows(field.bounds_missed)
         solved = _Solved([field, *field.others], slits, where[kept_rows], is_drawn=draws is not None)
         made = _through_data(work, entry, series, chosen_data.some(kept_rows), solved)
+        warn_of_thicknesses(entry, series, beds[0].missed(made, beds[1]))
         for side, solved_field in enumerate(made):
             points = solved_field.critical_points
             own_sides = sides_of(work, points, structure.faults)
@@ -216,6 +226,43 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
     of_compartment = [fields[number] for number in range(len(structure.compartments))]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
+
+
+def _level_set_data(
+    work: Work,
+    series: Series,
+    data: SeriesData,
+    slits: Slits,
+    where: np.ndarray,
+    more: tuple[np.ndarray, np.ndarray, np.ndarray] | None,
+) -> LevelSetData:
+    """For the solver. where: (N,) the combinations of sides of slits that data are on. more: further contacts
+    (M, 3) with their surfaces (M,) and combinations (M,)."""
+    contacts, surfaces, more_where = more or (np.empty((0, 3)), np.empty(0, np.int32), np.empty(0, np.int64))
+    parts = [np.concatenate([data.contacts, contacts]), data.dips, data.bounds]
+    where = np.insert(where, len(data.contacts), more_where)
+    level_data = data.level_set_data(slits.data(work, parts, where), series)
+    return replace(level_data, contacts=parts[0], contact_surfaces=np.concatenate([data.surfaces, surfaces]))
+
+
+def _with_thicknesses(
+    work: Work,
+    series: Series,
+    data: SeriesData,
+    slits: Slits,
+    where: np.ndarray,
+    beds: tuple[BedThicknesses, np.ndarray],
+    level_data: LevelSetData,
+) -> LevelSetData:
+    """The data of a field with the contacts that thicknesses give, in rounds. beds: these, and the
+    combinations that they are on."""
+    thicknesses, of_beds = beds
+    for _ in range(ROUNDS):
+        field = solve_field(slits.lattice, level_data, work)
+        fields = [field, *field.others]
+        contacts, surfaces, rows = thicknesses.contacts(data, fields, of_beds, slits.lattice)
+        level_data = _level_set_data(work, series, data, slits, where, (contacts, surfaces, of_beds[rows]))
+    return level_data
 
 
 def _chosen(
@@ -261,8 +308,8 @@ class _Solved(NamedTuple):
 def _through_data(
     work: Work, entry: RockInput, series: Series, data: SeriesData, solved: _Solved
 ) -> list[SolvedField]:
-    """The fields with contacts on their levels. Bounds that do not hold any more then are places on the
-    level, too: they hold in the end. Warns of what is not honored."""
+    """The fields with the contacts of tied surfaces on their levels. Bounds that do not hold any more then
+    are places on the level, too: they hold in the end. Warns of what is not honored."""
     fields, slits, where, is_drawn = solved
     levels = fields[0].levels[data.bound_surfaces]
     held = HeldData(data.dips, data.normals, data.bounds, np.where(data.is_lower, -1.0, 1.0), levels)
@@ -272,8 +319,10 @@ def _through_data(
         alike = slits.shared(places, numbers)
         return fields_with_contacts(work, fields, places, surfaces, alike, None if is_drawn else held)
 
+    is_tied = np.array([entry.rock.surfaces[number].tie for number in data.numbers])[data.surfaces]
+    tied = data.contacts[is_tied], data.surfaces[is_tied], of_contacts[is_tied]
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
-        made = through(data.contacts, data.surfaces, of_contacts)
+        made = through(*tied)
         is_free = ~are_among(data.bounds, data.contacts)
         pinned = np.zeros(len(is_free), bool)
         for _ in range(_ROUNDS):
@@ -282,11 +331,8 @@ def _through_data(
                 break
             pinned |= new
             places, first = np.unique(data.bounds[pinned], axis=0, return_index=True)
-            made = through(
-                np.concatenate([data.contacts, places]),
-                np.concatenate([data.surfaces, data.bound_surfaces[pinned][first]]),
-                np.concatenate([of_contacts, of_bounds[pinned][first]]),
-            )
+            of_places = places, data.bound_surfaces[pinned][first], of_bounds[pinned][first]
+            made = through(*(np.concatenate(both) for both in zip(tied, of_places, strict=True)))
     warn_of_field(entry, series, data, fields[0], np.flatnonzero(data.is_off(made, of_bounds, _NEAR)))
     return made
 

@@ -5,13 +5,13 @@ from."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..base.algebra import norm
 from ..base.errors import place_text
-from ..fields import LevelSetData, ScalarField, SlitData
+from ..fields import LevelSetData, ScalarField, SlitData, SolvedField
 from ..project.series import Series
 from ..readers.tables.observations import Bounds, LeftOut, Origin, source_text
 from ..settings.dips import SpaceDips
@@ -103,6 +103,15 @@ class SeriesData:
             off[here] = np.where(self.is_lower[here], above, -above) > near * float(np.ptp(field.values))
         return off
 
+    def known_to(self, field: SolvedField) -> SolvedField:
+        """A field of these and of contacts that follow from thicknesses, of which it says nothing then."""
+        count = len(self.contacts)
+        contradicted = [
+            [(kind, row) for kind, row in listed if kind != "contact" or row < count]
+            for listed in field.contradicted
+        ]
+        return replace(field, contradicted=contradicted)
+
     def positions(self) -> np.ndarray:
         """(C + D + B, 3) the places of contacts, dips and bounds."""
         return np.concatenate([self.contacts, self.dips, self.bounds])
@@ -117,9 +126,10 @@ class SeriesData:
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
         return [self.entry.rock.surfaces[self.numbers[row]].name for row in lacks]
 
-    def level_set_data(self, slits: SlitData | None, keeps_thickness: bool | None) -> LevelSetData:
-        """The same for the solver, with what faults that die out say of it, and as of Series."""
+    def level_set_data(self, slits: SlitData | None, series: Series) -> LevelSetData:
+        """The same for the solver, with what faults that die out say of it, and with its settings."""
         none = np.int32(-1)
+        of_heights = mean_error([self.entry.data[number] for number in self.numbers])
         return LevelSetData(
             [self.entry.rock.surfaces[number].name for number in self.numbers],
             self.contacts,
@@ -131,8 +141,10 @@ class SeriesData:
             np.where(self.is_lower, self.bound_surfaces, none),
             slits,
             self.item,
-            float(np.sqrt(mean_error([self.entry.data[number] for number in self.numbers]))),
-            keeps_thickness,
+            max(float(np.sqrt(of_heights)), series.error),
+            series.keeps_thickness,
+            series.dip_error,
+            series.range,
         )
 
     def item(self, kind: str, row: int) -> str:
@@ -143,6 +155,8 @@ class SeriesData:
             bounds = self._bounds_of(row)
             at = int(self.bound_rows[row])
             return source_text(str(bounds.holes[at]), float(bounds.depths[at]), self.bounds[row])
+        if row >= len(self.contacts):
+            return "a thickness"
         number, at = self.numbers[self.surfaces[row]], int(self.contact_rows[row])
         data = self.entry.data[number]
         is_point = at < data.contacts_from

@@ -12,7 +12,7 @@ from ...base.errors import InputRefused, number_list
 from ...base.table import Table
 from ...settings.dips import SpaceDips
 from ..project import Project
-from .peer_groups import ERODE, FAULT, ONLAP, Box, PeerGroup, PeerSurface, project_of_groups
+from .peer_groups import ERODE, FAULT, ONLAP, Box, GroupSettings, PeerGroup, PeerSurface, project_of_groups
 from .peer_table import ANGLES, VECTORS, XYZ, normals_of, positions_of, read_peer_table
 
 _NAME = {"surface": ("surface", "formation", "surfaces", "formations", "name")}
@@ -27,6 +27,7 @@ def from_gempy(
     extent: Sequence[float],
     faults: Sequence[str] = (),
     relations: Mapping[str, str] | None = None,
+    settings: GroupSettings | None = None,
     name: str = "model",
 ) -> Project:
     """The project of a GemPy model, with the arguments that this has.
@@ -36,7 +37,9 @@ def from_gempy(
     that it names; None: there are none. stack: the surfaces of each group, both youngest first; a surface is
     the base of the unit of its name. extent: x0, x1, y0, y1, z0, z1 of the box, which is filled to its top.
     faults: names of groups that are faults; they displace the groups after them. relations: of groups, to
-    what is older: "erode" (default), "onlap" or "fault". name: of the project. A surface without points is
+    what is older: "erode" (default), "onlap" or "fault". settings: of groups, the keys of their series, and
+    `tie` of their surfaces: {"Strat_Series": {"error": 5.0, "range": 2000.0, "tie": False}} smooths as a
+    nugget effect does. name: of the project. A surface without points is
     the basement, if it is the last one. Rows may be in any order.
 
     Raises InputRefused for what cannot be read or does not fit together.
@@ -77,7 +80,7 @@ def from_gempy(
     box = np.asarray(extent, np.float64).reshape(-1)
     if box.shape != (6,):
         raise InputRefused(f"'extent' must be six numbers, not {len(box)}", advice="x0, x1, y0, y1, z0, z1")
-    return project_of_groups(groups, Box(box[0::2], box[1::2]), name, basement)
+    return project_of_groups(groups, Box(box[0::2], box[1::2]), name, basement, settings)
 
 
 def _relations(

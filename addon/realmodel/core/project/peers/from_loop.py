@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ...base.errors import InputRefused, number_list
 from ...settings.dips import SpaceDips
 from ..project import Project
-from .peer_groups import ERODE, FAULT, Box, PeerGroup, PeerSurface, project_of_groups
+from .peer_groups import ERODE, FAULT, Box, GroupSettings, PeerGroup, PeerSurface, project_of_groups
 from .peer_table import ANGLES, VECTORS, XYZ, normals_of, positions_of, read_peer_table
 
 _FEATURE = "feature_name"
@@ -33,7 +33,13 @@ Column = Sequence[Group] | Mapping[str, Mapping[str, Mapping]]
 
 
 def from_loop(
-    data: Any, column: Column, *, bounds: ArrayLike, faults: Sequence[str] = (), name: str = "model"
+    data: Any,
+    column: Column,
+    *,
+    bounds: ArrayLike,
+    faults: Sequence[str] = (),
+    settings: GroupSettings | None = None,
+    name: str = "model",
 ) -> Project:
     """The project of a LoopStructural model.
 
@@ -45,7 +51,8 @@ def from_loop(
     LoopStructural, {"strati": {"sand": {"min": 0, "max": 60}, ...}, ...}. Each group erodes what is older;
     the last unit of all may be without data: the basement. faults: features whose surface is where coordinate
     0 is 0; they displace all groups. bounds: the lower and the upper corner of the box, which is filled to
-    its top. name: of the project. Features that are not named are not used.
+    its top. settings: of groups, as of from_gempy. name: of the project. Features that are not named are not
+    used.
 
     Raises InputRefused for what cannot be read or does not fit together, and for intrusions.
 
@@ -64,7 +71,7 @@ def from_loop(
     box = np.asarray(bounds, np.float64)
     if box.shape != (2, 3):
         raise InputRefused("'bounds' must be two corners of three numbers")
-    return project_of_groups([*of_faults, *groups], Box(box[0], box[1], "bounds"), name, basement)
+    return project_of_groups([*of_faults, *groups], Box(box[0], box[1], "bounds"), name, basement, settings)
 
 
 @dataclass(frozen=True)

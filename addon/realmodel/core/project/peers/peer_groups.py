@@ -8,8 +8,9 @@ top, below the oldest surface is the basement. Each group of conformable surface
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -18,13 +19,14 @@ from ...base.errors import InputRefused, number_list
 from ...settings.dips import SpaceDips
 from ..project import Project, Rock, Surface
 from ..project_checks import check_project
-from ..series import Series
+from ..series import SERIES, Series
 from ..structure_entries import Fault
 
 ERODE, ONLAP, FAULT = "erode", "onlap", "fault"
 _RULES = {ERODE: "erosional", ONLAP: "conformable"}
 _LOOKED_AT = 200  # points of a surface that are compared with those of another
 _BASEMENT, _TOP, _ROCK = "basement", "top", "rock"
+_TIE = "tie"  # of surfaces
 
 
 @dataclass(frozen=True)
@@ -65,11 +67,18 @@ class Box:
         return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
-def project_of_groups(groups: Sequence[PeerGroup], box: Box, name: str, basement: str | None) -> Project:
+GroupSettings = Mapping[str, Mapping[str, Any]]  # of groups by their names: keys of series, and `tie`
+
+
+def project_of_groups(
+    groups: Sequence[PeerGroup], box: Box, name: str, basement: str | None, settings: GroupSettings | None
+) -> Project:
     """The project of groups, the youngest first. basement: the name of what is below the oldest surface, if
     it has one. Raises InputRefused."""
     groups = list(map(_by_age, groups))
     beds = [group for group in groups if group.relation != FAULT]
+    settings = settings or {}
+    _check_settings(settings, [group.name for group in beds])
     youngest_first = [surface for group in beds for surface in group.surfaces]
     if not youngest_first:
         raise InputRefused("there are no surfaces with points besides faults")
@@ -78,7 +87,12 @@ def project_of_groups(groups: Sequence[PeerGroup], box: Box, name: str, basement
     blocks = [*units[1:], below]
     surfaces = [
         Surface(
-            surface.name, points=surface.points, series=group.name, rule=_RULES[group.relation], block=block
+            surface.name,
+            points=surface.points,
+            series=group.name,
+            rule=_RULES[group.relation],
+            block=block,
+            tie=settings.get(group.name, {}).get(_TIE, True),
         )
         for (group, surface), block in zip(
             ((group, surface) for group in beds for surface in group.surfaces), blocks, strict=True
@@ -88,11 +102,29 @@ def project_of_groups(groups: Sequence[PeerGroup], box: Box, name: str, basement
     top = np.column_stack([box.corners, np.full(4, box.high[2])])
     triangles = np.array([(0, 1, 2), (0, 2, 3)], np.int32)
     surfaces.append(Surface(top_name, vertices=top, triangles=triangles, block=units[0]))
-    series = [Series(group.name, dips=group.dips if len(group.dips) else None) for group in beds][::-1]
+    series = [
+        Series(
+            group.name,
+            dips=group.dips if len(group.dips) else None,
+            **{key: value for key, value in settings.get(group.name, {}).items() if key != _TIE},
+        )
+        for group in beds
+    ][::-1]
     rock = Rock(_ROCK, surfaces, region=box.corners, base_elevation=float(box.low[2]), series=series)
     project = Project(name, [rock], faults=_faults(groups, box))
     check_project(project)
     return project
+
+
+def _check_settings(settings: GroupSettings, groups: Sequence[str]) -> None:
+    keys = [key for key in SERIES if key not in ("name", "kind", "dips")] + [_TIE]
+    for group, given in settings.items():
+        if group not in groups:
+            advice = f"there are {number_list(map(repr, groups))}"
+            raise InputRefused(f"'settings' are of '{group}', which is no group of surfaces", advice=advice)
+        if unknown := [key for key in given if key not in keys]:
+            advice = f"there are {', '.join(keys)}"
+            raise InputRefused(f"group '{group}' has no setting '{unknown[0]}'", advice=advice)
 
 
 def _by_age(group: PeerGroup) -> PeerGroup:

@@ -123,7 +123,7 @@ def _groups(file: Path) -> dict[str, _Group]:
 def _entries(file: Path) -> Iterator[tuple[int, list[str]]]:
     for line, text in enumerate(read_text(file).split("\n"), 1):
         if text.strip():
-            yield line, next(csv.reader([text.strip().rstrip("\x1a")])) or [""]
+            yield line, next(csv.reader([text.strip()], skipinitialspace=True)) or [""]
 
 
 def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base.algebra import is_number
 from ...base.errors import InputRefused
-from ...base.text import BOM, Step, no_step
+from ...base.text import BOM, Step, no_step, read_bytes
 from ...settings.data_files import MapLayer
 from .shapes import Heights, Selection, Shapes
 
@@ -33,9 +33,7 @@ def read_geojson(layer: MapLayer, _step: Step = no_step, heights: Heights | None
     """
     file = Path(layer.file)
     try:
-        text = file.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+        text = read_bytes(file).decode()
     except UnicodeDecodeError as error:
         raise InputRefused("not UTF-8 text", file=file, advice="save it as UTF-8") from error
     try:

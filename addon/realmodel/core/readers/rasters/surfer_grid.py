@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
-from ...base.text import FileBytes, Step, no_step, text_content
+from ...base.text import FileBytes, Step, as_utf8, no_step, text_content
 from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
 from .raster import Raster, known_heights
 
@@ -30,8 +30,7 @@ def read_surfer_grid(
 ) -> Raster:
     """A grid; its rows go from south to north. Raises InputRefused naming the line or the byte."""
     file = Path(file)
-    with file.open("rb") as opened:
-        kind = opened.read(4)
+    kind = as_utf8(FileBytes(file)[:64])[:4]
     read = {b"DSAA": _text, b"DSBB": _binary_6, b"DSRB": _binary_7}[kind]
     heights, shape, none, (west, south), (dx, dy) = read(file, step)
     z = known_heights(heights, [*none, *nodata], gather, _BLANK)

@@ -21,12 +21,35 @@ from .unit_names import UnitNames
 
 DIPS = {
     **AXES,
-    "dip": ("dip", "dip_angle", "dipangle", "inclination", "incl", "plunge"),
+    "dip": (
+        *(
+            "dip",
+            "dip_angle",
+            "dipangle",
+            "inclination",
+            "incl",
+            "plunge",
+            "Fallen",
+            "Einfallen",
+            "Fallwinkel",
+        ),
+        *("Einfallwinkel", "pendage", "buzamiento", "inclinación", "helling", "hellingshoek"),
+    ),
     "dip_direction": (
         *("dip_direction", "dipdirection", "dip direction", "dip_dir", "dipdir", "dip dir", "dip_azimuth"),
-        *("dip azimuth", "dipazimuth", "azimuth", "azi"),
+        *(
+            "dip azimuth",
+            "dipazimuth",
+            "azimuth",
+            "azi",
+            "Fallrichtung",
+            "Einfallrichtung",
+            "Einfallsrichtung",
+        ),
+        *("Azimut", "direction_pendage", "direction de pendage", "azimut de pendage", "Acimut"),
+        *("direccion_buzamiento", "dirección de buzamiento", "hellingsrichting"),
     ),
-    "strike": ("strike", "strike_rhr", "strike rhr", "strike_rh"),
+    "strike": ("strike", "strike_rhr", "strike rhr", "strike_rh", "Streichen", "rumbo", "strekking"),
     "polarity": ("polarity", "younging", "facing"),
     "slope_x": ("slope_x", "dz_dx"),
     "slope_y": ("slope_y", "dz_dy"),
@@ -132,10 +155,16 @@ def _normal(row: Row) -> np.ndarray:
         return upright if polarity > 0 else -upright
     if "dip" not in row.columns:
         raise _no_column(row, "dip")
-    dip = row.number("dip")
+    dip = _angle(row)
     if not 0 <= dip <= 180:
         raise row.refuse(f"the dip {dip:g} is not from 0 to 180 degrees", "leave the row out")
     return normal_of(dip, 0.0 if dip in (0, 180) else _direction_of(row), polarity < 0)
+
+
+def _angle(row: Row) -> float:
+    if not row.has("dip"):
+        raise row.refuse("it has no dip", "fill it in, or leave the row out")
+    return row.number("dip")
 
 
 def _polarity(row: Row) -> float:
@@ -165,7 +194,7 @@ def _gradient(row: Row) -> np.ndarray:
         return np.array([row.number("slope_x"), row.number("slope_y")])
     if "dip" not in row.columns:
         raise _no_column(row, "dip")
-    dip = row.number("dip")
+    dip = _angle(row)
     if _polarity(row) < 0:
         raise row.refuse(f"the dip is overturned: {_SHEET}", _ELSEWHERE)
     if not 0 <= dip < 90:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,14 @@ class HoleTables:
     warnings: list[str] = field(default_factory=list)
     lines: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
 
+    def copy(self) -> HoleTables:
+        """The same rows in other lists, which may be repaired."""
+        copied = replace(self, factors={kind: dict(of) for kind, of in self.factors.items()})
+        for name in ("collars", "survey", "picks", "intervals", "problems", "warnings"):
+            rows = getattr(self, name)
+            setattr(copied, name, None if rows is None else list(rows))
+        return copied
+
     def scale(self, model_unit: str) -> np.ndarray:
         """(3,) the factors of x, y and of heights and depths to the model's unit."""
         plan, height = factors(self.boreholes.units, model_unit)
@@ -71,11 +80,11 @@ def read_hole_rows(
     model_unit: str,
     step: Step = no_step,
     needed: tuple[str, ...] | None = None,
-    sheets: dict[str, RawTable] | None = None,
+    sheets: Mapping[str, RawTable | str] | None = None,
 ) -> HoleTables:
     """The rows of the tables of some boreholes as they are. needed: the columns of intervals that there must
-    be; None: with the block. sheets: tables of files that hold several, by their kind. Raises
-    InputRefused naming file and line."""
+    be; None: with the block. sheets: tables of files that hold several, by their kind, or the names of those
+    of a workbook. Raises InputRefused naming file and line."""
     required = _NEEDED | ({} if needed is None else {"intervals": needed})
     sheets = sheets or {}
     tables = HoleTables(boreholes)
@@ -83,21 +92,22 @@ def read_hole_rows(
         file = getattr(boreholes, kind)
         if file is None:
             continue
+        table = sheets.get(kind)
         is_log = kind == "intervals" and Path(file) in boreholes.log_files
         if is_log or (
-            kind in sheets and "block" in required[kind] and not _has_blocks(boreholes, sheets[kind])
+            isinstance(table, RawTable) and "block" in required[kind] and not _has_blocks(boreholes, table)
         ):
             continue  # curves of a log
         slow = step if kind in ("picks", "intervals") else no_step
-        if kind in sheets:
-            table_rows = sheet_rows(boreholes, Path(file), sheets[kind], known, required[kind])
-            choice = sheets[kind].choice
+        if isinstance(table, RawTable):
+            table_rows = sheet_rows(boreholes, Path(file), table, known, required[kind])
+            choice = table.choice
             if choice is not None and "block" not in boreholes.columns:
                 tables.block_column, text = choice
                 tables.warnings.append(f"{file}: {text}")
-            tables.system = tables.system or sheets[kind].system
+            tables.system = tables.system or table.system
         else:
-            table_rows = list(rows(boreholes, Path(file), known, required[kind], slow))
+            table_rows = list(rows(boreholes, Path(file), known, required[kind], slow, table))
         setattr(tables, kind, table_rows)
         if table_rows:
             header = table_rows[0].header

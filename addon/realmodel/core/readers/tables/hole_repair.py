@@ -4,6 +4,7 @@ rows are not changed."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -29,6 +30,7 @@ _NUMBERS = {
 _HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be below 0
 _NULLS = frozenset(OFTEN_NO_VALUE)
 _ALWAYS = 1e19  # so large nothing is
+_WHOLE = re.compile(r"0*(\d+)(?:[.,]0+)?")  # names of holes that are numbers, as programs write these
 _OTHERS = 3  # holes that have two surfaces in the other order make a hole look wrong
 # Beyond the range of the others by so many times it, a collar is none of them.
 _FAR = 1.0
@@ -204,11 +206,11 @@ def _complete_collars(tables: HoleTables, problems: ProblemList) -> tuple[list[R
 
 def _rename(tables: HoleTables, problems: ProblemList) -> None:
     """Writes the holes of other tables as those of the collars, where these have other capitals, spaces,
-    hyphens or underscores."""
+    hyphens or underscores, or are the same whole number: 7, 007 and 7.0."""
     places: dict[str, dict[str, tuple]] = {}
     for row in tables.collars or ():
         place = tuple(row.number(axis) for axis in "xyz")
-        places.setdefault(normalized_name(row.text("hole")), {})[row.text("hole")] = place
+        places.setdefault(_spelling(row.text("hole")), {})[row.text("hole")] = place
     known = {hole for holes in places.values() for hole in holes}
     for kind in ("survey", "picks", "intervals"):
         rows = getattr(tables, kind) or []
@@ -216,11 +218,17 @@ def _rename(tables: HoleTables, problems: ProblemList) -> None:
             hole = row.text("hole") if row.has("hole") else ""
             if not hole or hole in known:
                 continue
-            alike = places.get(normalized_name(hole), {})
+            alike = places.get(_spelling(hole), {})
             if len(set(alike.values())) == 1:
                 name = next(iter(alike))
                 problems.note("hole_name", REPAIRED, row, f"taken for '{name}'")
                 rows[n] = row.with_values({"hole": name})
+
+
+def _spelling(hole: str) -> str:
+    """The name of a hole, for comparing."""
+    whole = _WHOLE.fullmatch(hole)
+    return normalized_name(hole) if whole is None else whole[1]
 
 
 def _with_collars(

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.no_value import NO_VALUE
+from ...base.no_value import NO_VALUE, OFTEN_NO_VALUE
 from ...base.text import Step
 from ...base.units import factor, stated_units, unit_text_of_column
 from .points import AXES, TextTable, open_table
@@ -136,14 +136,18 @@ OBSERVED = {
     "use": ("use",),
     "on": ("seen_on",),
     "error": ("height_error",),
+    "thickness": ("thickness", "true_thickness"),
 }
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
+_SEPARATORS = ",;|\t "  # a row of these alone is empty, as Excel writes them
+_GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _MOST_TURNED = 720.0  # degrees
 _ANGLES = frozenset(("azimuth", "dip", "inclination", "dip_direction", "strike"))
 _DEGREES = {"rad": 180 / np.pi, "radian": 180 / np.pi, "radians": 180 / np.pi, "gon": 0.9, "grad": 0.9}
-LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
+_WITH_NULLS = _ANGLES | {"z", "thickness", "error"}  # of observations and dips
+LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end", "thickness"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
 
@@ -261,13 +265,19 @@ class Row:
         return plain_name(names[at]) if at < len(names) else ""
 
     def number(self, column: str, advice: str | None = None) -> float:
-        entry = self.text(column)
+        entry = self.text(column).removesuffix("°")
         if not is_number(entry, self.decimal):
             raise self.refuse(f"{column} is not a number: '{entry:.40}'", advice)
         value = float(entry.replace(",", "."))
         if not np.isfinite(value):
             raise self.refuse(f"{column} is {entry}, not a finite number")
         return value
+
+    def number_of(self, column: str) -> float | None:
+        """The number in a column; None where there is none."""
+        if not self.has(column) or not is_number(self.text(column), self.decimal):
+            return None
+        return float(self.text(column).replace(",", "."))
 
     def azimuth(self, column: str) -> float:
         """An angle in plan, degrees: also one beyond 360, but none that stands for no value."""
@@ -277,27 +287,31 @@ class Row:
         return value
 
 
-def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
+def rows(
+    given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step, sheet: str | None = None
+) -> Iterator[Row]:
     """The rows of a table as they are written, with those of the known columns that it has. Raises
-    InputRefused where it lacks one that is needed."""
-    table = _opened(given, file, known, needed)
+    InputRefused where it lacks one that is needed. sheet: of a workbook; None: the only one with these."""
+    table = _opened(given, file, known, needed, sheet)
     layout = table.layout
     header = _header(given, file, layout, known)
     _require(given, header, needed)
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
-    if given.decimal is None and separator != ",":
+    if given.decimal is None:
         entries = list(_parts(body, separator))
         has_points = any("." in entry and is_number(entry) for entry in entries)
-        has_commas = any("," in entry and is_number(entry, ",") for entry in entries)
+        of_commas = [entry for entry in entries if "," in entry and is_number(entry, ",")]
+        # in quotes between commas 1,234 may have a sign between thousands
+        has_commas = any(separator != "," or not _GROUPED.fullmatch(entry) for entry in of_commas)
         decimal = "," if has_commas and not has_points else "."
     total = max(body.count("\n"), 1)
     for number, line in enumerate(body.split("\n")):
         if number % _STEP == 0:
             step(number / total)
         stripped = line.strip()
-        if not stripped or stripped.startswith("#"):
+        if not stripped.strip(_SEPARATORS) or stripped.startswith("#"):
             continue
         yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
 
@@ -323,11 +337,29 @@ def rows_in_one_unit(
     given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step, model_unit: str
 ) -> Iterator[Row]:
     """The same, in the unit of the key `units`, or else in that of the model."""
-    factors: dict[str, float] | None = None
-    for row in rows(given, file, known, needed, step):
-        if factors is None:
-            factors, _ = header_factors(row.header, given.units, model_unit)
+    every = _without_nulls(list(rows(given, file, known, needed, step)))
+    factors = header_factors(every[0].header, given.units, model_unit)[0] if every else {}
+    for row in every:
         yield row.scaled(factors) if factors else row
+
+
+def _without_nulls(every: list[Row]) -> list[Row]:
+    """Rows without numbers that mean no value: angles and thicknesses of -9999, and elevations that are far
+    from all others as well."""
+    heights = [z for row in every if (z := row.number_of("z")) is not None and z not in OFTEN_NO_VALUE]
+    low, high = min(heights, default=0.0), max(heights, default=0.0)
+
+    def is_null(row: Row, column: str) -> bool:
+        value = row.number_of(column)
+        if value not in OFTEN_NO_VALUE:
+            return False
+        return column != "z" or not 2 * low - high <= value <= 2 * high - low
+
+    nulls = [[c for c in row.columns if c in _WITH_NULLS and is_null(row, c)] for row in every]
+    return [
+        row.with_values(dict.fromkeys(columns, "")) if columns else row
+        for row, columns in zip(every, nulls, strict=True)
+    ]
 
 
 def header_factors(
@@ -350,6 +382,7 @@ def header_factors(
         for (meaning, key), unit in zip(keys.items(), stated, strict=True)
         if key is None and unit not in (None, model_unit)
     }
+    warnings += _doubled(header)
     if "z" in factors:
         factors["error"] = factors["z"]
     for meaning in _ANGLES & header.columns.keys():
@@ -364,6 +397,20 @@ def header_factors(
     return factors, warnings
 
 
+def _doubled(header: TableHeader) -> list[str]:
+    """Warnings about columns of which others have the name."""
+    warnings = []
+    for meaning, at in header.columns.items():
+        name = header.names[at].strip() if at < len(header.names) else ""
+        same = [n for n, other in enumerate(header.names) if name and column_key(other) == column_key(name)]
+        if len(same) > 1 and at == same[0] and not set(same[1:]) & set(header.columns.values()):
+            warnings.append(
+                f"{header.file}:{header.line}: {len(same)} columns are named '{name}'; the first is used: if "
+                f"another one is meant, set columns = {{ {meaning} = {same[1] + 1} }}"
+            )
+    return warnings
+
+
 def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
     """The warnings about units in the header of a table. Raises InputRefused for one that is not known."""
     layout = _opened(given, file, known).layout
@@ -371,17 +418,19 @@ def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -
     return warnings
 
 
-def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
-    """The known columns that a table has, by their meaning: their names in the header, in small letters.
-    Raises InputRefused if it is not a table."""
-    table = _opened(given, file, known)
+def columns_in(given: Reading, file: Path, known: Columns, sheet: str | None = None) -> dict[str, str]:
+    """The known columns that a table, or the sheet of a workbook, has, by their meaning: their names in the
+    header, in small letters. Raises InputRefused if it is not a table."""
+    table = _opened(given, file, known, sheet=sheet)
     written = table.layout.names or ()
     names = [plain_name(name) for name in written]
     columns = _columns(given, file, table.layout, known)
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
-def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = ()) -> TextTable:
+def _opened(
+    reading: Reading, file: Path, meanings: Columns, needed: Sequence[str] = (), sheet: str | None = None
+) -> TextTable:
     names = {column.lower() for column in reading.columns.values() if isinstance(column, str)}
     for aliases in meanings.values():
         names.update(*map(_spellings, aliases))
@@ -390,7 +439,7 @@ def _opened(reading: Reading, file: Path, meanings: Columns, needed: Sequence[st
         columns = _columns(reading, file, TableLayout("\t", tuple(cells), 0, 0, None), meanings)
         return set(needed) <= columns.keys() and len(columns) > 2
 
-    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header))
+    return open_table(file, Expected(reading.separator, (), names, 1, 2, is_header), sheet)
 
 
 def _parts(body: str, separator: str) -> Iterator[str]:

@@ -23,7 +23,10 @@ from .unit_names import UnitNames
 # Of the range of heights: so far within its bounds a surface is kept, where there is room. A bound says that
 # rock beside the surface is there, not that it ends there: two sheets on one bound would leave none.
 BESIDE_BOUND = 1e-6
-_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors", "rows")
+_ARRAYS = (
+    *("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors", "thicknesses"),
+    "rows",
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,8 +42,10 @@ class Observations(ShortRepr):
     used: (N,) bool, False where one is switched off, which says nothing then; without it all are used.
     on: (N,) texts, the surface on which each was seen, as the ground of a map, by its name, "" for none: it
     passes through the place, too. height_errors: (N,) float64, how far the height of each may be off, as a
-    standard deviation in model units; without it heights are exact. rows: (N,) int64, the numbers that they
-    had before they were put in order (along_holes), for messages; without it these.
+    standard deviation in model units; without it heights are exact. thicknesses: (N,) float64, of the block
+    there, perpendicular to its beds, in model units, NaN where it is not known, as everywhere without it; a
+    field of a series honors them. rows: (N,) int64, the numbers that they had before they were put in order
+    (along_holes), for messages; without it these.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -56,6 +61,7 @@ class Observations(ShortRepr):
     used: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
     on: np.ndarray = field(default_factory=lambda: np.empty(0, str))
     height_errors: np.ndarray = field(default_factory=lambda: np.empty(0))
+    thicknesses: np.ndarray = field(default_factory=lambda: np.empty(0))
     rows: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
 
     def __post_init__(self) -> None:
@@ -80,16 +86,19 @@ class Observations(ShortRepr):
         used = np.asarray(self.used, bool).reshape(-1)
         on = np.asarray(self.on, str).reshape(-1)
         errors = np.asarray(self.height_errors, np.float64).reshape(-1)
+        thicknesses = np.asarray(self.thicknesses, np.float64).reshape(-1)
         rows = np.asarray(self.rows, np.int64).reshape(-1)
         optional = {"numbers of intervals": intervals, "of 'used'": used, "of 'on'": on, "errors": errors}
-        optional["numbers of rows"] = rows
+        optional |= {"thicknesses": thicknesses, "numbers of rows": rows}
         for what, values in optional.items():
             if len(values) not in (0, count):
                 text = f"{count} places have {len(values)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
         if not (np.isfinite(errors) & (errors >= 0)).all():
             raise InputRefused("an error of an elevation is negative, or not finite", item="observations")
-        arrays = places, blocks, holes, depths, intervals, used, on, errors, rows
+        if not (np.isnan(thicknesses) | (thicknesses > 0) & (thicknesses < np.inf)).all():
+            raise InputRefused("a thickness is not above 0, or not finite", item="observations")
+        arrays = places, blocks, holes, depths, intervals, used, on, errors, thicknesses, rows
         for name, value in zip(_ARRAYS, arrays, strict=True):
             object.__setattr__(self, name, value)
 
@@ -116,6 +125,11 @@ class Observations(ShortRepr):
         """(N,) how far the height of each may be off."""
         return self.height_errors if len(self.height_errors) else np.zeros(len(self))
 
+    @property
+    def thicknesses_there(self) -> np.ndarray:
+        """(N,) the thickness of the block of each there; NaN where it is not known."""
+        return self.thicknesses if len(self.thicknesses) else np.full(len(self), np.nan)
+
     def along_holes(self) -> Observations:
         """The same in an order that the order of rows does not decide: those of no hole by their places, then
         hole by hole, by name, downward along each: by depths, or by heights where some have no depth."""
@@ -125,7 +139,8 @@ class Observations(ShortRepr):
         along = np.where(without[number], -self.places[:, 2], self.depths)
         has_hole = self.holes != ""
         columns = np.where(has_hole, along, 0.0), *self.places.T, self.blocks
-        order = ascending(number, *columns, self.seen_on, self.errors, ~self.in_use)
+        thicknesses = np.nan_to_num(self.thicknesses_there)  # 0 is none of them
+        order = ascending(number, *columns, self.seen_on, self.errors, thicknesses, ~self.in_use)
         ordered = replace(self, rows=self.rows if len(self.rows) else np.arange(len(self))).some(order)
         return ordered.some(ordered._continued())
 
@@ -178,7 +193,7 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        *arrays, intervals, used, on, errors, _ = (
+        *arrays, intervals, used, on, errors, thicknesses, _ = (
             [getattr(part, name) for part in parts] for name in _ARRAYS
         )
         if any(map(len, intervals)):
@@ -191,7 +206,10 @@ class Observations(ShortRepr):
             on = [part.seen_on for part in parts]
         if any(map(len, errors)):
             errors = [part.errors for part in parts]
-        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used, on, errors)))
+        if any(map(len, thicknesses)):
+            thicknesses = [part.thicknesses_there for part in parts]
+        arrays += [intervals, used, on, errors, thicknesses]
+        return cls(*map(np.concatenate, arrays))
 
 
 def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:
@@ -398,7 +416,7 @@ def read_observed_places(
     InputRefused naming file and line."""
     plan, height = factors(given.units, model_unit)
     scale = np.array([plan, plan, height])
-    places, blocks, holes, depths, used, on, errors = [], [], [], [], [], [], []
+    places, blocks, holes, depths, used, on, errors, thicknesses = ([] for _ in range(8))
     left_out: list[LeftOut] = []
     count = 0
     needed = ("x", "y", "z", "block")
@@ -426,6 +444,7 @@ def read_observed_places(
         used.append(row.is_used)
         on.append(_surface(row, units))
         errors.append(_height_error(row) * height)
+        thicknesses.append(_thickness(row) * height)
     if not count:
         raise InputRefused("there are no observations in it", file=given.file)
     texts = np.array(blocks, str), np.array(holes, str)
@@ -438,6 +457,7 @@ def read_observed_places(
         used=in_use,
         on=seen_on,
         height_errors=np.array(errors if any(errors) else []),
+        thicknesses=np.array([] if np.isnan(thicknesses).all() else thicknesses),
     )
     return observed, left_out
 
@@ -447,6 +467,13 @@ def _height_error(row: Row) -> float:
     if error < 0:
         raise row.refuse(f"the error of the elevation, {error:g}, is negative", "leave it empty for 0")
     return error
+
+
+def _thickness(row: Row) -> float:
+    thickness = row.number("thickness") if row.has("thickness") else float("nan")
+    if thickness <= 0:
+        raise row.refuse(f"the thickness, {thickness:g}, is not above 0", "leave it empty if it is not known")
+    return thickness
 
 
 def _surface(row: Row, units: UnitNames) -> str:

@@ -37,6 +37,7 @@ from .table_layout import (
     names_shown,
     plain_name,
     table_layout,
+    with_whole_rows,
 )
 
 _MOST_THREADS = 8
@@ -47,6 +48,9 @@ _UNUSUAL = (
     (re.compile(rb"((?<![\w.])[+-]?\d*\.\d*)[dD](?=[+-]?\d{1,3}(?![\w.]))"), rb"\1e"),
     (re.compile(rb"\xe2\x88\x92(?=[\d.])"), b"-"),
 )
+_OF_EMPTY_ROWS = b" \t\r\n,;|"
+_TAIL = 4096
+_JOINED = 1 << 24  # bytes: in longer tables texts do not go on in further lines
 _BEGINS_LINE = b"#->"  # of CPS-3, as a comment
 _SAY_COLUMNS = 'set columns = ["X", "Y", "Z"]'
 # Names of coordinates, and what may stand before or behind them.
@@ -195,12 +199,22 @@ def open_table(file: Path, expected: Expected, sheet: str | None = None, step: S
     dialect = next((entry for entry in DIALECTS if entry.begins(raw[:4096], len(raw))), None)
     if dialect is not None and dialect.not_rows is not None:
         raw = dialect.not_rows.sub(b"#", raw[:])
+    raw = _without_empty_end(raw)
+    if len(raw) <= _JOINED:
+        raw = with_whole_rows(raw)
     for unusual, sign in _UNUSUAL:
         if unusual.search(raw[:4096]):
             raw = unusual.sub(sign, raw[:])
     start = len(BOM) if raw[: len(BOM)] == BOM else 0
     encoding = encoding_of(raw)
     return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected, dialect))
+
+
+def _without_empty_end(raw: Content) -> Content:
+    """A table without rows at its end that have no entries, as Excel writes them."""
+    tail = raw[-_TAIL:]
+    _, _, empty = tail[len(tail.rstrip(_OF_EMPTY_ROWS)) :].partition(b"\n")
+    return raw[: len(raw) - len(empty)] if empty.strip() else raw
 
 
 def _plain(name: str) -> str:

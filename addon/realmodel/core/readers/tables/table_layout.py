@@ -27,6 +27,12 @@ _TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
 _NAMES_SHOWN = 12
 
 
+_QUOTED = re.compile(rb'(?:(?<=^)|(?<=[,;\t|]))\s*"(?:[^"]|"")*"(?=\s*(?:[,;\t|]|$))')
+_OPENS = re.compile(rb'(?:^|[,;\t|])\s*"')
+_CLOSES = re.compile(rb'"\s*(?:[,;\t|]|$)')
+_MOST_LINES = 200  # of a text
+
+
 @dataclass(frozen=True)
 class TableLayout:
     """separator: one character, " " for blanks and tabs. names: of the columns, where there is a header.
@@ -84,6 +90,35 @@ class Expected:
     numbers: int = 3
     columns: int = 3
     is_header: Callable[[list[str]], bool] | None = None
+
+
+def with_whole_rows(raw: Content) -> Content:
+    """A table in which texts in quotes do not go on in further lines: each such row is one line, and empty
+    lines after it keep the numbers of the others."""
+    if raw.find(b'"') < 0:
+        return raw
+    lines = raw[:].split(b"\n")
+    if not any(line.count(b'"') % 2 for line in lines):
+        return raw
+    out: list[bytes] = []
+    number = 0
+    while number < len(lines):
+        end = _end_of_row(lines, number)
+        out += [b" ".join(line.strip(b"\r") for line in lines[number : end + 1]), *[b""] * (end - number)]
+        number = end + 1
+    return b"\n".join(out)
+
+
+def _end_of_row(lines: list[bytes], first: int) -> int:
+    """The line in which a row ends, the same line where no text in quotes is open at its end."""
+    if lines[first].count(b'"') % 2 == 0 or not _OPENS.search(_QUOTED.sub(b"", lines[first])):
+        return first
+    count = 0
+    for number in range(first, min(first + _MOST_LINES, len(lines))):
+        count += lines[number].count(b'"')
+        if count % 2 == 0:
+            return number if _CLOSES.search(lines[number]) else first
+    return first
 
 
 def table_layout(

@@ -6,8 +6,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from functools import cached_property
 
+from ...base.errors import InputRefused
 from .hole_tables import NO_VALUE, normalized_name
 
 # What stands for core that is not there, or that nobody examined.
@@ -19,6 +21,7 @@ _NO_CORE = _SHORT | frozenset(
         *("not recovered", "not logged", "not cored", "no sample", "no data", "unknown", "missing"),
     )
 )
+_REGULAR = re.compile(r"/(.+)/$")
 _WHOLE = re.compile(r"([+-]?\d+)[.,]0+")
 
 
@@ -26,7 +29,8 @@ _WHOLE = re.compile(r"([+-]?\d+)[.,]0+")
 class UnitNames:
     """surfaces, blocks: their names in a rock mass, oldest first; the block of each surface is beneath it.
     bodies: names. names: what a name in a table means: one of these, or "" for nothing. A name that is none
-    of them is the one that differs from it in capitals, spaces, hyphens and underscores alone, if any."""
+    of them is the one that differs from it in capitals, spaces, hyphens and underscores alone, if any; else
+    what the first pattern in `names` means that it fits: Qal*, or a regular expression /^Q[0-9]/."""
 
     surfaces: Sequence[str] = ()
     blocks: Sequence[str] = ()
@@ -93,7 +97,27 @@ class UnitNames:
                 return self.names[spelling]
             if self._is_known(spelling):
                 return spelling
-        return None if _is_empty(code) else self._alike.get(normalized_name(code))
+        if _is_empty(code):
+            return None
+        alike = self._alike.get(normalized_name(code))
+        return alike if alike is not None else next((m for p, m in self._patterns if fits(p, code)), None)
+
+    @cached_property
+    def _patterns(self) -> list[tuple[str, str]]:
+        return [(name, meant) for name, meant in self.names.items() if "*" in name or _REGULAR.match(name)]
+
+
+def fits(pattern: str, code: str) -> bool:
+    """Whether a code fits a pattern of * and ?, or a regular expression between slashes that finds something
+    in it, whatever the capitals. Raises InputRefused for what is no regular expression."""
+    regular = _REGULAR.match(pattern)
+    if regular is None:
+        return fnmatchcase(code.casefold(), pattern.casefold())
+    try:
+        return re.search(regular[1], code, re.IGNORECASE) is not None
+    except re.error as error:
+        what = f"{pattern} is no regular expression: {error}"
+        raise InputRefused(what, advice="use Qal*, or /^Q[0-9]/") from error
 
 
 def may_be_a_unit(code: str) -> bool:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ....base.errors import InputRefused, RealModelError
 from ....base.packages import quiet, vendored
-from ....base.text import Step, no_step
+from ....base.text import Step, no_step, reading
 
 _MEMBERS = (b"[Content_Types].xml", b"_rels/", b"docProps/", b"xl/")
 _OLD, _OPEN_DOCUMENT = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", b"application/vnd.oasis.opendocument"
@@ -25,6 +25,12 @@ def begins_as_workbook(head: bytes, _size: int = 0) -> bool:
     if head[:4] != b"PK\3\4":
         return head.startswith(_OLD)
     return head[30:100].startswith((*_MEMBERS, b"mimetype" + _OPEN_DOCUMENT))
+
+
+def is_workbook(file: Path) -> bool:
+    """Whether a file is a workbook, also of a format that is refused."""
+    with reading(file), file.open("rb") as opened:
+        return begins_as_workbook(opened.read(100))
 
 
 def sheet_names(file: Path) -> list[str]:
