@@ -282,6 +282,53 @@ class Filling(PanelCase):
         self.assertFalse(strata_modifier.shows_erosion(item), "strokes change the mesh itself")
         bpy.ops.object.mode_set(mode="OBJECT")
 
+    def test_scree_of_a_tilted_object_lies_as_the_world_has_it(self):
+        """On eroded and on solid beds, with stones that are pieces of them."""
+        ops.strata_rock_add(kind="CLIFF", size=20.0, faces=20_000)
+        item = bpy.context.active_object
+        item.rotation_euler, item.scale = (0.1, -0.1, 0.8), (0.5, 0.5, 0.5)
+        bpy.context.view_layer.update()
+        item.realmodel_strata.scree, item.realmodel_strata.stones = 1.0, 4.0
+        ops.strata_fit()
+        ops.strata_erode()
+        self.stones_lie_on_scree(item, item)
+        ops.fill_with_strata(use_dialog=False)
+        heap = bpy.data.objects[f"{item.name} Scree"]
+        self.stones_lie_on_scree(heap, item)
+        count = len([obj for obj in bpy.data.objects if obj.get("realmodel_scatter")])
+        ops.strata_edit()
+        ops.fill_with_strata(use_dialog=False)
+        self.assertEqual(len([o for o in bpy.data.objects if o.get("realmodel_scatter")]), count)
+
+    def stones_lie_on_scree(self, item, rock):
+        mesh, turn = evaluated(item), np.array(item.matrix_world)
+        places = coordinates(mesh) @ turn[:3, :3].T + turn[:3, 3]
+        is_scree = numbers_of(mesh, "realmodel_scree", bool)
+        corners = np.array([polygon.vertices[:] for polygon in mesh.polygons])[is_scree]
+        at = places[corners]
+        normal = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+        area = np.linalg.norm(normal, axis=1)
+        slope = np.degrees(np.arccos(normal[:, 2] / area))
+        # what lies beneath the ground, or in the rock, has other slopes
+        shares, ends = np.histogram(slope, np.arange(20.0, 64.0, 4.0), weights=area)
+        self.assertIn(ends[shares.argmax()], (32.0, 36.0))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        rocks = {material.name for material in rock.evaluated_get(depsgraph).data.materials if material}
+        found = []
+        for each in depsgraph.object_instances:
+            if each.is_instance and each.parent.original == item:
+                self.assertIn(each.object.data.materials[0].name, rocks)
+                up = np.array(each.matrix_world)[:3, 2]
+                found.append((*each.matrix_world.translation, np.linalg.norm(up), up[2] / np.linalg.norm(up)))
+        found = np.array(found)
+        self.assertGreater(len(found), 50)
+        middle = at.mean(axis=1)
+        away = [np.linalg.norm(middle - place, axis=1).min() for place in found[:, :3]]
+        self.assertLess(max(away), 1.2, "from the middle of a triangle")
+        self.assertGreater(found[:, 4].mean(), 0.7, "they lie on their bedding plane")
+        largest = found[:, 3] > np.quantile(found[:, 3], 0.9)
+        self.assertLess(found[largest, 2].mean(), found[:, 2].mean())
+
     def test_rocks_of_the_add_menu(self):
         for kind in strata_presets.SHAPES:
             ops.strata_rock_add(kind=kind, size=4.0, seed=2, faces=4000)

@@ -22,7 +22,7 @@ class Counting(bpy.types.RenderEngine):
     def render(self, depsgraph):
         for each in depsgraph.object_instances:
             if each.is_instance:
-                name = each.object.data.name
+                name = each.object.data.name.partition(".")[0]
                 self.counts[name] = self.counts.get(name, 0) + 1
 
 
@@ -211,7 +211,8 @@ class Weathering(PanelCase):
         found = {}
         for each in bpy.context.evaluated_depsgraph_get().object_instances:
             if each.is_instance and each.parent.original == item:
-                found.setdefault(each.object.data.name, []).append(tuple(each.matrix_world.translation))
+                name = each.object.data.name.partition(".")[0]
+                found.setdefault(name, []).append(tuple(each.matrix_world.translation))
         return found
 
     def rendered_instances(self):

@@ -19,13 +19,17 @@ from realmodel.core import (
 from realmodel.core.base import work
 from realmodel.core.base.triangles import open_edges
 from realmodel.core.filling import (
+    PIECES,
     SHAPES,
+    broken_piece,
     closed_mesh,
     divided_at_beds,
     eroded_within,
     hardness_of_beds,
     kept_of,
     lay_beds,
+    mean_thickness,
+    rubble_within,
     scree_within,
 )
 from realmodel.core.filling.erosion import cubic_lattice, winding
@@ -202,7 +206,7 @@ def test_scree_leans_against_walls_at_its_angle():
     triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
     ground = np.column_stack([x, y, np.where(x < 20, 12.0, 2.0)])
     mesh = closed_mesh(ground, triangles, 0.0)
-    vertices, made = work.run(lambda job: scree_within(job, mesh, 1.0, 34.0, 3, 60_000))
+    vertices, made, down = work.run(lambda job: scree_within(job, mesh, 1.0, 34.0, 3, 60_000))
     assert not len(open_edges(vertices, made))
     assert volume(vertices, made) > 0
     corners = vertices[made]
@@ -214,5 +218,40 @@ def test_scree_leans_against_walls_at_its_angle():
     assert 28.0 < slope < 40.0
     assert vertices[:, 2].max() < 10.0
     assert (vertices[:, 0] < 36.0).all()
+    assert ((down >= 0.0) & (down <= 1.0)).all()
+    seen = np.unique(made[open_])
+    assert np.corrcoef(down[seen], vertices[seen, 0])[0, 1] > 0.8, "it goes down away from the wall"
     with pytest.raises(InputRefused, match="no wall"):
         work.run(lambda job: scree_within(job, box((0, 0, 0), (10, 10, 5)), 1.0, 34.0, 3, 5000))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**31 - 1), st.floats(1e-3, 1e4))
+def test_a_piece_of_rubble_is_closed_convex_and_as_thick_as_its_bed(seed, thickness):
+    vertices, triangles = work.run(lambda job: broken_piece(job, thickness, seed))
+    assert not len(open_edges(vertices, triangles))
+    size = np.ptp(vertices, axis=0)
+    assert 0.05 * thickness**3 < volume(vertices, triangles) < size.prod()
+    assert 0.3 * thickness < size[2] <= thickness * (1 + 1e-9)
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    above = np.einsum("tk,tvk->tv", normal, vertices[None] - a[:, None])
+    assert above.max() < 1e-9 * thickness**3
+    assert vertices[:, 2].min() < 0.0 < vertices[:, 2].max(), "a part of it lies in the ground"
+
+
+def test_rubble_is_of_hard_beds():
+    mesh = rock_shape("canyon", 20.0)
+    strata = Strata(beds=24, variation=0.9)
+    beds = lay_beds(strata, mesh[0])
+    unit = mean_thickness(beds, mesh[0])
+    pieces = work.run(lambda job: rubble_within(job, beds, strata, unit))
+    again = work.run(lambda job: rubble_within(job, beds, strata, unit))
+    assert len(pieces) == PIECES
+    assert [piece[0].tobytes() for _, piece in pieces] == [piece[0].tobytes() for _, piece in again]
+    hard = hardness_of_beds(24, strata)
+    assert hard[[bed for bed, _ in pieces]].mean() > hard.mean()
+    thick = np.diff(beds.levels)
+    for bed, (vertices, _) in pieces:
+        if 0 < bed < 23 and 0.5 * unit < thick[bed - 1] < 2.0 * unit:
+            assert np.ptp(vertices[:, 2]) <= thick[bed - 1] * 1.001

@@ -7,13 +7,24 @@ objects stand where the filled one stands and have its coordinates, of which tho
 same to the last bit.
 """
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
 from ...core import BuildFailed, InputRefused
 from ...core.base.triangles import without_flat
 from ...core.display import polygon_mesh
-from ...core.filling import divided_at_beds, eroded_within, fill_within, kept_of, scree_within
+from ...core.filling import (
+    divided_at_beds,
+    eroded_within,
+    fill_within,
+    kept_of,
+    mean_thickness,
+    rocks_of_beds,
+    rubble_within,
+    scree_within,
+)
 from ...core.filling.scree import REPOSE
 from ..host.thread_job import ThreadJob
 from ..objects import filled_beds, meshes, placing
@@ -23,6 +34,17 @@ from ..shading import rock_layers, strata_modifier, strata_values
 
 _EROSION, _SHARE = 0.3, 0.9  # of the progress: where erosion and where filling end
 _COARSER = 3  # times as few faces on an area of scree as on the rock
+
+
+class _Heap(NamedTuple):
+    """Scree in the coordinates of an object: a mesh, how far down its vertices are, and what
+    strata_modifier.set_rubble takes."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    down: np.ndarray
+    pieces: list
+    thickness: float
 
 
 class _StrataJob(ThreadJob):
@@ -49,15 +71,25 @@ class _StrataJob(ThreadJob):
             return eroded_within(job, self._mesh, kept, self._beds, self._strata, self._erosion)
 
     def _heaped(self, job, mesh):
-        """The scree of a mesh; nothing where there is none."""
+        """The scree of a mesh, _Heap; None where there is none."""
         if not self._scree:
-            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+            return None
         faces = (len(mesh[1]) if self._erosion is None else self._erosion.faces) // _COARSER
         try:
-            return scree_within(job, mesh, self._scree, REPOSE, self._strata.seed, max(faces, 1000))
+            vertices, triangles, down = scree_within(
+                job, mesh, self._scree, REPOSE, self._strata.seed, max(faces, 1000)
+            )
         except InputRefused as error:
             self.warnings = [*self.warnings, f"no scree: {error.what}"]
-            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+            return None
+        unit = mean_thickness(self._beds, self._mesh[0])
+        scale = abs(np.linalg.det(self._shape.matrix[:3, :3])) ** (1.0 / 3.0)
+        _, rocks = rocks_of_beds(self._beds.count, self._strata.palette, self._strata.seed)
+        pieces = [
+            (rocks[bed] - 1, (places / scale, of))
+            for bed, (places, of) in rubble_within(job, self._beds, self._strata, unit)
+        ]
+        return _Heap(*self._local((vertices, triangles)), down, pieces, unit / scale)
 
     def _local(self, mesh):
         """A mesh in the coordinates of the object, with its faces outward there."""
@@ -80,18 +112,21 @@ class ErosionJob(_StrataJob):
         with job.part(0.0, _SHARE):
             eroded = self._eroded(job)
         with job.part(_SHARE, 1.0):
-            scree = self._heaped(job, eroded)
-        return [self._local(mesh) for mesh in (divided_at_beds(*eroded, self._beds), scree)]
+            heap = self._heaped(job, eroded)
+        return self._local(divided_at_beds(*eroded, self._beds)), heap
 
     def _put(self, made):
         obj = self._object()
-        (vertices, triangles), (of_scree, others) = made
-        together = np.concatenate([triangles, others + len(vertices)])
-        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", np.concatenate([vertices, of_scree]), together)
-        is_scree = np.arange(len(together)) >= len(triangles)
-        mesh.attributes.new(strata_modifier.SCREE, "BOOLEAN", "FACE").data.foreach_set("value", is_scree)
+        (vertices, triangles), heap = made
+        count, down = len(triangles), np.zeros(len(vertices))
+        if heap is not None:
+            triangles = np.concatenate([triangles, heap.triangles + len(vertices)])
+            vertices, down = np.concatenate([vertices, heap.vertices]), np.append(down, heap.down)
+            strata_modifier.set_rubble(obj, heap.pieces, heap.thickness)
+        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", vertices, triangles)
+        strata_modifier.mark_scree(mesh, np.arange(len(triangles)) >= count, down)
         strata_modifier.show_eroded(obj, mesh)
-        return len(together)
+        return len(triangles)
 
 
 class FillJob(_StrataJob):
@@ -111,13 +146,13 @@ class FillJob(_StrataJob):
             solids = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
             matrix = self._shape.matrix
             solids = [None if shape is None else filled_beds.exposed(shape, matrix) for shape in solids]
-            scree = self._local(self._heaped(job, mesh))
-        return model, solids, scree, self._beds.numbers(self._shape.vertices)
+            heap = self._heaped(job, mesh)
+        return model, solids, heap, self._beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 
     def _put(self, made):
-        model, solids, scree, masks = made
+        model, solids, heap, masks = made
         obj = self._object()
         collection = self._emptied(obj)
         self.warnings = [*self.warnings, *(warning.text for warning in model.warnings)]
@@ -135,13 +170,13 @@ class FillJob(_StrataJob):
             bed[BED], bed[VOLUME] = number, block.volume
             placing.stand_at(bed, obj)
             collection.objects.link(bed)
-        if len(scree[1]):
-            heap = bpy.data.objects.new(
-                f"{obj.name} Scree", meshes.triangle_mesh(f"{obj.name} Scree", *scree)
-            )
-            strata_modifier.put_scree_on(heap, obj)
-            placing.stand_at(heap, obj)
-            collection.objects.link(heap)
+        if heap is not None:
+            name = f"{obj.name} Scree"
+            scree = bpy.data.objects.new(name, meshes.triangle_mesh(name, heap.vertices, heap.triangles))
+            strata_modifier.set_rubble(obj, heap.pieces, heap.thickness)
+            strata_modifier.put_scree_on(scree, obj, heap.down)
+            placing.stand_at(scree, obj)
+            collection.objects.link(scree)
         beds = list(collection.objects)
         if self._has_masks:
             self._add_masks(collection, obj, masks)

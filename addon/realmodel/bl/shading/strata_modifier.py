@@ -32,11 +32,11 @@ ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
 _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
-_VERSION = 1
+_VERSION = 2
 ROCKS = max(map(len, PALETTES.values()))
 _TABLE, _ERODED, _SHOW_ERODED, _SHOW_ROCKS = "Beds", "Eroded Mesh", "Show Erosion", "Show Rocks"
 _SCREE, _STONES, _SIZE = "Scree", "Plants and Stones", "Scatter Size"
-_STONE_SIZE = 0.012  # of the diagonal: a unit of scattered stones
+_STONES_APART, _STONE_SCALE = 0.55, 2.0  # a unit of scattered stones, of the thickness of beds; their scale
 _NODES = 32  # of a fold to a wavelength, as core.filling.beds has it
 _FAR = 1e30  # the elevation of an unconformity where there is none
 # attributes of the table: of all points the same, and of each point
@@ -71,12 +71,14 @@ def put_on(item):
 
 
 def take_off(item):
-    """Removes the modifier, with its table, its eroded mesh, and the stone where no other object has it."""
+    """Removes the modifier, with its table, its eroded mesh, and its stones where no other object has them."""
     modifier = modifier_of(item)
     if modifier is None:
         return
-    made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED, scatter.STONE)]
+    made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED)]
+    stones = versions.group_input(modifier, scatter.STONE)
     item.modifiers.remove(modifier)
+    scatter.remove(stones)
     for obj in made:
         if obj is not None and obj.users == 0:
             bpy.data.meshes.remove(obj.data)  # and its object with it
@@ -185,9 +187,7 @@ def update(item):
         versions.set_group_input(modifier, f"Rock {number}", _rock_material(name, color, look_of(name), size))
     color = "#" + "".join(f"{round(part):02x}" for part in np.mean([_bytes(c) for _, c in rocks], axis=0))
     versions.set_group_input(modifier, _SCREE, _rock_material("Scree", color, "GRAVEL", size))
-    versions.set_group_input(modifier, scatter.STONE, scatter.item(scatter.STONE))
     versions.set_group_input(modifier, _STONES, values.stones)
-    versions.set_group_input(modifier, _SIZE, _STONE_SIZE * diagonal)
     versions.set_group_input(modifier, "Seed", values.seed)
     show_eroded(item, None)
 
@@ -196,11 +196,27 @@ def _bytes(color):
     return [int(color[begin : begin + 2], 16) for begin in (1, 3, 5)]
 
 
-def put_scree_on(heap, item):
+def set_rubble(item, pieces, thickness):
+    """Sets the stones of an object's scree. pieces: (number of a rock in the palette, (vertices, triangles))
+    each, in its coordinates. thickness: of beds on average, there."""
+    modifier = modifier_of(item)
+    before = versions.group_input(modifier, scatter.STONE)
+    stones = [(*piece, material_of(item, rock)) for rock, piece in pieces]
+    versions.set_group_input(modifier, scatter.STONE, scatter.collection(f"{item.name} Rubble", stones))
+    versions.set_group_input(modifier, _SIZE, _STONES_APART * thickness)
+    scatter.remove(before)
+
+
+def mark_scree(mesh, is_scree, down):
+    """is_scree: (F,) bool, of faces. down: (V,) how far down the scree each vertex is."""
+    mesh.attributes.new(SCREE, "BOOLEAN", "FACE").data.foreach_set("value", is_scree)
+    mesh.attributes.new(scatter.DOWN, "FLOAT", "POINT").data.foreach_set("value", down)
+
+
+def put_scree_on(heap, item, down):
     """Makes a new object the scree of another: its material, and its stones."""
     heap[SCREE] = True
-    values = np.ones(len(heap.data.polygons), bool)
-    heap.data.attributes.new(SCREE, "BOOLEAN", "FACE").data.foreach_set("value", values)
+    mark_scree(heap.data, np.ones(len(heap.data.polygons), bool), down)
     heap.modifiers.new(NAME, "NODES").node_group = modifier_of(item).node_group
     for name in (_TABLE, _SCREE, scatter.STONE, _STONES, _SIZE, "Seed"):
         versions.set_group_input(modifier_of(heap), name, versions.group_input(modifier_of(item), name))
@@ -338,7 +354,7 @@ def _fill(group):
     for number in range(ROCKS):
         versions.add_group_socket(group, f"Rock {number + 1}", "NodeSocketMaterial")
     versions.add_group_socket(group, _SCREE, "NodeSocketMaterial")
-    versions.add_group_socket(group, scatter.STONE, "NodeSocketObject")
+    versions.add_group_socket(group, scatter.STONE, "NodeSocketCollection")
     versions.add_group_socket(group, _STONES, "NodeSocketFloat", (0.0, 0.0))
     versions.add_group_socket(group, _SIZE, "NodeSocketFloatDistance", (1.0, 1e-6))
     versions.add_group_socket(group, "Seed", "NodeSocketInt", (0, 0))
@@ -357,7 +373,9 @@ def _fill(group):
     is_scree = nodes.named(SCREE, "BOOLEAN")
     geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=is_scree, Material=inputs[_SCREE])
     joined = nodes.new("GeometryNodeJoinGeometry")
-    nodes.link(scatter.on(nodes, inputs, geometry, scatter.STONE, is_scree), joined.inputs[0])
+    down = nodes.named(scatter.DOWN, "FLOAT")
+    stones = scatter.on(nodes, inputs, geometry, scatter.STONE, is_scree, _STONE_SCALE, down)
+    nodes.link(stones, joined.inputs[0])
     nodes.link(geometry, joined.inputs[0])
     nodes.link(joined.outputs[0], nodes.new("NodeGroupOutput").inputs["Geometry"])
 

@@ -24,7 +24,7 @@ from . import edge_wear, looks, scatter
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 7
+_VERSION = 8
 _STEPS = 5  # of smoothing
 # attributes while the nodes work: where a vertex was and where it goes, how a face faced, how far one may go
 _BEFORE, _INWARD, _FACING, _MOST = (f"realmodel_{name}" for name in ("before", "inward", "facing", "most"))
@@ -66,7 +66,7 @@ _INPUTS = {
     "Plants and Stones": ("NodeSocketFloat", 0.0, 0.0),
     "Scatter Size": ("NodeSocketFloatDistance", 1.0, 1e-6),
     scatter.TUFT: ("NodeSocketObject",),
-    scatter.STONE: ("NodeSocketObject",),
+    scatter.STONE: ("NodeSocketCollection",),
 }
 
 
@@ -188,8 +188,8 @@ def _values(values, thickness, unit):
         "Plants and Stones": values.plants,
         "Scatter Size": unit,
         **{name: _cover(name, unit) for name in COVERS},
-        scatter.TUFT: scatter.item(scatter.TUFT) if values.plants else None,
-        scatter.STONE: scatter.item(scatter.STONE) if values.plants else None,
+        scatter.TUFT: scatter.tuft() if values.plants else None,
+        scatter.STONE: scatter.stones() if values.plants else None,
     }
 
 

@@ -40,6 +40,7 @@ _ONTO = 0.12  # spacings: a surface this near to a node passes through it, for t
 _CRUMB = 5e-4  # of the volume: lesser parts that come loose are gone
 _FLAT = 0.01  # of the surface: so much of it is a level base
 _CHUNK = 400_000  # places that are worked on at once
+JOINT_ANGLE = 0.25  # radians: how far from a right angle the two sets of joints are
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,7 @@ def eroded_within(
         inside = winding(lattice, corners) != 0
     if not inside.any():
         raise InputRefused("it holds no volume that erosion could see", advice="choose more faces")
-    unit = _unit(beds, vertices)
+    unit = mean_thickness(beds, vertices)
     values = _distances(work, lattice, corners, kept, inside, _DEEPEST * unit * erosion.strength)
     depth = _Depth(beds, hardness_of_beds(beds.count, strata), erosion, unit, strata.seed)
     _erode(work, lattice, values, depth)
@@ -130,8 +131,8 @@ def _areas(corners: np.ndarray) -> np.ndarray:
     return 0.5 * np.sqrt(dot(normal, normal))
 
 
-def _unit(beds: Beds, vertices: np.ndarray) -> float:
-    """The length that depths are measured in: the mean thickness of beds."""
+def mean_thickness(beds: Beds, vertices: np.ndarray) -> float:
+    """Of beds in a mesh with vertices (V, 3), at most a share of its size: what depths are measured in."""
     size = np.ptp(vertices, axis=0)
     sizes = np.concatenate([np.diff(beds.levels) / beds.slant, np.diff(beds.covers)])
     mean = float(sizes.mean()) if len(sizes) else float(size[2]) / max(beds.count, 1)
@@ -325,7 +326,10 @@ class _Depth:
             seed,
         )
         turn = 2.0 * math.pi * float(chance(seed, 77))
-        self._sets = [np.array([cos(turn), sin(turn)]), np.array([-sin(turn + 0.25), cos(turn + 0.25)])]
+        self._sets = [
+            np.array([cos(turn), sin(turn)]),
+            np.array([-sin(turn + JOINT_ANGLE), cos(turn + JOINT_ANGLE)]),
+        ]
         self.deepest = _DEEPEST * unit * erosion.strength
 
     def at(self, points: np.ndarray) -> np.ndarray:
