@@ -47,9 +47,7 @@ def _set_preset(self, _context):
 
 
 class _OfStrata(InBackground):
-    """An operator whose work is a job of the active object's strata."""
-
-    _strata_job = None
+    """An operator whose work is a job of the active object's strata, `_strata_job`."""
 
     def shown(self, context):
         """The active object, with its modifier. Raises RealModelError."""

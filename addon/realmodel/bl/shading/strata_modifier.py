@@ -34,7 +34,7 @@ _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
 _VERSION = 2
 ROCKS = max(map(len, PALETTES.values()))
-_TABLE, _ERODED, _SHOW_ERODED, _SHOW_ROCKS = "Beds", "Eroded Mesh", "Show Erosion", "Show Rocks"
+_TABLE, _ERODED, _SHOW_ERODED, SHOW_ROCKS = "Beds", "Eroded Mesh", "Show Erosion", "Show Rocks"
 _SCREE, _STONES, _SIZE = "Scree", "Plants and Stones", "Scatter Size"
 _STONES_APART, _STONE_SCALE = 0.55, 2.0  # a unit of scattered stones, of the thickness of beds; their scale
 _NODES = 32  # of a fold to a wavelength, as core.filling.beds has it
@@ -66,12 +66,12 @@ def put_on(item):
     if modifier is None:
         modifier = item.modifiers.new(NAME, "NODES")
         modifier.node_group = group_once("GeometryNodeTree", NAME, KEY, _fill, _VERSION)
-        versions.set_group_input(modifier, _SHOW_ROCKS, True)
+        versions.set_group_input(modifier, SHOW_ROCKS, True)
     return modifier
 
 
 def take_off(item):
-    """Removes the modifier, with its table, its eroded mesh, and its stones where no other object has them."""
+    """Removes the modifier, its table, its eroded mesh, and its stones where no other object has them."""
     modifier = modifier_of(item)
     if modifier is None:
         return
@@ -152,17 +152,18 @@ def base_mesh(item):
 
 
 @contextmanager
-def without_erosion(item):
-    """For a while an object is evaluated without erosion; yields the dependency graph."""
+def without_erosion(item, *others):
+    """For a while an object is evaluated without erosion, and without others of what it shows; yields the
+    dependency graph."""
     modifier = modifier_of(item)
-    was_shown = shows_erosion(item)
-    if was_shown:
-        versions.set_group_input(modifier, _SHOW_ERODED, False)
+    names = [name for name in (_SHOW_ERODED, *others) if modifier and versions.group_input(modifier, name)]
+    for name in names:
+        versions.set_group_input(modifier, name, False)
     try:
         yield bpy.context.evaluated_depsgraph_get()
     finally:
-        if was_shown:
-            versions.set_group_input(modifier, _SHOW_ERODED, True)
+        for name in names:
+            versions.set_group_input(modifier, name, True)
 
 
 def update(item):
@@ -170,7 +171,7 @@ def update(item):
     are."""
     values = item.realmodel_strata
     shape = base_shape(item)
-    places, _ = shape.closed(values)
+    places, _ = shape.closed(values.base_depth, values.close_holes)
     strata = strata_values.strata_of(values, np.ptp(places, axis=0))
     beds = lay_beds(strata, places)
     modifier = put_on(item)
@@ -350,7 +351,7 @@ def _fill(group):
     for name in (_TABLE, _ERODED):
         versions.add_group_socket(group, name, "NodeSocketObject")
     versions.add_group_socket(group, _SHOW_ERODED, "NodeSocketBool")
-    versions.add_group_socket(group, _SHOW_ROCKS, "NodeSocketBool")
+    versions.add_group_socket(group, SHOW_ROCKS, "NodeSocketBool")
     for number in range(ROCKS):
         versions.add_group_socket(group, f"Rock {number + 1}", "NodeSocketMaterial")
     versions.add_group_socket(group, _SCREE, "NodeSocketMaterial")
@@ -366,7 +367,7 @@ def _fill(group):
     geometry = nodes.stored(geometry, ROCK, beds.of_row("rock", beds.row(beds.height())), "FACE", "INT")
     rock = nodes.named(ROCK, "INT")
     for number in range(ROCKS):
-        here = nodes.math("MULTIPLY", nodes.math("COMPARE", rock, float(number), 0.5), inputs[_SHOW_ROCKS])
+        here = nodes.math("MULTIPLY", nodes.math("COMPARE", rock, float(number), 0.5), inputs[SHOW_ROCKS])
         geometry = nodes.to(
             "GeometryNodeSetMaterial", geometry, Selection=here, Material=inputs[f"Rock {number + 1}"]
         )

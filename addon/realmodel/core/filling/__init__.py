@@ -8,7 +8,7 @@ hard beds do not protect; `rock_shape` makes meshes to begin with.
 
 from .beds import Beds, lay_beds
 from .divided import divided_at_beds
-from .erosion import DifferentialErosion, eroded_within, kept_of, mean_thickness
+from .erosion import DifferentialErosion, eroded_within, joints_at, kept_of, mean_thickness
 from .fill import ITEM, closed_mesh, fill_with_strata, fill_within, without_holes
 from .rubble import PIECES, broken_piece, rubble_within
 from .scree import scree_within
@@ -30,6 +30,7 @@ __all__ = [
     "fill_with_strata",
     "fill_within",
     "hardness_of_beds",
+    "joints_at",
     "kept_of",
     "lay_beds",
     "mean_thickness",

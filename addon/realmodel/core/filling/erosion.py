@@ -312,6 +312,14 @@ def _without_crumbs(vertices: np.ndarray, triangles: np.ndarray) -> Mesh:
     return vertices[used], numbers.reshape(-1, 3).astype(np.int32)
 
 
+def joints_at(points: np.ndarray, beds: Beds, strata: Strata, unit: float) -> np.ndarray:
+    """(N,) float32 how near points (N, 3) are to a joint of their bed, from 0 to 1. unit: the mean thickness
+    of beds."""
+    depth = _Depth(beds, hardness_of_beds(beds.count, strata), DifferentialErosion(), unit, strata.seed)
+    bed, _, thickness = beds.places(points)
+    return depth.near(depth.joints(points, bed, thickness)[1]).astype(np.float32)
+
+
 class _Depth:
     """The depth of erosion at any place."""
 
@@ -343,9 +351,9 @@ class _Depth:
         depth += 0.25 * (chance(bed, part, seed) - 0.3) * (0.4 + soft)
         depth += 0.25 * hard * exp(-(1.0 - share) * thickness / (0.12 * unit))  # upper edges are worn
         if erosion.joints:
-            block, away = self._joints(points, bed, thickness)
+            block, away = self.joints(points, bed, thickness)
             fallen = chance(7 * bed + part, *block, seed)
-            broken = 0.8 * (fallen < 0.25) + 0.4 * fallen + 0.35 * exp(-((away / (0.08 * unit)) ** 2))
+            broken = 0.8 * (fallen < 0.25) + 0.4 * fallen + 0.35 * self.near(away)
             depth += erosion.joints * (0.35 + 0.65 * hard) * broken
         if erosion.roughness:
             bays = fractal(points * np.array([1.0, 1.0, 0.6]) / (7.0 * unit), seed + 3)
@@ -354,7 +362,11 @@ class _Depth:
             depth += erosion.roughness * rough
         return np.clip(depth, 0.0, _DEEPEST) * unit * erosion.strength
 
-    def _joints(
+    def near(self, away: np.ndarray) -> np.ndarray:
+        """(N,) from 0 to 1 at distances (N,) from a joint."""
+        return exp(-((away / (0.08 * self._unit)) ** 2))
+
+    def joints(
         self, points: np.ndarray, bed: np.ndarray, thickness: np.ndarray
     ) -> tuple[list[np.ndarray], np.ndarray]:
         """The numbers of the block between joints that points lie in, and how far the next joint is. Joints
