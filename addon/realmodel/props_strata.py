@@ -125,6 +125,11 @@ VALUES = {
         description="Give the rocks procedural textures. Otherwise they have plain colors",
         default=True,
     ),
+    "keep_materials": BoolProperty(
+        name="Keep Materials",
+        description="Faces of beds on the surface of the mesh have its materials. Otherwise all have that of "
+        "their rock",
+    ),
     "masks": BoolProperty(
         name="Bed Masks",
         description="Add a hidden copy of the mesh. Its vertices have attributes: the number of their bed, "
@@ -170,7 +175,7 @@ VALUES = {
     ),
     "faces": IntProperty(
         name="Faces",
-        description="About how many triangles the eroded mesh has. A million takes about 0.5 GB of memory",
+        description="About how many triangles the eroded mesh has",
         default=300_000,
         min=1000,
         max=MOST_FACES,
@@ -196,7 +201,7 @@ SHAPE, EROSION = (
     (("base_depth", "close_holes"),),
     (("strength", "joints", "roughness"), ("scree", "stones", "faces")),
 )
-SOLID = (("masks", "gap", "pegs", "peg_size"),)
+SOLID = (("keep_materials", "masks", "gap", "pegs", "peg_size"),)
 
 
 def values_of(values):

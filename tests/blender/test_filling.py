@@ -265,6 +265,8 @@ class Filling(PanelCase):
         shown = evaluated(item)
         self.assertGreater(len(shown.polygons), 1500)
         self.assertEqual(coordinates(item.data).tobytes(), before.tobytes())
+        joints = numbers_of(shown, "realmodel_joints", np.float32)
+        self.assertTrue(0.0 <= joints.min() < 0.1 and 0.9 < joints.max() <= 1.0)
         left = abs(volume(shown))
         lost = left / abs(volume(item.data))
         self.assertTrue(0.3 < lost < 0.99, lost)
@@ -281,6 +283,87 @@ class Filling(PanelCase):
         bpy.context.view_layer.update()
         self.assertFalse(strata_modifier.shows_erosion(item), "strokes change the mesh itself")
         bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_scree_of_a_tilted_object_lies_as_the_world_has_it(self):
+        """On eroded and on solid beds, with stones that are pieces of them."""
+        ops.strata_rock_add(kind="CLIFF", size=20.0, faces=20_000)
+        item = bpy.context.active_object
+        item.rotation_euler, item.scale = (0.1, -0.1, 0.8), (0.5, 0.5, 0.5)
+        bpy.context.view_layer.update()
+        item.realmodel_strata.scree, item.realmodel_strata.stones = 1.0, 4.0
+        ops.strata_fit()
+        ops.strata_erode()
+        self.stones_lie_on_scree(item, item)
+        ops.fill_with_strata(use_dialog=False)
+        heap = bpy.data.objects[f"{item.name} Scree"]
+        self.stones_lie_on_scree(heap, item)
+        count = len([obj for obj in bpy.data.objects if obj.get("realmodel_scatter")])
+        ops.strata_edit()
+        ops.fill_with_strata(use_dialog=False)
+        self.assertEqual(len([o for o in bpy.data.objects if o.get("realmodel_scatter")]), count)
+
+    def stones_lie_on_scree(self, item, rock):
+        mesh, turn = evaluated(item), np.array(item.matrix_world)
+        places = coordinates(mesh) @ turn[:3, :3].T + turn[:3, 3]
+        is_scree = numbers_of(mesh, "realmodel_scree", bool)
+        corners = np.array([polygon.vertices[:] for polygon in mesh.polygons])[is_scree]
+        at = places[corners]
+        normal = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+        area = np.linalg.norm(normal, axis=1)
+        slope = np.degrees(np.arccos(normal[:, 2] / area))
+        # what lies beneath the ground, or in the rock, has other slopes
+        shares, ends = np.histogram(slope, np.arange(20.0, 64.0, 4.0), weights=area)
+        self.assertIn(ends[shares.argmax()], (32.0, 36.0))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        rocks = {material.name for material in rock.evaluated_get(depsgraph).data.materials if material}
+        found = []
+        for each in depsgraph.object_instances:
+            if each.is_instance and each.parent.original == item:
+                self.assertIn(each.object.data.materials[0].name, rocks)
+                up = np.array(each.matrix_world)[:3, 2]
+                found.append((*each.matrix_world.translation, np.linalg.norm(up), up[2] / np.linalg.norm(up)))
+        found = np.array(found)
+        self.assertGreater(len(found), 50)
+        middle = at.mean(axis=1)
+        away = [np.linalg.norm(middle - place, axis=1).min() for place in found[:, :3]]
+        self.assertLess(max(away), 1.2, "from the middle of a triangle")
+        self.assertGreater(found[:, 4].mean(), 0.7, "they lie on their bedding plane")
+        largest = found[:, 3] > np.quantile(found[:, 3], 0.9)
+        self.assertLess(found[largest, 2].mean(), found[:, 2].mean())
+
+    def test_text_and_suzanne(self):
+        """Text whose letters lie apart, and a monkey with open eyes, which are closed."""
+        curve = bpy.data.curves.new("Text", "FONT")
+        curve.body, curve.extrude = "R8", 0.2
+        text = bpy.data.objects.new("Text", curve)
+        bpy.context.collection.objects.link(text)
+        select(text)
+        bpy.ops.object.convert(target="MESH")
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.remove_doubles(threshold=1e-5)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        text.rotation_euler.x = math.pi / 2
+        bpy.ops.mesh.primitive_monkey_add(location=(5.0, 0.0, 0.0))
+        monkey = bpy.context.active_object
+        for item, preset in ((text, "CANYON"), (monkey, "OVERTURNED"), (monkey, "FAULTED")):
+            select(item)
+            item.hide_set(False)
+            ops.strata_preset(preset=preset) if item == text else ops.fill_with_strata(
+                preset=preset, close_holes=True, faces=4000
+            )
+            select(item)
+            item.hide_set(False)
+            item.realmodel_strata.faces = 4000
+            ops.strata_erode()
+            left = abs(volume(evaluated(item)))
+            self.assertTrue(strata_modifier.shows_erosion(item))
+            self.assertEqual(open_edges(evaluated(item)), 0, len(evaluated(item).polygons))
+            self.assertGreater(left, 0.0)
+            ops.fill_with_strata(use_dialog=False)
+            beds = [bed for bed in item.realmodel_strata.beds_in.objects if "realmodel_bed" in bed]
+            self.assertTrue(all(not open_edges(bed.data) and volume(bed.data) > 0 for bed in beds))
+            self.assertAlmostEqual(sum(volume(bed.data) for bed in beds) / left, 1.0, places=3)
 
     def test_rocks_of_the_add_menu(self):
         for kind in strata_presets.SHAPES:
@@ -331,33 +414,56 @@ class Filling(PanelCase):
         select(empty)
         self.refused(ops.fill_with_strata, "the active object is no mesh")
 
-    def test_the_surface_of_the_mesh_keeps_smooth_shading_and_uvs(self):
-        """On a ball whose upper half is smooth, and whose UV maps are linear in space."""
-        item = ball("A", 2.0)
+    def test_the_surface_of_the_mesh_keeps_smooth_shading_uvs_materials_and_groups(self):
+        """On a ball whose upper half is smooth, and whose UV maps and weights are linear in space; mirrored,
+        too."""
+        for scale in (1.0, -1.0):
+            with self.subTest(scale=scale):
+                self.check_what_the_surface_keeps(scale)
+
+    def check_what_the_surface_keeps(self, scale):
+        item = ball(f"A{scale:.0f}", 2.0)
+        item.scale.x = scale
+        bpy.context.view_layer.update()
         mesh = item.data
         mesh.polygons.foreach_set("use_smooth", [polygon.center.z > 0 for polygon in mesh.polygons])
+        for name in ("Lower", "Upper"):
+            mesh.materials.append(bpy.data.materials.new(name))
+        mesh.polygons.foreach_set("material_index", [polygon.center.z > 0 for polygon in mesh.polygons])
+        group = item.vertex_groups.new(name="West")
+        for number, (x, _, _) in enumerate(coordinates(mesh).tolist()):
+            if x < 0.0:
+                group.add([number], -x / 2.0, "REPLACE")
         vertices = np.empty(len(mesh.loops), np.int32)
         mesh.loops.foreach_get("vertex_index", vertices)
         for name, plan in (("UVMap", slice(0, 2)), ("Paint", slice(1, 3))):
             uv = np.ascontiguousarray(coordinates(mesh)[vertices][:, plan], np.float32)
             mesh.uv_layers.new(name=name).data.foreach_set("uv", uv.ravel())
         kept = 0
-        for bed in self.filled(item, beds=4, dip=0.3):
+        for bed in self.filled(item, beds=4, dip=0.3, keep_materials=True):
             mesh = bed.data
             self.assertEqual([layer.name for layer in mesh.uv_layers], ["UVMap", "UVMap of Mesh", "Paint"])
             self.assertEqual(mesh.uv_layers.active.name, "UVMap")
+            self.assertEqual([group.name for group in bed.vertex_groups], ["West"])
             for polygon in mesh.polygons:
                 corners = [mesh.vertices[vertex].co for vertex in polygon.vertices]
                 outside = abs(polygon.center.length - 2.0) < 0.05 and polygon.center.dot(polygon.normal) > 1.9
+                material = mesh.materials[polygon.material_index].name
                 if not outside:
                     self.assertFalse(polygon.use_smooth)
+                    self.assertNotIn(material.split(".")[0], ("Lower", "Upper"))
                     continue
                 kept += 1
                 if abs(polygon.center.z) > 0.2:
                     self.assertEqual(polygon.use_smooth, polygon.center.z > 0)
+                    self.assertEqual(material.split(".")[0], "Upper" if polygon.center.z > 0 else "Lower")
                 for loop, corner in zip(polygon.loop_indices, corners, strict=True):
                     np.testing.assert_allclose(
                         mesh.uv_layers["UVMap of Mesh"].data[loop].uv, corner[:2], atol=1e-4
                     )
                     np.testing.assert_allclose(mesh.uv_layers["Paint"].data[loop].uv, corner[1:], atol=1e-4)
+                    entry = next(iter(mesh.vertices[mesh.loops[loop].vertex_index].groups), None)
+                    weight = 0.0 if entry is None else entry.weight
+                    if abs(corner[0]) > 0.2:
+                        self.assertAlmostEqual(weight, max(-corner[0] / 2.0, 0.0), delta=0.003)
         self.assertGreater(kept, 500)

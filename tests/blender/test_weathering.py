@@ -22,7 +22,7 @@ class Counting(bpy.types.RenderEngine):
     def render(self, depsgraph):
         for each in depsgraph.object_instances:
             if each.is_instance:
-                name = each.object.data.name
+                name = each.object.data.name.partition(".")[0]
                 self.counts[name] = self.counts.get(name, 0) + 1
 
 
@@ -107,6 +107,30 @@ class Weathering(PanelCase):
         self.assertEqual(polygons(), (corners * 4 ** (found - 1), hidden))
         ops.weathering(detail=3, most_faces=1)
         self.assertEqual(polygons(), (seen, hidden))
+
+    def test_detail_follows_the_distance_to_the_camera(self):
+        self.refused(ops.weathering, "the scene has no camera", adaptive=True)
+        camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+        bpy.context.collection.objects.link(camera)
+        camera.location = (50.0, -10.0, 30.0)
+        self.scene.camera = camera
+        bpy.context.view_layer.update()
+        ops.weathering(detail=6, most_faces=60_000)
+        even = versions.group_input(weathering.modifier_of(self.block(2)), "Detail")
+        ops.weathering(detail=6, most_faces=60_000, adaptive=True)
+        detail = versions.group_input(weathering.modifier_of(self.block(2)), "Detail")
+        self.assertGreater(detail, even)
+        counts, sizes = 0, {}
+        for number in (1, 2):
+            worn = self.block(number).evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+            counts += len(worn.polygons)
+            for polygon in worn.polygons:
+                away = (polygon.center - camera.location).length
+                if polygon.normal.z > 0.5 and number == 2:
+                    sizes.setdefault(int(away // 25), []).append(polygon.area)
+        self.assertLess(counts, 90_000)
+        areas = [np.mean(sizes[far]) for far in sorted(sizes)]
+        self.assertGreater(areas[-1], 6.0 * areas[0])
 
     def test_lengths_are_those_of_the_beds(self):
         found = {}
@@ -211,7 +235,8 @@ class Weathering(PanelCase):
         found = {}
         for each in bpy.context.evaluated_depsgraph_get().object_instances:
             if each.is_instance and each.parent.original == item:
-                found.setdefault(each.object.data.name, []).append(tuple(each.matrix_world.translation))
+                name = each.object.data.name.partition(".")[0]
+                found.setdefault(name, []).append(tuple(each.matrix_world.translation))
         return found
 
     def rendered_instances(self):

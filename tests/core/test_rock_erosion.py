@@ -19,13 +19,18 @@ from realmodel.core import (
 from realmodel.core.base import work
 from realmodel.core.base.triangles import open_edges
 from realmodel.core.filling import (
+    PIECES,
     SHAPES,
+    broken_piece,
     closed_mesh,
     divided_at_beds,
     eroded_within,
     hardness_of_beds,
+    joints_at,
     kept_of,
     lay_beds,
+    mean_thickness,
+    rubble_within,
     scree_within,
 )
 from realmodel.core.filling.erosion import cubic_lattice, winding
@@ -69,6 +74,57 @@ def test_closed_and_inside_at_any_strength(seed, strength, bumps, kind):
     assert not len(open_edges(*made))
     assert 0 < volume(*made) <= volume(*mesh) * 1.02
     assert not crosses_itself(made)
+
+
+PRESETS = (
+    Strata(beds=24, variation=0.9, dip=2),
+    Strata(beds=9, dip=18, unconformity=0.6),
+    Strata(beds=16, dip=10, fold_amplitude=0.6, fold_wavelength=3.0),
+    Strata(beds=16, dip=4, fold_amplitude=0.8, fold_wavelength=4.0, axial_dip=30),
+    Strata(beds=14, dip=12, faults=3, throw=0.4, fault_strike=20),
+)
+
+
+def torus_knot(p, q, tube, n=90, m=9):
+    """Around the z axis; a wide tube crosses itself."""
+    u = 2 * np.pi * np.arange(n) / n
+    line = np.stack(
+        [(2 + np.cos(q * u)) * np.cos(p * u), (2 + np.cos(q * u)) * np.sin(p * u), -np.sin(q * u)], 1
+    )
+    along = np.roll(line, -1, axis=0) - np.roll(line, 1, axis=0)
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    right = np.cross(along, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right, axis=1)[:, None]
+    turn = 2 * np.pi * np.arange(m) / m
+    ring = np.cos(turn)[:, None] * right[:, None] + np.sin(turn)[:, None] * np.cross(along, right)[:, None]
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(m), indexing="ij"))
+    a, b, c, d = i * m + j, (i + 1) % n * m + j, (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
+    vertices = (line[:, None] + tube * ring).reshape(-1, 3)
+    triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]).astype(np.int32)
+    return (vertices, triangles) if volume(vertices, triangles) > 0 else (vertices, triangles[:, ::-1].copy())
+
+
+@settings(max_examples=10, deadline=None)
+@given(
+    st.sampled_from(PRESETS),
+    st.sampled_from([(2, 3), (3, 2), (2, 5), (3, 7)]),
+    st.floats(0.15, 0.6),
+    st.floats(0.0, 20.0),
+    st.integers(0, 10**6),
+)
+def test_torus_knots_with_strata_of_all_kinds(strata, turns, tube, strength, seed):
+    strata = replace(strata, seed=seed)
+    made = eroded(torus_knot(*turns, tube), strata, replace(COARSE, strength=strength))
+    assert not len(open_edges(*made))
+    assert volume(*made) > 0
+    assert not crosses_itself(made)
+    model = fill_with_strata(*made, strata)
+    beds = lay_beds(strata, made[0])
+    divided = divided_at_beds(*made, beds)
+    assert not len(open_edges(*divided))
+    assert len(np.unique(divided[0], axis=0)) == len(divided[0])
+    assert all(block.volume >= 0 for block in model.blocks)
+    assert np.isclose(sum(block.volume for block in model.blocks), volume(*made), rtol=1e-7)
 
 
 def test_soft_beds_recede():
@@ -183,6 +239,7 @@ def test_a_mesh_divided_at_beds(strata):
     beds = lay_beds(strata, mesh[0])
     vertices, triangles = divided_at_beds(*mesh, beds)
     assert vertices[: len(mesh[0])].tobytes() == mesh[0].tobytes()
+    assert len(np.unique(vertices, axis=0)) == len(vertices), "edges in a boundary are not divided again"
     assert not len(open_edges(vertices, triangles))
     assert np.isclose(volume(vertices, triangles), volume(*mesh), rtol=1e-12)
     corners = vertices[triangles]
@@ -202,7 +259,7 @@ def test_scree_leans_against_walls_at_its_angle():
     triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
     ground = np.column_stack([x, y, np.where(x < 20, 12.0, 2.0)])
     mesh = closed_mesh(ground, triangles, 0.0)
-    vertices, made = work.run(lambda job: scree_within(job, mesh, 1.0, 34.0, 3, 60_000))
+    vertices, made, down = work.run(lambda job: scree_within(job, mesh, 1.0, 34.0, 3, 60_000))
     assert not len(open_edges(vertices, made))
     assert volume(vertices, made) > 0
     corners = vertices[made]
@@ -214,5 +271,56 @@ def test_scree_leans_against_walls_at_its_angle():
     assert 28.0 < slope < 40.0
     assert vertices[:, 2].max() < 10.0
     assert (vertices[:, 0] < 36.0).all()
+    assert ((down >= 0.0) & (down <= 1.0)).all()
+    seen = np.unique(made[open_])
+    assert np.corrcoef(down[seen], vertices[seen, 0])[0, 1] > 0.8, "it goes down away from the wall"
     with pytest.raises(InputRefused, match="no wall"):
         work.run(lambda job: scree_within(job, box((0, 0, 0), (10, 10, 5)), 1.0, 34.0, 3, 5000))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**31 - 1), st.floats(1e-3, 1e4))
+def test_a_piece_of_rubble_is_closed_convex_and_as_thick_as_its_bed(seed, thickness):
+    vertices, triangles = work.run(lambda job: broken_piece(job, thickness, seed))
+    assert not len(open_edges(vertices, triangles))
+    size = np.ptp(vertices, axis=0)
+    assert 0.05 * thickness**3 < volume(vertices, triangles) < size.prod()
+    assert 0.3 * thickness < size[2] <= thickness * (1 + 1e-9)
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    above = np.einsum("tk,tvk->tv", normal, vertices[None] - a[:, None])
+    assert above.max() < 1e-9 * thickness**3
+    assert vertices[:, 2].min() < 0.0 < vertices[:, 2].max(), "a part of it lies in the ground"
+
+
+def test_rubble_is_of_hard_beds():
+    mesh = rock_shape("canyon", 20.0)
+    strata = Strata(beds=24, variation=0.9)
+    beds = lay_beds(strata, mesh[0])
+    unit = mean_thickness(beds, mesh[0])
+    pieces = work.run(lambda job: rubble_within(job, beds, strata, unit))
+    again = work.run(lambda job: rubble_within(job, beds, strata, unit))
+    assert len(pieces) == PIECES
+    assert [piece[0].tobytes() for _, piece in pieces] == [piece[0].tobytes() for _, piece in again]
+    hard = hardness_of_beds(24, strata)
+    assert hard[[bed for bed, _ in pieces]].mean() > hard.mean()
+    thick = np.diff(beds.levels)
+    for bed, (vertices, _) in pieces:
+        if 0 < bed < 23 and 0.5 * unit < thick[bed - 1] < 2.0 * unit:
+            assert np.ptp(vertices[:, 2]) <= thick[bed - 1] * 1.001
+
+
+def test_joints_are_lines_on_the_walls_of_beds():
+    """At about the distances that the thickness of the bed sets; continuous within a bed."""
+    strata = Strata(beds=4, variation=0.0, seed=3)
+    corners, _ = box((0, 0, 0), (40, 40, 8))
+    beds = lay_beds(strata, corners)
+    unit = mean_thickness(beds, corners)
+    assert np.isclose(unit, 2.0)
+    x = np.linspace(0.0, 40.0, 4001)
+    near = joints_at(np.column_stack([x, 0 * x + 7.0, 0 * x + 3.0]), beds, strata, unit)
+    assert near.dtype == np.float32 and near.min() >= 0.0 and near.max() <= 1.0
+    crossed = np.count_nonzero((near[1:-1] > near[:-2]) & (near[1:-1] >= near[2:]) & (near[1:-1] > 0.9))
+    assert 40 / (6 * unit) < crossed < 40 / (0.5 * unit)
+    assert np.abs(np.diff(near)).max() < 0.2
+    assert (near > 0.5).mean() < 0.3

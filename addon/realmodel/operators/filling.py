@@ -47,7 +47,7 @@ def _set_preset(self, _context):
 
 
 class _OfStrata(InBackground):
-    """An operator whose work is a job of the active object's strata."""
+    """An operator whose work is a job of the active object's strata, `_strata_job`."""
 
     def shown(self, context):
         """The active object, with its modifier. Raises RealModelError."""
@@ -55,6 +55,10 @@ class _OfStrata(InBackground):
         if strata_modifier.beds_of(obj) is None:
             strata_modifier.update(obj)
         return obj
+
+    def warn(self):
+        for warning in self._strata_job.warnings:
+            self.report({"WARNING"}, warning)
 
 
 class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
@@ -87,7 +91,6 @@ class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
     _preset = None  # that the preview shows
     _before = None  # the values that the object had before the dialog, None without strata
     _name = ""
-    _filling = None
     _is_asked = False
     _problem = ""
 
@@ -151,17 +154,16 @@ class REALMODEL_OT_fill_with_strata(_OfStrata, bpy.types.Operator):
         had_strata = strata_modifier.modifier_of(obj) is not None
         try:
             props_strata.copy(self, obj)
-            self._filling = FillJob(context.scene, self.shown(context))
+            self._strata_job = FillJob(context.scene, self.shown(context))
         except RealModelError:
             if not had_strata:
                 strata_modifier.take_off(obj)
             raise
-        return self._filling
+        return self._strata_job
 
     def tell_done(self, result):
         beds = sum(VOLUME in obj for obj in result.objects)
-        for warning in self._filling.warnings:
-            self.report({"WARNING"}, warning)
+        self.warn()
         has_picture = by_hand(self) and set_up_first(bpy.context.scene)
         renders = "; F12 renders them" if has_picture else ""
         self.report({"INFO"}, f"{counted(beds, 'bed')}: see {result.name}{renders}")
@@ -231,9 +233,11 @@ class REALMODEL_OT_strata_erode(_OfStrata, bpy.types.Operator):
     def begin(self, context):
         obj = self.shown(context)
         strata_modifier.set_values(obj, {"erosion": True})
-        return ErosionJob(context.scene, obj)
+        self._strata_job = ErosionJob(context.scene, obj)
+        return self._strata_job
 
     def tell_done(self, result):
+        self.warn()
         self.report({"INFO"}, f"{counted(result, 'face')} after erosion")
 
 

@@ -275,6 +275,11 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         soft_max=20_000_000,
     )
 
+    adaptive: BoolProperty(
+        name="Adaptive to Camera",
+        description="Fewer subdivisions far from the scene camera, one less at each doubling of the "
+        "distance, so that Most Faces allows more near it",
+    )
     plants: FloatProperty(
         name="Plants and Stones",
         description="Density of tufts on grass and stones on scree, as instances. 1 fits the model. 0: none",
@@ -295,12 +300,14 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = rocks(context)
-        detail, faces, size = weathering.cost(items, self.detail, self.most_faces)
-        parameters = weathering.Weathering(*values, *covers, detail, self.plants, self.wear)
+        camera = context.scene.camera if self.adaptive else None
+        if self.adaptive and camera is None:
+            raise InputRefused("the scene has no camera", advice="add one, or switch Adaptive to Camera off")
+        detail, faces, size, near = weathering.cost(items, self.detail, self.most_faces, camera)
+        parameters = weathering.Weathering(*values, *covers, detail, self.plants, self.wear, near)
         weathering.put_on(context.scene, items, parameters)
         lowered = f", as Most Faces does not allow {self.detail}" if detail < self.detail else ""
-        count = f"{faces / 1e6:.1f} million" if faces >= 1e5 else f"{faces:,}"
-        self.made = f"{count} faces, about {size / 1e9:.1f} GB, Detail {detail}{lowered}"
+        self.made = f"{weathering.cost_text(faces, size)}, Detail {detail}{lowered}"
         self.report({"INFO"}, f"Weathered {counted(len(items), 'block')}: {self.made}")
 
 

@@ -4,8 +4,10 @@
 import bpy
 
 from .. import props_strata
-from ..bl.shading import strata_modifier
+from ..bl.jobs.fill_job import ErosionJob
+from ..bl.shading import strata_modifier, weathering
 from ..bl.shading.strata_presets import PRESETS, SHAPES
+from ..operators.baking import rocks
 from ..operators.filling import draw_presets, draw_values
 from .panel import TabPanel, hint
 
@@ -68,6 +70,7 @@ class REALMODEL_PT_strata_erosion(_Step, bpy.types.Panel):
             hint(layout, "Hard beds stand out, soft ones recede. Choose beds first.")
             return
         draw_values(layout, values, props_strata.EROSION)
+        layout.label(text="About " + weathering.cost_text(values.faces, values.faces * ErosionJob.BYTES))
         layout.operator("realmodel.strata_erode", icon="MOD_NOISE")
 
 
@@ -76,6 +79,11 @@ class REALMODEL_PT_strata_looks(_Step, bpy.types.Panel):
     bl_order = 3
 
     def draw_step(self, layout, _obj, _values):
+        items = rocks(bpy.context)
+        if items:
+            last = bpy.context.window_manager.operator_properties_last("realmodel.weathering")
+            _, faces, size, _ = weathering.cost(items, last.detail, last.most_faces)
+            layout.label(text="Up to " + weathering.cost_text(faces, size))
         line = layout.row(align=True)
         line.operator("realmodel.weathering", icon="MOD_NOISE")
         line.operator("realmodel.weathering_remove", text="", icon="X")

@@ -10,13 +10,12 @@ same to the last bit.
 import bpy
 import numpy as np
 
-from ...core import BuildFailed, InputRefused
+from ...core import BuildFailed, InputRefused, filling
 from ...core.base.triangles import without_flat
 from ...core.display import polygon_mesh
-from ...core.filling import divided_at_beds, eroded_within, fill_within, kept_of, scree_within
 from ...core.filling.scree import REPOSE
 from ..host.thread_job import ThreadJob
-from ..objects import filled_beds, meshes, placing
+from ..objects import exaggeration, filled_beds, meshes, placing
 from ..objects.boolean_job import VOLUME
 from ..objects.filled_beds import BED, named
 from ..shading import rock_layers, strata_modifier, strata_values
@@ -26,8 +25,7 @@ _COARSER = 3  # times as few faces on an area of scree as on the rock
 
 
 class _StrataJob(ThreadJob):
-    """What erosion and filling share. warnings: of what was left out, once it is done. Raises InputRefused
-    for a shape that cannot be closed."""
+    """What erosion and filling share. warnings: of what was left out, once it is done."""
 
     warnings: tuple[str, ...] | list[str] = ()
 
@@ -37,27 +35,46 @@ class _StrataJob(ThreadJob):
         values = item.realmodel_strata
         beds, matrix = strata_modifier.beds_of(item)
         self._shape = strata_modifier.base_shape(item, matrix)
-        self._mesh = self._shape.closed(values)
-        self._beds = beds.reaching(self._mesh[0])
+        self._beds, self._closing = beds, (values.base_depth, values.close_holes)
         self._strata = strata_values.strata_of(values, beds.high - beds.low)
         self._erosion = strata_values.erosion_of(values)
         self._has_masks, self._scree = values.masks, values.scree
 
+    def _close(self):
+        """Sets the mesh that is filled, and beds that reach through it. Raises InputRefused."""
+        self._mesh = self._shape.closed(*self._closing)
+        self._beds = self._beds.reaching(self._mesh[0])
+        self._unit = filling.mean_thickness(self._beds, self._mesh[0])
+
     def _eroded(self, job):
-        kept = kept_of(*self._mesh, len(self._shape.triangles))
+        kept = filling.kept_of(*self._mesh, len(self._shape.triangles))
         with named(self._name):
-            return eroded_within(job, self._mesh, kept, self._beds, self._strata, self._erosion)
+            return filling.eroded_within(job, self._mesh, kept, self._beds, self._strata, self._erosion)
 
     def _heaped(self, job, mesh):
-        """The scree of a mesh; nothing where there is none."""
+        """The scree of a mesh in the coordinates of the object: vertices, triangles, how far down vertices
+        are, and what strata_modifier.set_rubble takes. None where there is none."""
         if not self._scree:
-            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+            return None
         faces = (len(mesh[1]) if self._erosion is None else self._erosion.faces) // _COARSER
         try:
-            return scree_within(job, mesh, self._scree, REPOSE, self._strata.seed, max(faces, 1000))
+            vertices, triangles, down = filling.scree_within(
+                job, mesh, self._scree, REPOSE, self._strata.seed, max(faces, 1000)
+            )
         except InputRefused as error:
             self.warnings = [*self.warnings, f"no scree: {error.what}"]
-            return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+            return None
+        scale = abs(np.linalg.det(self._shape.matrix[:3, :3])) ** (1.0 / 3.0)
+        _, rocks = filling.rocks_of_beds(self._beds.count, self._strata.palette, self._strata.seed)
+        pieces = [
+            (rocks[bed] - 1, (places / scale, of))
+            for bed, (places, of) in filling.rubble_within(job, self._beds, self._strata, self._unit)
+        ]
+        return *self._local((vertices, triangles)), down, pieces, self._unit / scale
+
+    def _joints(self, places):
+        """(V,) float32 how near places in the world are to a joint, from 0 to 1."""
+        return filling.joints_at(places, self._beds, self._strata, self._unit)
 
     def _local(self, mesh):
         """A mesh in the coordinates of the object, with its faces outward there."""
@@ -74,50 +91,69 @@ class _StrataJob(ThreadJob):
 
 
 class ErosionJob(_StrataJob):
-    """Shows the eroded mesh of an object in its modifier. `run` and `finish` return how many faces it has."""
+    """Shows the eroded mesh of an object in its modifier. `run` and `finish` return how many faces it has.
+    BYTES: of memory for a face, about."""
+
+    BYTES = 700
 
     def _work(self, job):
+        self._close()
         with job.part(0.0, _SHARE):
             eroded = self._eroded(job)
         with job.part(_SHARE, 1.0):
-            scree = self._heaped(job, eroded)
-        return [self._local(mesh) for mesh in (divided_at_beds(*eroded, self._beds), scree)]
+            heap = self._heaped(job, eroded)
+        vertices, triangles = filling.divided_at_beds(*eroded, self._beds)
+        return self._local((vertices, triangles)), self._joints(vertices), heap
 
     def _put(self, made):
         obj = self._object()
-        (vertices, triangles), (of_scree, others) = made
-        together = np.concatenate([triangles, others + len(vertices)])
-        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", np.concatenate([vertices, of_scree]), together)
-        is_scree = np.arange(len(together)) >= len(triangles)
-        mesh.attributes.new(strata_modifier.SCREE, "BOOLEAN", "FACE").data.foreach_set("value", is_scree)
+        (vertices, triangles), joints, heap = made
+        count, down = len(triangles), np.zeros(len(vertices))
+        if heap is not None:
+            triangles = np.concatenate([triangles, heap[1] + len(vertices)])
+            vertices, down = np.concatenate([vertices, heap[0]]), np.append(down, heap[2])
+            strata_modifier.set_rubble(obj, *heap[3:])
+        mesh = meshes.triangle_mesh(f"{obj.name} Eroded", vertices, triangles)
+        joints = np.append(joints, np.zeros(len(vertices) - len(joints), np.float32))
+        mesh.attributes.new(rock_layers.JOINTS, "FLOAT", "POINT").data.foreach_set("value", joints)
+        strata_modifier.mark_scree(mesh, np.arange(len(triangles)) >= count, down)
         strata_modifier.show_eroded(obj, mesh)
-        return len(together)
+        return len(triangles)
 
 
 class FillJob(_StrataJob):
     """Fills an object with its strata. `run` and `finish` return the collection of the beds, which replace
     earlier ones of the object."""
 
+    def __init__(self, scene, item):
+        super().__init__(scene, item)
+        self._matrix = exaggeration.true_matrix(item)
+        self._surface = rock_layers.surface_of(item)
+
     def _work(self, job):
+        self._close()
         mesh, begin = self._mesh, 0.0
         if self._erosion is not None:
             begin = _EROSION
             with job.part(0.0, begin):
                 mesh = self._eroded(job)
         with job.part(begin, _SHARE), named(self._name):
-            model, places = fill_within(job, mesh, self._beds, self._strata)
+            model, places = filling.fill_within(job, mesh, self._beds, self._strata)
         with job.phase(_SHARE, 1.0, "making meshes"):
             local = self._shape.to_local(places)
             solids = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
             matrix = self._shape.matrix
             solids = [None if shape is None else filled_beds.exposed(shape, matrix) for shape in solids]
-            scree = self._local(self._heaped(job, mesh))
-        return model, solids, scree, self._beds.numbers(self._shape.vertices)
+            beds = [shape for shape, of in zip(solids, model.blocks, strict=True) if shape and of.property]
+            near = [self._joints(self._shape.to_world(shape.coordinates)) for shape in beds]
+            layers = rock_layers.of_beds(beds, self._matrix, self._surface, near, self._threads)
+            heap = self._heaped(job, mesh)
+        return model, solids, layers, heap, self._beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 
     def _put(self, made):
-        model, solids, scree, masks = made
+        model, solids, layers, heap, masks = made
         obj = self._object()
         collection = self._emptied(obj)
         self.warnings = [*self.warnings, *(warning.text for warning in model.warnings)]
@@ -128,24 +164,26 @@ class FillJob(_StrataJob):
                 continue
             name = f"{obj.name} Bed {number:0{digits}}"
             bed = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
-            if self._shape.is_mirrored:
-                bed.data.flip_normals()
             rock = block.property - 1
             bed.data.materials.append(strata_modifier.material_of(obj, rock))
             bed[BED], bed[VOLUME] = number, block.volume
             placing.stand_at(bed, obj)
             collection.objects.link(bed)
-        if len(scree[1]):
-            heap = bpy.data.objects.new(
-                f"{obj.name} Scree", meshes.triangle_mesh(f"{obj.name} Scree", *scree)
-            )
-            strata_modifier.put_scree_on(heap, obj)
-            placing.stand_at(heap, obj)
-            collection.objects.link(heap)
+        if heap is not None:
+            name = f"{obj.name} Scree"
+            scree = bpy.data.objects.new(name, meshes.triangle_mesh(name, *heap[:2]))
+            strata_modifier.set_rubble(obj, *heap[3:])
+            strata_modifier.put_scree_on(scree, obj, heap[2])
+            placing.stand_at(scree, obj)
+            collection.objects.link(scree)
         beds = list(collection.objects)
         if self._has_masks:
             self._add_masks(collection, obj, masks)
-        rock_layers.finish(bpy.data.scenes[self._scene], obj, [bed for bed in beds if BED in bed])
+        slots = [s.material for s in obj.material_slots] if obj.realmodel_strata.keep_materials else []
+        solid = [bed for bed in beds if BED in bed]
+        rock_layers.finish(bpy.data.scenes[self._scene], solid, layers, slots)
+        for bed in solid if self._shape.is_mirrored else ():
+            bed.data.flip_normals()
         placing.hide(obj)
         placing.select(beds)
         return collection

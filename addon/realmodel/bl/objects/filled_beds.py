@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes of objects that are filled with strata, and the beds that are in a scene then, without a model."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,7 +70,6 @@ class FilledShape:
     matrix: np.ndarray
     vertices: np.ndarray
     triangles: np.ndarray
-    _closed: dict = field(default_factory=dict)
 
     @classmethod
     def of(cls, item, depsgraph, matrix=None):
@@ -93,20 +92,20 @@ class FilledShape:
         """Whether faces that face outward in the world face inward in the object's coordinates."""
         return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
 
-    def closed(self, values):
-        """Vertices in the world and triangles of what is filled. values: the strata of the object, for the
-        depth of the base of an open mesh beneath its lowest point, as a share of its height or of a tenth of
-        its width where that is more, and for whether holes are closed. Raises InputRefused."""
-        key = values.base_depth, values.close_holes
-        if key not in self._closed:
-            low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
-            size = high - low
-            base = low[2] - values.base_depth * max(size[2], 0.1 * size[:2].max())
-            mesh = self.vertices, self.triangles
-            with named(self.name):
-                mesh = without_holes(*mesh) if values.close_holes else closed_mesh(*mesh, float(base))
-            self._closed = {key: mesh}
-        return self._closed[key]
+    def closed(self, base_depth, close_holes):
+        """Vertices in the world and triangles of what is filled. base_depth: of the base of an open mesh
+        beneath its lowest point, as a share of its height or of a tenth of its width where that is more.
+        close_holes: whether holes are closed instead. Raises InputRefused."""
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        size = high - low
+        base = low[2] - base_depth * max(size[2], 0.1 * size[:2].max())
+        mesh = self.vertices, self.triangles
+        with named(self.name):
+            return without_holes(*mesh) if close_holes else closed_mesh(*mesh, float(base))
+
+    def to_world(self, local):
+        """(N, 3) float64: the inverse of `to_local`."""
+        return local.astype(np.float64) @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
     def to_local(self, places):
         """(N, 3) float64: places in the world in the coordinates of the object, without any change of its own

@@ -23,7 +23,8 @@ def hide(item):
     item.hide_render = True
 
 
-def select(items):
+def select(items, active=None):
+    """Selects objects alone. active: None: the first of them, if there is any."""
     layer = bpy.context.view_layer
     layer.update()  # or it would not know new objects
     items = [obj for obj in items if obj.name in layer.objects]
@@ -31,5 +32,4 @@ def select(items):
         obj.select_set(False)
     for obj in items:
         obj.select_set(True)
-    if items:
-        layer.objects.active = items[0]
+    layer.objects.active = active or (items[0] if items else layer.objects.active)

@@ -15,16 +15,15 @@ import numpy as np
 from ...core import InputRefused
 from ...core.display import box_projection
 from ..host import versions
-from ..objects import filled_beds, meshes
+from ..objects import filled_beds, meshes, placing
 from ..shading import looks, rock_layers
-from . import temporary_copies
 
 UV_MAP = "Baked"
 KINDS = (  # items of an enum
     ("COLOR", "Base Color", "The color without light"),
     ("ROUGHNESS", "Roughness", "How matt the surface is"),
     ("NORMAL", "Normal", "The relief of the look, in tangent space with green upward (OpenGL)"),
-    ("OCCLUSION", "Ambient Occlusion", "How far other rock hides the sky. Faces between beds are dark"),
+    ("OCCLUSION", "Ambient Occlusion", "How far other rock hides the sky. Faces between beds are white"),
     (
         "DISPLACEMENT",
         "Displacement",
@@ -121,8 +120,12 @@ class Baking:
                     if material not in new:
                         new[material] = _to_bake(material, kind, image)
                     of_object[slot] = new[material]
-            temporary_copies.select(context.view_layer, [copies.items[number] for number, _ in group.users])
-            self._bake(context.scene, kind)
+            baked = [copies.items[number] for number, _ in group.users]
+            placing.select(baked)
+            if kind == "OCCLUSION":  # elsewhere it stays white
+                image.generated_color = (1.0, 1.0, 1.0, 1.0)
+            with _left_out(baked if kind == "OCCLUSION" else ()):
+                self._bake(context.scene, kind)
             image.filepath_raw = str(self.path(group, kind))
             image.file_format = "OPEN_EXR" if is_exact else "PNG"
             image.save()
@@ -205,9 +208,8 @@ class Baking:
             places = meshes.mesh_coordinates(item.data).astype(np.float64) @ matrix.T
             arrays = rock_layers.arrays_of(item.data)
             made = rock_layers.projection(item.data, places, arrays, 1.0)
-            surface = rock_layers.values_of(item.data, meshes.FACE_SURFACE, np.int32)
-            if filled_beds.BED in item and surface is not None:
-                is_hidden = surface >= 0  # between two beds
+            is_hidden = _between_beds(item)
+            if is_hidden is not None:
                 density = np.where(np.repeat(is_hidden, np.diff(arrays[0])), _HIDDEN, 1.0)[:, None]
                 made = box_projection.Projection(made.uv * density, 2 * made.chart + is_hidden)
             island = box_projection.islands(made, arrays)
@@ -249,7 +251,7 @@ class Baking:
                 normal_b="POS_Z",
                 margin=max(1, int(self._gap * self._size / 2)),
                 margin_type="EXTEND",  # neighboring faces may be in another picture
-                use_clear=True,
+                use_clear=kind != "OCCLUSION",
                 use_selected_to_active=False,
                 use_split_materials=False,
             )
@@ -282,6 +284,31 @@ def _material_indices(mesh):
     indices = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("material_index", indices)
     return indices
+
+
+def _between_beds(item):
+    """(F,) bool of the polygons of a bed; None of another object."""
+    surface = rock_layers.values_of(item.data, meshes.FACE_SURFACE, np.int32)
+    return None if surface is None or filled_beds.BED not in item else surface >= 0
+
+
+@contextlib.contextmanager
+def _left_out(items):
+    """Faces between beds are not baked for a while: they have a slot without material."""
+    before = []
+    try:
+        for item in items:
+            is_hidden, indices = _between_beds(item), _material_indices(item.data)
+            if is_hidden is not None:
+                before.append((item.data, indices))
+                item.data.materials.append(None)
+                indices = np.where(is_hidden, len(item.data.materials) - 1, indices).astype(np.int32)
+                item.data.polygons.foreach_set("material_index", indices)
+        yield
+    finally:
+        for mesh, indices in before:
+            mesh.materials.pop()
+            mesh.polygons.foreach_set("material_index", indices)
 
 
 @contextlib.contextmanager

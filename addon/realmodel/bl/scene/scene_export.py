@@ -19,9 +19,9 @@ from ...core import InputRefused
 from ...core.base.atomic import Outputs, writable_target
 from ...core.base.formats import Format, by_ending
 from ..display import bodies
-from ..objects import filled_beds, model_tree
+from ..objects import filled_beds, model_tree, placing
 from .bake import Baking, pictures
-from .temporary_copies import copied, select
+from .temporary_copies import copied
 
 HULLS = (  # items of an enum
     ("NONE", "None", "No collision meshes"),
@@ -78,7 +78,7 @@ def write(context, items, path, choices):
             if choices.has_levels:
                 shown += _with_levels(copies)
             shown += _with_hulls(copies, choices.hulls)
-            select(context.view_layer, shown)
+            placing.select(shown)
             with _pictures_in(folder, copies):
                 file_format.write(str(target))
         for made in sorted(folder.iterdir()):

@@ -6,7 +6,7 @@ import contextlib
 
 import bpy
 
-from ..objects import filled_beds, model_tree
+from ..objects import filled_beds, model_tree, placing
 from ..project import library_rows, settings
 
 _KEPT = (
@@ -70,14 +70,13 @@ def copied(context, items):
             _copy_properties(context.scene, obj, copies.items[-1])
         for obj in rendered:
             obj.hide_render = True
-        layer.update()
-        select(layer, copies.items)
+        placing.select(copies.items)
         yield copies
     finally:
         for obj in rendered:
             obj.hide_render = False
         copies.remove()
-        select(layer, selected, active)
+        placing.select(selected, active)
 
 
 def _copy_properties(scene, obj, copy):
@@ -93,11 +92,3 @@ def _copy_properties(scene, obj, copy):
         for key in ("density", "porosity", "permeability"):
             if settings.number(row, key):
                 copy[f"{model_tree.TAG}_property_{key}"] = settings.number(row, key)
-
-
-def select(layer, items, active=None):
-    for obj in layer.objects:
-        obj.select_set(False, view_layer=layer)
-    for obj in items:
-        obj.select_set(True, view_layer=layer)
-    layer.objects.active = active or (items[0] if items else None)

@@ -2,14 +2,14 @@
 """What blocks and beds have for other programs and for Solid shading: a UV map, the color of the rock, and
 values of their vertices."""
 
-import bpy
+from dataclasses import dataclass, field
+
 import numpy as np
 
 from ...core.base.work import native_module, on_threads
 from ...core.display import box_projection, polygon_mesh
 from ...core.display.wetness import wetness
 from ..host import versions
-from ..host.threads import threads
 from ..objects import exaggeration, filled_beds, meshes, model_tree, shapes
 from ..project import library_rows
 from . import looks, strata_modifier, weathering
@@ -18,7 +18,8 @@ UV_MAP = "UVMap"  # along the bedding; polygons of different places overlap
 COLOR = "Rock Color"  # a color attribute, the active one
 KEPT = "{} of Mesh"  # the UV map of a filled mesh that has the name of UV_MAP
 _NEAR = 1e-5  # of the size of a mesh: what is farther from it is not its surface
-HARDNESS, WETNESS = "realmodel_hardness", "realmodel_wetness"  # of vertices, from 0 to 1
+# of vertices, from 0 to 1
+HARDNESS, WETNESS, JOINTS = "realmodel_hardness", "realmodel_wetness", "realmodel_joints"
 
 
 def write(scene, items, size=0.0):
@@ -27,73 +28,159 @@ def write(scene, items, size=0.0):
     if not items:
         return size
     size = size or _texture_unit(scene, items[0])
-    places = [_places(obj) for obj in items]
-    heights = np.concatenate([at[:, 2] for at in places])
-    low, high = float(heights.min(initial=np.inf)), float(heights.max(initial=-np.inf))
+    places = [placed(meshes.mesh_coordinates(obj.data), exaggeration.true_matrix(obj)) for obj in items]
+    ends = _ends(places)
     for obj, at in zip(items, places, strict=True):
         mesh = obj.data
-        if not len(mesh.polygons):
-            continue
-        arrays = arrays_of(mesh)
-        set_uv(mesh, UV_MAP, projection(mesh, at, arrays, size).uv)
-        _set_color(mesh, next((slot.material for slot in obj.material_slots if slot.material), None))
-        edges = versions.edge_vertices(mesh)
-        wet = wetness(at, *arrays[:2], edges, low, high)
-        _set(mesh, WETNESS, "FLOAT", wet)
-        if filled_beds.BED in obj:
-            hardness = weathering.hardness_of_bed(obj)
-            _set(mesh, filled_beds.BED, "INT", np.full(len(at), obj[filled_beds.BED], np.int32))
-        else:
-            hardness = weathering.hardness_of(library_rows.find(scene, obj.get(model_tree.PROPERTY)))
-        _set(mesh, HARDNESS, "FLOAT", np.full(len(at), hardness, np.float32))
+        if len(mesh.polygons):
+            arrays = arrays_of(mesh)
+            wet = wetness(at, *arrays[:2], versions.edge_vertices(mesh), *ends)
+            _put(scene, obj, Layers(projection(mesh, at, arrays, size).uv, wet))
     return size
 
 
-def finish(scene, source, beds):
-    """Gives new beds what `write` does, and on the surface of the mesh that they fill, which is still shown,
-    its smooth shading and UV maps; elsewhere these are along the bedding."""
-    bpy.context.view_layer.update()  # or it would not know where they stand
-    write(scene, beds)
+def surface_of(item):
+    """The surface of a mesh that beds fill: triangles (T, 3, 3); of each its polygon (T,),
+    and its loops and vertices (T, 3); of polygons whether they are smooth (F,) and their material slots (F,);
+    {name: UV map (C, 2)} and {name: weights (V,)}."""
     with (
-        strata_modifier.without_erosion(source) as depsgraph,
-        shapes.evaluated_mesh(source, depsgraph, all_layers=True) as mesh,
+        strata_modifier.without_erosion(item, strata_modifier.SHOW_ROCKS) as depsgraph,
+        shapes.evaluated_mesh(item, depsgraph, all_layers=True) as mesh,
     ):
         polygons = shapes.triangle_polygons(mesh)
-        corners = np.empty(3 * len(polygons), np.int32)
-        mesh.loop_triangles.foreach_get("loops", corners)
-        corners = corners.reshape(-1, 3)
-        smooth = np.empty(len(mesh.polygons), bool)
+        loops = np.empty((len(polygons), 3), np.int32)
+        mesh.loop_triangles.foreach_get("loops", loops.ravel())
+        smooth, slots = np.empty(len(mesh.polygons), bool), np.empty(len(mesh.polygons), np.int32)
         mesh.polygons.foreach_get("use_smooth", smooth)
-        uvs = {layer.name: uv_of(layer) for layer in mesh.uv_layers}
-        vertices = versions.corner_vertices(mesh)[corners]
+        mesh.polygons.foreach_get("material_index", slots)
+        weights = {group.name: np.zeros(len(mesh.vertices), np.float32) for group in item.vertex_groups}
+        of_group = list(weights.values())
+        for number, vertex in enumerate(mesh.vertices if weights else ()):
+            for entry in vertex.groups:
+                of_group[entry.group][number] = entry.weight
+        vertices = versions.corner_vertices(mesh)[loops]
         triangles = meshes.mesh_coordinates(mesh)[vertices].astype(np.float64)
-    if not beds or not (uvs or smooth.any()):
-        return
-    parts = []
-    for bed in beds:
-        offsets, vertices, _ = arrays_of(bed.data)
-        at = meshes.mesh_coordinates(bed.data)[vertices].astype(np.float64)
-        middle = np.add.reduceat(at, offsets[:-1]) / np.diff(offsets)[:, None]
-        parts.append((bed.data, np.diff(offsets), at, middle))
-    middles = np.concatenate([middle for *_, middle in parts])
-    nearest, away = native_module().nearest_triangles(triangles, middles, execution=on_threads(threads()))
-    is_kept = away <= _NEAR * float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
-    ends = np.cumsum([len(middle) for *_, middle in parts])[:-1]
-    for (mesh, counts, at, _), near, kept in zip(
-        parts, np.split(nearest, ends), np.split(is_kept, ends), strict=True
+        uvs = {layer.name: uv_of(layer) for layer in mesh.uv_layers}
+    return triangles, polygons, loops, vertices, smooth, slots, uvs, weights
+
+
+@dataclass(eq=False)
+class Layers:
+    """What a mesh gets: uv (C, 2) float32, wet (V,) and, of beds, joints (V,). On the surface of the mesh
+    that beds fill also what that has there: smooth (F,), slots (F,), -1 elsewhere, uvs (C, 2) and weights
+    (V,) by their names. Elsewhere UV maps are along the bedding."""
+
+    uv: np.ndarray
+    wet: np.ndarray
+    joints: np.ndarray | None = None
+    smooth: np.ndarray | None = None
+    slots: np.ndarray | None = None
+    uvs: dict = field(default_factory=dict)
+    weights: dict = field(default_factory=dict)
+
+
+def of_beds(solids, matrix, surface, joints, threads):
+    """The Layers of new beds, in any thread. solids: their PolygonMesh; matrix: (4, 4) to the scene; surface:
+    as of `surface_of`, both in its coordinates; joints: (V,) of each."""
+    scale = abs(np.linalg.det(matrix[:3, :3])) ** (1.0 / 3.0)
+    extents = np.concatenate([[s.coordinates.min(axis=0), s.coordinates.max(axis=0)] for s in solids])
+    unit = float(np.linalg.norm(np.ptp(extents, axis=0)) or 1.0) * scale / looks.UNITS
+    places = [placed(solid.coordinates, matrix) for solid in solids]
+    ends = _ends(places)
+    found = []
+    middles = [
+        np.add.reduceat(s.coordinates[s.corners], s.offsets[:-1]) / np.diff(s.offsets)[:, None]
+        for s in solids
+    ]
+    nearest = native_module().nearest_triangles(
+        surface[0], np.concatenate(middles).astype(np.float64), execution=on_threads(threads)
+    )
+    parts = np.cumsum([len(middle) for middle in middles])[:-1]
+    for solid, at, near, *closest in zip(
+        solids, places, joints, *(np.split(part, parts) for part in nearest), strict=True
     ):
-        if smooth.any():
-            mesh.polygons.foreach_set("use_smooth", kept & smooth[polygons[near]])
+        arrays = solid.offsets, solid.corners, solid.corner_edges
+        above = solid.bedding.height * solid.bedding.thickness
+        uv = box_projection.project(at, arrays, unit, (solid.face_surface >= 0, above)).uv
+        made = Layers(uv, wetness(at, *arrays[:2], solid.edges, *ends), near)
+        _keep(made, solid, surface, *closest)
+        found.append(made)
+    return found
+
+
+def _keep(made, solid, surface, near, away):
+    """Adds what the filled mesh has on its surface. near, away: (F,) its triangles nearest to polygons."""
+    triangles, polygons, loops, vertices, smooth, slots, uvs, all_weights = surface
+    counts = np.diff(solid.offsets)
+    at = solid.coordinates[solid.corners].astype(np.float64)
+    kept = away <= _NEAR * float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    polygon = polygons[near]
+    made.smooth = kept & smooth[polygon]
+    made.slots = np.where(kept, slots[polygon], -1)
+    rows = np.flatnonzero(np.repeat(kept, counts))
+    triangle = np.repeat(near, counts)[rows]
+    shares = polygon_mesh.barycentric(at[rows, None], triangles[triangle])[:, 0]
+    for name, values in uvs.items():
+        made.uvs[name] = uv = made.uv.copy()
+        uv[rows] = polygon_mesh.interpolated(values, loops[triangle], shares)
+    for name, values in all_weights.items():
+        made.weights[name] = weights = np.zeros(len(solid.coordinates), np.float32)
+        of_corner = polygon_mesh.interpolated(values[:, None], vertices[triangle], shares)
+        weights[solid.corners[rows]] = of_corner[:, 0]
+
+
+def finish(scene, beds, layers, slots):
+    """Gives new beds their Layers. slots: materials that the surface of the filled mesh keeps, if any."""
+    for bed, made in zip(beds, layers, strict=True):
+        _put(scene, bed, made)
+        mesh = bed.data
+        if made.smooth.any():
+            mesh.polygons.foreach_set("use_smooth", made.smooth)
             versions.break_at_flat(mesh)
-        rows = np.flatnonzero(np.repeat(kept, counts))
-        triangle = np.repeat(near, counts)[rows]
-        weights = polygon_mesh.barycentric(at[rows, None], triangles[triangle])[:, 0]
-        for name, values in uvs.items():
+        for name, values in made.uvs.items():
             layer = mesh.uv_layers.new(name=KEPT.format(name) if name == UV_MAP else name, do_init=False)
             if layer is not None:  # there may be eight
-                made = uv_of(mesh.uv_layers[UV_MAP])
-                made[rows] = polygon_mesh.interpolated(values, corners[triangle], weights)
-                mesh.uv_layers[layer.name].data.foreach_set("uv", made.ravel())
+                mesh.uv_layers[layer.name].data.foreach_set("uv", values.ravel())
+        if slots and (made.slots >= 0).any():
+            rocks = len(mesh.materials)
+            for material in slots:
+                mesh.materials.append(material)
+            index = np.where(made.slots < 0, 0, rocks + np.minimum(made.slots, len(slots) - 1))
+            mesh.polygons.foreach_set("material_index", index.astype(np.int32))
+        for name, values in made.weights.items():
+            group = bed.vertex_groups.new(name=name)
+            steps = np.rint(values * 255.0).astype(int)
+            for step in np.unique(steps[steps > 0]).tolist():  # one by one would take seconds
+                group.add(np.flatnonzero(steps == step).tolist(), step / 255.0, "REPLACE")
+
+
+def placed(coordinates, matrix):
+    """(V, 3) where vertices are in the scene, without its location, so that they keep their digits, but for
+    their elevation."""
+    places = coordinates.astype(np.float64) @ matrix[:3, :3].T
+    places[:, 2] += matrix[2, 3]
+    return places
+
+
+def _ends(places):
+    """The lowest and the highest elevation of places (V, 3), of several meshes."""
+    heights = np.concatenate([at[:, 2] for at in places])
+    return float(heights.min(initial=np.inf)), float(heights.max(initial=-np.inf))
+
+
+def _put(scene, obj, made):
+    mesh = obj.data
+    set_uv(mesh, UV_MAP, made.uv)
+    _set_color(mesh, next((slot.material for slot in obj.material_slots if slot.material), None))
+    _set(mesh, WETNESS, "FLOAT", made.wet)
+    if made.joints is not None:
+        _set(mesh, JOINTS, "FLOAT", made.joints)
+    if filled_beds.BED in obj:
+        hardness = weathering.hardness_of_bed(obj)
+        _set(mesh, filled_beds.BED, "INT", np.full(len(made.wet), obj[filled_beds.BED], np.int32))
+    else:
+        hardness = weathering.hardness_of(library_rows.find(scene, obj.get(model_tree.PROPERTY)))
+    _set(mesh, HARDNESS, "FLOAT", np.full(len(made.wet), hardness, np.float32))
 
 
 def uv_of(layer):
@@ -141,15 +228,6 @@ def _texture_unit(scene, item):
         return looks.diagonal(scene) / looks.UNITS
     scale = abs(np.linalg.det(exaggeration.true_matrix(item)[:3, :3])) ** (1.0 / 3.0)
     return filled_beds.size(item) * scale / looks.UNITS
-
-
-def _places(item):
-    """(V, 3) where the vertices of an object are in the scene, without its location, so that they keep their
-    digits, but for their elevation."""
-    matrix = exaggeration.true_matrix(item)
-    places = meshes.mesh_coordinates(item.data).astype(np.float64) @ matrix[:3, :3].T
-    places[:, 2] += matrix[2, 3]
-    return places
 
 
 def _set_color(mesh, material):

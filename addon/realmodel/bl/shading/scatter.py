@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Plants and stones on weathered ground: what is scattered, and the nodes that scatter it.
 
-Tufts of grass and stones are meshes made here, one unit high and wide. They are in no collection, so that the
-scene shows their instances alone.
+Tufts of grass are a mesh made here, one unit high and wide; stones are pieces of beds
+(core.filling.rubble). They are in no collection of the scene, so that it shows their instances alone.
 """
-
-import itertools
 
 import bpy
 import numpy as np
 
+from ...core.base import work
+from ...core.filling import PIECES, broken_piece
 from ..host.nodes import Nodes
-from ..objects import materials
+from ..objects import materials, meshes
 
 KEY = "realmodel_scatter"  # on an object: what it is
-TUFT, STONE = "Grass Tuft", "Stone"
+TUFT, STONE = "Grass Tuft", "Stone"  # of a tuft; of a collection of stones, and of each of them
+DOWN = "realmodel_down"  # on vertices of scree: from 0, where it begins at a wall, to 1, where it ends
 # attributes of a tuft: how far along its blade a vertex is, and a number of the blade
 _SHARE, _OWN = "realmodel_blade_share", "realmodel_blade_own"
 _BLADES, _STALKS = 90, 3  # of a tuft; stalks have ears
@@ -25,30 +26,61 @@ _PER_UNIT = {TUFT: 8.0, STONE: 2.5}  # on a square texture unit, at density 1
 _IN_VIEWPORT = {TUFT: 0.25, STONE: 0.25}  # the share of them that viewports show, to stay fast
 _HIGH = {TUFT: (0.1, 0.42), STONE: (0.04, 0.32)}  # texture units: least and greatest size
 _SMALL = {TUFT: 1.5, STONE: 3.0}  # the power of a random number that sizes follow: most are small
-_SIDES = 14  # planes that bound a stone, and six more
+_HIGHEST = 0.4  # of that of the lowest: the greatest size of the stones that lie highest on scree
+_TILT = 0.35  # radians: how far a stone may be from lying flat
+_FLAT = 0.6  # least upward part of the normal of ground with stones
 _THROUGH = 0.3  # the share of the light that passes through blades
 _GRASS, _ROCK = "#7d9440", "#9b9286"
 
 
-def item(name):
-    """The object of tufts or stones, made if the file has none."""
-    candidates = (obj for obj in bpy.data.objects if obj.get(KEY) == name and obj.library is None)
-    obj = next(candidates, None)
+def tuft():
+    """The object of tufts, made if the file has none."""
+    obj = _of_file(bpy.data.objects, TUFT)
     if obj is None:
-        mesh = bpy.data.meshes.new(name)
-        if name == TUFT:
-            vertices, faces, numbers = _tuft()
-            mesh.from_pydata(vertices.tolist(), [], faces)
-            for attribute, values in zip((_SHARE, _OWN), numbers, strict=True):
-                mesh.attributes.new(attribute, "FLOAT", "POINT").data.foreach_set("value", values)
-            mesh.materials.append(_grass())
-        else:
-            vertices, faces = _stone()
-            mesh.from_pydata(vertices.tolist(), [], faces)
-            mesh.materials.append(_rock())
-        obj = bpy.data.objects.new(name, mesh)
-        obj[KEY] = name
+        mesh = bpy.data.meshes.new(TUFT)
+        vertices, faces, numbers = _tuft()
+        mesh.from_pydata(vertices.tolist(), [], faces)
+        for attribute, values in zip((_SHARE, _OWN), numbers, strict=True):
+            mesh.attributes.new(attribute, "FLOAT", "POINT").data.foreach_set("value", values)
+        mesh.materials.append(_grass())
+        obj = bpy.data.objects.new(TUFT, mesh)
+        obj[KEY] = TUFT
     return obj
+
+
+def stones():
+    """The collection of gray stones, made if the file has none."""
+    found = _of_file(bpy.data.collections, STONE)
+    if found is None:
+        pieces = [work.run(lambda job, n=n: broken_piece(job, 1.0, n)) for n in range(PIECES)]
+        material = _rock()
+        found = collection(STONE, [(*piece, material) for piece in pieces])
+        found[KEY] = STONE
+    return found
+
+
+def collection(name, pieces):
+    """A new collection of stones. pieces: (vertices, triangles, material) each."""
+    made = bpy.data.collections.new(name)
+    for vertices, triangles, material in pieces:
+        mesh = meshes.triangle_mesh(STONE, vertices, triangles)
+        mesh.materials.append(material)
+        obj = bpy.data.objects.new(STONE, mesh)
+        obj[KEY] = STONE
+        made.objects.link(obj)
+    return made
+
+
+def remove(found):
+    """Removes a collection of stones that nothing has any more."""
+    if found is not None and not found.users:
+        for obj in list(found.objects):
+            bpy.data.meshes.remove(obj.data)  # and its object with it
+        bpy.data.collections.remove(found)
+
+
+def _of_file(datablocks, name):
+    return next((made for made in datablocks if made.get(KEY) == name and made.library is None), None)
 
 
 def _new_material(name, color):
@@ -139,39 +171,14 @@ def _tuft():
     return np.array(vertices), faces, (np.array(shares), np.array(blade_numbers))
 
 
-def _stone():
-    """An angular stone: the vertices and polygons of a body that planes bound."""
-    random = np.random.default_rng(8)
-    normals = random.normal(size=(_SIDES, 3))
-    normals = np.concatenate([normals, np.eye(3), -np.eye(3)])
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
-    reach = 0.75 + 0.25 * random.random(len(normals))
-    corners, sides = [], []
-    for three in itertools.combinations(range(len(normals)), 3):
-        matrix = normals[list(three)]
-        if abs(np.linalg.det(matrix)) < 1e-3:
-            continue
-        corner = np.linalg.solve(matrix, reach[list(three)])
-        if np.all((normals * corner).sum(axis=1) < reach + 1e-9):
-            corners.append(corner)
-            sides.append(three)
-    corners = np.array(corners)
-    faces = []
-    for number, normal in enumerate(normals):
-        face = [k for k, three in enumerate(sides) if number in three]
-        if len(face) < 3:
-            continue
-        right = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
-        away = corners[face] - corners[face].mean(axis=0)
-        turn = np.arctan2((away * np.cross(normal, right)).sum(axis=1), (away * right).sum(axis=1))
-        faces.append([face[k] for k in np.argsort(turn)])
-    return corners * (0.5, 0.4, 0.3), faces
-
-
-def on(nodes, given, geometry, name, here):
+def on(nodes, given, geometry, name, here, scale=None, down=1.0):
     """The geometry with instances on its faces. given: inputs of the group: Plants and Stones, Scatter Size,
-    Seed, and the object of this name. here: (field) where they are."""
+    Seed, and the object or collection of this name. here: (field) where they are. scale: of the instances;
+    None: Scatter Size. down: (field) how far down a slope, from 0 to 1."""
     size = given["Scatter Size"]
+    if name == STONE:
+        up = nodes.part(nodes.turned(nodes.of("GeometryNodeInputNormal", "Normal")), 2)
+        here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", up, _FLAT))
     made = nodes.new("GeometryNodeDistributePointsOnFaces")
     nodes.link(geometry, made.inputs["Mesh"])
     nodes.link(here, made.inputs["Selection"])
@@ -182,16 +189,24 @@ def on(nodes, given, geometry, name, here):
     density = nodes.math("DIVIDE", density, nodes.math("MULTIPLY", size, size))
     nodes.link(density, next(s for s in made.inputs if s.name == "Density" and s.enabled))
     nodes.link(nodes.math("ADD", given["Seed"], float(len(name))), made.inputs["Seed"])
-    what = nodes.new("GeometryNodeObjectInfo")
-    nodes.link(given[name], what.inputs["Object"])
     low, high = _HIGH[name]
     placed = nodes.new("GeometryNodeInstanceOnPoints")
     nodes.link(made.outputs["Points"], placed.inputs["Points"])
-    nodes.link(what.outputs["Geometry"], placed.inputs["Instance"])
-    turn = 0.25 if name == TUFT else 6.28
-    nodes.link(nodes.random((-turn, -turn, 0.0), (turn, turn, 6.28), 1), placed.inputs["Rotation"])
     share = nodes.math("POWER", nodes.random(0.0, 1.0, 2), _SMALL[name])
-    scale = nodes.math("MULTIPLY", nodes.math("MULTIPLY_ADD", share, high - low, low), size)
+    if name == STONE:  # lies flat on the slope; large ones have fallen far
+        what = nodes.new("GeometryNodeCollectionInfo")
+        what.inputs["Separate Children"].default_value = what.inputs["Reset Children"].default_value = True
+        nodes.link(given[name], what.inputs["Collection"])
+        nodes.link(what.outputs[0], placed.inputs["Instance"])
+        placed.inputs["Pick Instance"].default_value = True
+        nodes.link(made.outputs["Rotation"], placed.inputs["Rotation"])
+        share = nodes.math("MULTIPLY", share, nodes.mixed(_HIGHEST, 1.0, down))
+    else:
+        what = nodes.new("GeometryNodeObjectInfo")
+        nodes.link(given[name], what.inputs["Object"])
+        nodes.link(what.outputs["Geometry"], placed.inputs["Instance"])
+        nodes.link(nodes.random((-0.25, -0.25, 0.0), (0.25, 0.25, 6.28), 1), placed.inputs["Rotation"])
+    scale = nodes.math("MULTIPLY", nodes.math("MULTIPLY_ADD", share, high - low, low), scale or size)
     if name == TUFT:  # low ones are about as wide as high ones, so that they cover the ground
         wide = nodes.math("MULTIPLY", nodes.random(0.6 * high, high, 3), size)
         sides = nodes.new("ShaderNodeCombineXYZ")
@@ -199,4 +214,9 @@ def on(nodes, given, geometry, name, here):
             nodes.link(value, socket)
         scale = sides.outputs[0]
     nodes.link(scale, placed.inputs["Scale"])
-    return nodes.upright(placed.outputs["Instances"])
+    if name == TUFT:
+        return nodes.upright(placed.outputs["Instances"])
+    turned = nodes.new("GeometryNodeRotateInstances")
+    nodes.link(placed.outputs["Instances"], turned.inputs["Instances"])
+    nodes.link(nodes.random((-_TILT, -_TILT, 0.0), (_TILT, _TILT, 6.28), 1), turned.inputs["Rotation"])
+    return turned.outputs[0]

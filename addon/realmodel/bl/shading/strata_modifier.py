@@ -32,11 +32,11 @@ ROCK = "realmodel_rock"  # on faces: the number of the rock in its palette, from
 _BEDS = "realmodel_beds"  # on the table's object: the beds, and the frame that they are in, as text
 _ROW = "realmodel_table_row"  # on vertices, while the nodes work
 _MATERIAL = "realmodel_strata_rock"  # on a material: its palette and rock
-_VERSION = 1
+_VERSION = 2
 ROCKS = max(map(len, PALETTES.values()))
-_TABLE, _ERODED, _SHOW_ERODED, _SHOW_ROCKS = "Beds", "Eroded Mesh", "Show Erosion", "Show Rocks"
+_TABLE, _ERODED, _SHOW_ERODED, SHOW_ROCKS = "Beds", "Eroded Mesh", "Show Erosion", "Show Rocks"
 _SCREE, _STONES, _SIZE = "Scree", "Plants and Stones", "Scatter Size"
-_STONE_SIZE = 0.012  # of the diagonal: a unit of scattered stones
+_STONES_APART, _STONE_SCALE = 0.55, 2.0  # a unit of scattered stones, of the thickness of beds; their scale
 _NODES = 32  # of a fold to a wavelength, as core.filling.beds has it
 _FAR = 1e30  # the elevation of an unconformity where there is none
 # attributes of the table: of all points the same, and of each point
@@ -66,17 +66,19 @@ def put_on(item):
     if modifier is None:
         modifier = item.modifiers.new(NAME, "NODES")
         modifier.node_group = group_once("GeometryNodeTree", NAME, KEY, _fill, _VERSION)
-        versions.set_group_input(modifier, _SHOW_ROCKS, True)
+        versions.set_group_input(modifier, SHOW_ROCKS, True)
     return modifier
 
 
 def take_off(item):
-    """Removes the modifier, with its table, its eroded mesh, and the stone where no other object has it."""
+    """Removes the modifier, its table, its eroded mesh, and its stones where no other object has them."""
     modifier = modifier_of(item)
     if modifier is None:
         return
-    made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED, scatter.STONE)]
+    made = [versions.group_input(modifier, name) for name in (_TABLE, _ERODED)]
+    stones = versions.group_input(modifier, scatter.STONE)
     item.modifiers.remove(modifier)
+    scatter.remove(stones)
     for obj in made:
         if obj is not None and obj.users == 0:
             bpy.data.meshes.remove(obj.data)  # and its object with it
@@ -150,17 +152,18 @@ def base_mesh(item):
 
 
 @contextmanager
-def without_erosion(item):
-    """For a while an object is evaluated without erosion; yields the dependency graph."""
+def without_erosion(item, *others):
+    """For a while an object is evaluated without erosion, and without others of what it shows; yields the
+    dependency graph."""
     modifier = modifier_of(item)
-    was_shown = shows_erosion(item)
-    if was_shown:
-        versions.set_group_input(modifier, _SHOW_ERODED, False)
+    names = [name for name in (_SHOW_ERODED, *others) if modifier and versions.group_input(modifier, name)]
+    for name in names:
+        versions.set_group_input(modifier, name, False)
     try:
         yield bpy.context.evaluated_depsgraph_get()
     finally:
-        if was_shown:
-            versions.set_group_input(modifier, _SHOW_ERODED, True)
+        for name in names:
+            versions.set_group_input(modifier, name, True)
 
 
 def update(item):
@@ -168,7 +171,7 @@ def update(item):
     are."""
     values = item.realmodel_strata
     shape = base_shape(item)
-    places, _ = shape.closed(values)
+    places, _ = shape.closed(values.base_depth, values.close_holes)
     strata = strata_values.strata_of(values, np.ptp(places, axis=0))
     beds = lay_beds(strata, places)
     modifier = put_on(item)
@@ -185,9 +188,7 @@ def update(item):
         versions.set_group_input(modifier, f"Rock {number}", _rock_material(name, color, look_of(name), size))
     color = "#" + "".join(f"{round(part):02x}" for part in np.mean([_bytes(c) for _, c in rocks], axis=0))
     versions.set_group_input(modifier, _SCREE, _rock_material("Scree", color, "GRAVEL", size))
-    versions.set_group_input(modifier, scatter.STONE, scatter.item(scatter.STONE))
     versions.set_group_input(modifier, _STONES, values.stones)
-    versions.set_group_input(modifier, _SIZE, _STONE_SIZE * diagonal)
     versions.set_group_input(modifier, "Seed", values.seed)
     show_eroded(item, None)
 
@@ -196,11 +197,27 @@ def _bytes(color):
     return [int(color[begin : begin + 2], 16) for begin in (1, 3, 5)]
 
 
-def put_scree_on(heap, item):
+def set_rubble(item, pieces, thickness):
+    """Sets the stones of an object's scree. pieces: (number of a rock in the palette, (vertices, triangles))
+    each, in its coordinates. thickness: of beds on average, there."""
+    modifier = modifier_of(item)
+    before = versions.group_input(modifier, scatter.STONE)
+    stones = [(*piece, material_of(item, rock)) for rock, piece in pieces]
+    versions.set_group_input(modifier, scatter.STONE, scatter.collection(f"{item.name} Rubble", stones))
+    versions.set_group_input(modifier, _SIZE, _STONES_APART * thickness)
+    scatter.remove(before)
+
+
+def mark_scree(mesh, is_scree, down):
+    """is_scree: (F,) bool, of faces. down: (V,) how far down the scree each vertex is."""
+    mesh.attributes.new(SCREE, "BOOLEAN", "FACE").data.foreach_set("value", is_scree)
+    mesh.attributes.new(scatter.DOWN, "FLOAT", "POINT").data.foreach_set("value", down)
+
+
+def put_scree_on(heap, item, down):
     """Makes a new object the scree of another: its material, and its stones."""
     heap[SCREE] = True
-    values = np.ones(len(heap.data.polygons), bool)
-    heap.data.attributes.new(SCREE, "BOOLEAN", "FACE").data.foreach_set("value", values)
+    mark_scree(heap.data, np.ones(len(heap.data.polygons), bool), down)
     heap.modifiers.new(NAME, "NODES").node_group = modifier_of(item).node_group
     for name in (_TABLE, _SCREE, scatter.STONE, _STONES, _SIZE, "Seed"):
         versions.set_group_input(modifier_of(heap), name, versions.group_input(modifier_of(item), name))
@@ -334,11 +351,11 @@ def _fill(group):
     for name in (_TABLE, _ERODED):
         versions.add_group_socket(group, name, "NodeSocketObject")
     versions.add_group_socket(group, _SHOW_ERODED, "NodeSocketBool")
-    versions.add_group_socket(group, _SHOW_ROCKS, "NodeSocketBool")
+    versions.add_group_socket(group, SHOW_ROCKS, "NodeSocketBool")
     for number in range(ROCKS):
         versions.add_group_socket(group, f"Rock {number + 1}", "NodeSocketMaterial")
     versions.add_group_socket(group, _SCREE, "NodeSocketMaterial")
-    versions.add_group_socket(group, scatter.STONE, "NodeSocketObject")
+    versions.add_group_socket(group, scatter.STONE, "NodeSocketCollection")
     versions.add_group_socket(group, _STONES, "NodeSocketFloat", (0.0, 0.0))
     versions.add_group_socket(group, _SIZE, "NodeSocketFloatDistance", (1.0, 1e-6))
     versions.add_group_socket(group, "Seed", "NodeSocketInt", (0, 0))
@@ -350,14 +367,16 @@ def _fill(group):
     geometry = nodes.stored(geometry, ROCK, beds.of_row("rock", beds.row(beds.height())), "FACE", "INT")
     rock = nodes.named(ROCK, "INT")
     for number in range(ROCKS):
-        here = nodes.math("MULTIPLY", nodes.math("COMPARE", rock, float(number), 0.5), inputs[_SHOW_ROCKS])
+        here = nodes.math("MULTIPLY", nodes.math("COMPARE", rock, float(number), 0.5), inputs[SHOW_ROCKS])
         geometry = nodes.to(
             "GeometryNodeSetMaterial", geometry, Selection=here, Material=inputs[f"Rock {number + 1}"]
         )
     is_scree = nodes.named(SCREE, "BOOLEAN")
     geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=is_scree, Material=inputs[_SCREE])
     joined = nodes.new("GeometryNodeJoinGeometry")
-    nodes.link(scatter.on(nodes, inputs, geometry, scatter.STONE, is_scree), joined.inputs[0])
+    down = nodes.named(scatter.DOWN, "FLOAT")
+    stones = scatter.on(nodes, inputs, geometry, scatter.STONE, is_scree, _STONE_SCALE, down)
+    nodes.link(stones, joined.inputs[0])
     nodes.link(geometry, joined.inputs[0])
     nodes.link(joined.outputs[0], nodes.new("NodeGroupOutput").inputs["Geometry"])
 

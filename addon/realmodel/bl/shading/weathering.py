@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from ...core.project.looks import DEFAULT, LOOKS
-from ..host import versions
+from ..host import caches, versions
 from ..host.geometry_nodes import GeometryNodes
 from ..host.nodes import group_once, modifier_with
 from ..objects import filled_beds, materials, meshes
@@ -24,7 +24,7 @@ from . import edge_wear, looks, scatter
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 7
+_VERSION = 9
 _STEPS = 5  # of smoothing
 # attributes while the nodes work: where a vertex was and where it goes, how a face faced, how far one may go
 _BEFORE, _INWARD, _FACING, _MOST = (f"realmodel_{name}" for name in ("before", "inward", "facing", "most"))
@@ -46,6 +46,7 @@ COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
 _UNITS = {"Strength": 0.5, "Deepest": 1.0, "Noise Scale": 1.5, "Bed Thickness": 0.4, "Edge Wear": 0.1}
 _THICKEST = 1 / 20  # of the diagonal: what counts at most as the thickness of a bed
 _BYTES = 300  # of memory for a polygon
+_BANDS = (1.0, 2.0)  # of Near: beyond each of these distances from the camera there is one subdivision less
 FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
@@ -63,10 +64,12 @@ _INPUTS = {
     "Grass": ("NodeSocketMaterial",),
     "Scree": ("NodeSocketMaterial",),
     "Detail": ("NodeSocketInt", 2, 0, FINEST),
+    "Camera": ("NodeSocketObject",),
+    "Near": ("NodeSocketFloatDistance", _FAR, 0.0),
     "Plants and Stones": ("NodeSocketFloat", 0.0, 0.0),
     "Scatter Size": ("NodeSocketFloatDistance", 1.0, 1e-6),
     scatter.TUFT: ("NodeSocketObject",),
-    scatter.STONE: ("NodeSocketObject",),
+    scatter.STONE: ("NodeSocketCollection",),
 }
 
 
@@ -86,7 +89,8 @@ def modifier_of(item):
 class Weathering:
     """strength, noise: 1 suits the model. grass, scree: radians, the steepest ground that has them, 0: none.
     detail: the number of subdivisions of polygons; without any, edges do not move. plants: how many tufts and
-    stones, 1 suits; 0: none. wear: how far materials show edges worn, 1 suits; 0: not."""
+    stones, 1 suits; 0: none. wear: how far materials show edges worn, 1 suits; 0: not. near: how far from the
+    scene camera all subdivisions are made; at twice the distance there is one less."""
 
     strength: float
     rounding: float
@@ -97,6 +101,7 @@ class Weathering:
     detail: int
     plants: float = 0.0
     wear: float = 0.0
+    near: float = _FAR
 
 
 def put_on(scene, items, given):
@@ -114,7 +119,9 @@ def put_on(scene, items, given):
             size = filled_beds.size(members[0])
         values = _values(given, _thickness(together, size), size / looks.UNITS)
         for obj in members:
-            _set(obj, values)
+            scale = abs(np.linalg.det(np.array(obj.matrix_world)[:3, :3])) ** (1.0 / 3.0) or 1.0
+            near = {"Camera": scene.camera if given.near < _FAR else None, "Near": given.near / scale}
+            _set(obj, values | near)
     for material in _rocks(items):
         edge_wear.put_on(material)
     follow(scene)
@@ -157,14 +164,41 @@ def _thickness(items, size):
     return min(float(found.mean(dtype=np.float64)) if len(found) else math.inf, _THICKEST * size)
 
 
-def cost(items, wanted, most):
+def cost(items, wanted, most, camera=None):
     """The number of subdivisions, at most the one wanted, that makes no more exposed polygons than `most`,
-    and how many polygons and bytes of memory these are, about."""
-    corners = sum(int(np.count_nonzero(_exposed(obj))) for obj in items)
+    how many polygons and bytes of memory these are, about, and how far from a camera all are made."""
+    away = np.concatenate([np.zeros(0), *(_distances(obj, camera) for obj in items)])
+    near = _FAR if camera is None or not len(away) else 2.0 * float(away.min())
+    less = np.searchsorted(np.array(_BANDS) * near, away)
     polygons = sum(len(obj.data.polygons) for obj in items)
-    detail = next((level for level in range(wanted, 0, -1) if corners * 4 ** (level - 1) <= most), 0)
-    exposed = corners * 4 ** (detail - 1) if detail else corners // 4
-    return detail, exposed, (exposed + polygons) * _BYTES
+    detail = wanted
+    while True:
+        level = np.maximum(detail - less, min(detail, 1))
+        exposed = int((4.0 ** (level - 1)).sum())  # a corner makes a polygon, and without any four are one
+        if exposed <= most or not detail:
+            return detail, exposed, (exposed + polygons) * _BYTES, near
+        detail -= 1
+
+
+_known = caches.new(most=200)  # corners of a mesh that are exposed
+
+
+def _distances(obj, camera):
+    """(N,) of the exposed corners of a block from a camera; 0 without one."""
+    if camera is None:
+        key = obj.data.name_full, len(obj.data.loops)
+        if key not in _known:
+            _known[key] = int(np.count_nonzero(_exposed(obj)))
+        return np.zeros(_known[key])
+    at = meshes.mesh_coordinates(obj.data)[versions.corner_vertices(obj.data)[_exposed(obj)]]
+    matrix = np.array(obj.matrix_world)
+    return np.linalg.norm(at @ matrix[:3, :3].T + matrix[:3, 3] - camera.matrix_world.translation, axis=1)
+
+
+def cost_text(faces, size):
+    """A number of faces, and bytes, for people."""
+    count = f"{faces / 1e6:.1f} million" if faces >= 1e5 else f"{faces:,}"
+    return f"{count} faces, about {size / 1e9:.1f} GB"
 
 
 def _rocks(items):
@@ -188,8 +222,8 @@ def _values(values, thickness, unit):
         "Plants and Stones": values.plants,
         "Scatter Size": unit,
         **{name: _cover(name, unit) for name in COVERS},
-        scatter.TUFT: scatter.item(scatter.TUFT) if values.plants else None,
-        scatter.STONE: scatter.item(scatter.STONE) if values.plants else None,
+        scatter.TUFT: scatter.tuft() if values.plants else None,
+        scatter.STONE: scatter.stones() if values.plants else None,
     }
 
 
@@ -296,7 +330,7 @@ def _worn(nodes, inputs, seen):
     for _ in range(_EVEN):  # a single vertex that may not go far would become a spike
         seen = nodes.stored(seen, _MOST, nodes.on("POINT", nodes.on("EDGE", nodes.named(_MOST, "FLOAT"))))
     seen = nodes.stored(seen, _INWARD, inward)
-    geometry = nodes.to("GeometryNodeSubdivideMesh", seen, Level=inputs["Detail"])
+    geometry = _subdivided(nodes, inputs, seen, position)
     geometry = nodes.stored(geometry, _BEFORE, position)
     geometry = before = nodes.stored(geometry, _FACING, normal, "FACE")
     depth = nodes.math("MULTIPLY", _depth(nodes, inputs, position), inputs["Strength"])
@@ -315,6 +349,25 @@ def _worn(nodes, inputs, seen):
     for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
         geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=shift)
     return before, _turned_back(nodes, inputs, geometry, position, normal)
+
+
+def _subdivided(nodes, inputs, seen, position):
+    """The geometry, less subdivided far from the camera. It has borders there, from which skirts hang."""
+    camera = nodes.new("GeometryNodeObjectInfo")
+    camera.transform_space = "RELATIVE"
+    nodes.link(inputs["Camera"], camera.inputs["Object"])
+    way = nodes.vector("SUBTRACT", position, camera.outputs["Location"])
+    away = nodes.math("SQRT", nodes.vector("DOT_PRODUCT", way, way))
+    joined = nodes.new("GeometryNodeJoinGeometry")
+    for less, reach in enumerate((*_BANDS, None)):
+        here = seen
+        if reach:
+            is_here = nodes.math("LESS_THAN", away, nodes.math("MULTIPLY", inputs["Near"], reach))
+            here, seen = nodes.separated(seen, is_here)
+        level = nodes.math("SUBTRACT", inputs["Detail"], float(less))
+        level = nodes.math("MAXIMUM", level, nodes.math("MINIMUM", inputs["Detail"], 1.0))
+        nodes.link(nodes.to("GeometryNodeSubdivideMesh", here, Level=level), joined.inputs[0])
+    return joined.outputs[0]
 
 
 def _turned_back(nodes, inputs, geometry, position, normal):

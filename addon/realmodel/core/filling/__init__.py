@@ -8,8 +8,9 @@ hard beds do not protect; `rock_shape` makes meshes to begin with.
 
 from .beds import Beds, lay_beds
 from .divided import divided_at_beds
-from .erosion import DifferentialErosion, eroded_within, kept_of
+from .erosion import DifferentialErosion, eroded_within, joints_at, kept_of, mean_thickness
 from .fill import ITEM, closed_mesh, fill_with_strata, fill_within, without_holes
+from .rubble import PIECES, broken_piece, rubble_within
 from .scree import scree_within
 from .shapes import SHAPES, rock_shape
 from .strata import PALETTES, Strata, hardness_of_beds, rocks_of_beds
@@ -17,20 +18,25 @@ from .strata import PALETTES, Strata, hardness_of_beds, rocks_of_beds
 __all__ = [
     "ITEM",
     "PALETTES",
+    "PIECES",
     "SHAPES",
     "Beds",
     "DifferentialErosion",
     "Strata",
+    "broken_piece",
     "closed_mesh",
     "divided_at_beds",
     "eroded_within",
     "fill_with_strata",
     "fill_within",
     "hardness_of_beds",
+    "joints_at",
     "kept_of",
     "lay_beds",
+    "mean_thickness",
     "rock_shape",
     "rocks_of_beds",
+    "rubble_within",
     "scree_within",
     "without_holes",
 ]

@@ -13,6 +13,7 @@ Mesh = tuple[np.ndarray, np.ndarray]
 
 _MOST_ROUNDS = 12  # an edge passes through a bed in each
 _ENDS = 0.04  # of an edge: a boundary this near to its end passes through the end
+_LEAST = 1e-9  # of the size of the beds' box: the same, for edges that lie in a boundary but for rounding
 
 
 def divided_at_beds(vertices: np.ndarray, triangles: np.ndarray, beds: Beds) -> Mesh:
@@ -47,17 +48,20 @@ def _shares(a: np.ndarray, b: np.ndarray, beds: Beds) -> np.ndarray:
     or else through a boundary between beds: a share of their length; NaN where they do not."""
     share = np.full(len(a), np.nan)
     across, height = [], []
+    strips = beds.strips(beds.upright(0.5 * (a + b))[:, :2])  # an end on a fault may be of the other strip
     for points in (a, b):
-        across.append(dot(beds.upright(points)[:, :2] - beds.middle, beds.fault[0]))
-        height.append(beds.found(points)[1])
+        plan = beds.upright(points)[:, :2]
+        across.append(dot(plan - beds.middle, beds.fault[0]))
+        height.append(points[:, 2] - beds.datum(plan, strips))
     is_covered = np.minimum(a[:, 2], b[:, 2]) >= beds.floor
+    least = _LEAST * float((beds.high - beds.low).max())
     for levels, (begin, end), chosen in (
         (beds.fault[1], across, True),
         (np.array([beds.floor]), (a[:, 2], b[:, 2]), True),
         (beds.levels, height, ~is_covered),
-        (beds.covers, height, is_covered),
+        (beds.covers, (a[:, 2], b[:, 2]), is_covered),
     ):
-        margin = _ENDS * np.abs(end - begin)
+        margin = _ENDS * np.abs(end - begin) + least
         low, high = np.minimum(begin, end) + margin, np.maximum(begin, end) - margin
         level = np.append(levels, np.inf)[np.searchsorted(levels, low)]
         rows = np.flatnonzero((level < high) & np.isnan(share) & chosen)

@@ -40,6 +40,7 @@ _ONTO = 0.12  # spacings: a surface this near to a node passes through it, for t
 _CRUMB = 5e-4  # of the volume: lesser parts that come loose are gone
 _FLAT = 0.01  # of the surface: so much of it is a level base
 _CHUNK = 400_000  # places that are worked on at once
+JOINT_ANGLE = 0.25  # radians: how far from a right angle the two sets of joints are
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,7 @@ def eroded_within(
         inside = winding(lattice, corners) != 0
     if not inside.any():
         raise InputRefused("it holds no volume that erosion could see", advice="choose more faces")
-    unit = _unit(beds, vertices)
+    unit = mean_thickness(beds, vertices)
     values = _distances(work, lattice, corners, kept, inside, _DEEPEST * unit * erosion.strength)
     depth = _Depth(beds, hardness_of_beds(beds.count, strata), erosion, unit, strata.seed)
     _erode(work, lattice, values, depth)
@@ -130,8 +131,8 @@ def _areas(corners: np.ndarray) -> np.ndarray:
     return 0.5 * np.sqrt(dot(normal, normal))
 
 
-def _unit(beds: Beds, vertices: np.ndarray) -> float:
-    """The length that depths are measured in: the mean thickness of beds."""
+def mean_thickness(beds: Beds, vertices: np.ndarray) -> float:
+    """Of beds in a mesh with vertices (V, 3), at most a share of its size: what depths are measured in."""
     size = np.ptp(vertices, axis=0)
     sizes = np.concatenate([np.diff(beds.levels) / beds.slant, np.diff(beds.covers)])
     mean = float(sizes.mean()) if len(sizes) else float(size[2]) / max(beds.count, 1)
@@ -311,6 +312,14 @@ def _without_crumbs(vertices: np.ndarray, triangles: np.ndarray) -> Mesh:
     return vertices[used], numbers.reshape(-1, 3).astype(np.int32)
 
 
+def joints_at(points: np.ndarray, beds: Beds, strata: Strata, unit: float) -> np.ndarray:
+    """(N,) float32 how near points (N, 3) are to a joint of their bed, from 0 to 1. unit: the mean thickness
+    of beds."""
+    depth = _Depth(beds, hardness_of_beds(beds.count, strata), DifferentialErosion(), unit, strata.seed)
+    bed, _, thickness = beds.places(points)
+    return depth.near(depth.joints(points, bed, thickness)[1]).astype(np.float32)
+
+
 class _Depth:
     """The depth of erosion at any place."""
 
@@ -325,7 +334,10 @@ class _Depth:
             seed,
         )
         turn = 2.0 * math.pi * float(chance(seed, 77))
-        self._sets = [np.array([cos(turn), sin(turn)]), np.array([-sin(turn + 0.25), cos(turn + 0.25)])]
+        self._sets = [
+            np.array([cos(turn), sin(turn)]),
+            np.array([-sin(turn + JOINT_ANGLE), cos(turn + JOINT_ANGLE)]),
+        ]
         self.deepest = _DEEPEST * unit * erosion.strength
 
     def at(self, points: np.ndarray) -> np.ndarray:
@@ -339,9 +351,9 @@ class _Depth:
         depth += 0.25 * (chance(bed, part, seed) - 0.3) * (0.4 + soft)
         depth += 0.25 * hard * exp(-(1.0 - share) * thickness / (0.12 * unit))  # upper edges are worn
         if erosion.joints:
-            block, away = self._joints(points, bed, thickness)
+            block, away = self.joints(points, bed, thickness)
             fallen = chance(7 * bed + part, *block, seed)
-            broken = 0.8 * (fallen < 0.25) + 0.4 * fallen + 0.35 * exp(-((away / (0.08 * unit)) ** 2))
+            broken = 0.8 * (fallen < 0.25) + 0.4 * fallen + 0.35 * self.near(away)
             depth += erosion.joints * (0.35 + 0.65 * hard) * broken
         if erosion.roughness:
             bays = fractal(points * np.array([1.0, 1.0, 0.6]) / (7.0 * unit), seed + 3)
@@ -350,7 +362,11 @@ class _Depth:
             depth += erosion.roughness * rough
         return np.clip(depth, 0.0, _DEEPEST) * unit * erosion.strength
 
-    def _joints(
+    def near(self, away: np.ndarray) -> np.ndarray:
+        """(N,) from 0 to 1 at distances (N,) from a joint."""
+        return exp(-((away / (0.08 * self._unit)) ** 2))
+
+    def joints(
         self, points: np.ndarray, bed: np.ndarray, thickness: np.ndarray
     ) -> tuple[list[np.ndarray], np.ndarray]:
         """The numbers of the block between joints that points lie in, and how far the next joint is. Joints

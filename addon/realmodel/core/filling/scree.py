@@ -23,8 +23,11 @@ _MOST = 0.09  # of the width of the rock: the height of scree at amount 1
 _THIN = 0.4  # spacings: thinner scree is not seen
 
 
-def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int, faces: int) -> Mesh:
-    """The scree of a closed mesh that stands upright, as a job: a closed mesh, its lower side in the rock.
+def scree_within(
+    work: Work, mesh: Mesh, amount: float, angle: float, seed: int, faces: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The scree of a closed mesh that stands upright, as a job: a closed mesh, its lower side in the rock,
+    and (V,) how far down its slope each vertex is, from 0 at the wall to 1.
 
     amount: 1 covers about a third of the height of walls. angle: of its surface, degrees. faces: about how
     many triangles the rock would have at the same spacing. Raises InputRefused where there is no wall,
@@ -51,7 +54,20 @@ def scree_within(work: Work, mesh: Mesh, amount: float, angle: float, seed: int,
     lower = -greatest_around(-ground, 1) - 2.0 * spacing
     field = np.maximum(z - upper[:, :, None], lower[:, :, None] - z)
     with work.phase(0.8, 1.0, "meshing"):
-        return meshed(work, lattice, np.clip(field, -2.0 * spacing, 2.0 * spacing))
+        vertices, triangles = meshed(work, lattice, np.clip(field, -2.0 * spacing, 2.0 * spacing))
+    node = np.rint((vertices - np.array(lattice.origin)) / spacing).astype(int)
+    return vertices, triangles, _down(surface)[node[:, 0], node[:, 1]]
+
+
+def _down(surface: np.ndarray) -> np.ndarray:
+    """(nx, ny) from 0, the highest scree around, to 1, the lowest."""
+    by = max(round(2.0 * _BEFORE * max(surface.shape)), 2)
+    highest = greatest_around(surface, by)
+    lowest = -greatest_around(np.where(np.isneginf(surface), surface, -surface), by)
+    is_known = highest - lowest > 0
+    share = np.zeros(surface.shape)
+    np.divide(highest - np.maximum(surface, lowest), highest - lowest, out=share, where=is_known)
+    return share
 
 
 def _heaped(
