@@ -4,6 +4,7 @@ pictures of it. Needs Blender."""
 
 import math
 
+import guide_artists
 import guide_features as features
 import guide_scenes
 from guide_window import (
@@ -319,6 +320,8 @@ WITH_MANY_PANELS = (  # with a longer sidebar
     features.misfits,
     features.ensemble,
     features.strata_tab,
+    guide_artists.artists,
+    guide_artists.exported,
 )
 OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures, features.tiles)  # of the viewport alone
 AS_FOUND = (start, window)  # with panels open or closed as users find them

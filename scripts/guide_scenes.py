@@ -34,8 +34,10 @@ def import_tables():
 
 def drop_lines(scene):
     """Lines from the contacts of two tables to the plane z = 0, and the outline of their region there."""
-    import bpy
     import csv
+
+    import bpy
+    from realmodel.bl.project import project_settings
 
     rows = []
     for name in ("clay", "ground"):
@@ -49,8 +51,6 @@ def drop_lines(scene):
     mesh = bpy.data.meshes.new("lines")
     mesh.from_pydata(vertices + corners, edges, [])
     item = bpy.data.objects.new("lines", mesh)
-    from realmodel.bl.project import project_settings
-
     item.location = -project_settings.model_origin(scene)
     scene.collection.objects.link(item)
     return item
@@ -84,7 +84,9 @@ def grid(name, height, size, strength, seed):
     texture.noise_scale = 0.35 * size + 0.1 * seed
     modifier = item.modifiers.new("Displace", "DISPLACE")
     modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
-    modifier.direction = "Z"  # along normals the outlines of grids would differ, and slivers stay at the border
+    modifier.direction = (
+        "Z"  # along normals outlines of grids would differ, and slivers stay
+    )
     return item
 
 
