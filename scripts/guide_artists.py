@@ -53,14 +53,13 @@ def artists(walk):
 
 
 def exported(walk):
-    """An arch of six beds that was exported as glTF, in an empty file, as Material Preview shows it."""
+    """A cliff that was exported as glTF, in an empty file, as Material Preview shows it."""
     import bpy
     import numpy as np
 
-    path = walk.folder / "arch.glb"
+    path = walk.folder / "cliff.glb"
     with viewport(walk):
-        bpy.ops.realmodel.strata_rock_add(kind="ARCH", size=10.0, faces=20_000)
-        bpy.context.active_object.realmodel_strata.beds = 6
+        bpy.ops.realmodel.strata_rock_add(kind="CLIFF", faces=40_000)
         bpy.ops.realmodel.fill_with_strata("EXEC_DEFAULT", use_dialog=False)
         if "gltf" not in dir(bpy.ops.export_scene):
             bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
@@ -73,6 +72,6 @@ def exported(walk):
     walk.area.spaces.active.shading.type = "MATERIAL"
     for item in bpy.context.selected_objects:
         item.select_set(False)
-    fill_view(walk, [o for o in bpy.data.objects if o.type == "MESH"], 0.9, azimuth=math.radians(155.0))
+    fill_view(walk, [o for o in bpy.data.objects if o.type == "MESH"], 0.9, azimuth=math.radians(150.0))
     yield walk.redrawn(20)
     yield from keep(walk, "artists_export")

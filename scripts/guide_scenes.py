@@ -84,9 +84,7 @@ def grid(name, height, size, strength, seed):
     texture.noise_scale = 0.35 * size + 0.1 * seed
     modifier = item.modifiers.new("Displace", "DISPLACE")
     modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
-    modifier.direction = (
-        "Z"  # along normals outlines of grids would differ, and slivers stay
-    )
+    modifier.direction = "Z"  # along normals outlines of grids would differ, and slivers stay
     return item
 
 
