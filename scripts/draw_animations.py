@@ -5,7 +5,8 @@
     BLENDER=build/venv-bpy/bin/python build/venv/bin/python scripts/draw_animations.py [NAME ...]
 
 BLENDER is as for draw_gallery.py. Each function in ANIMATIONS is one picture: a generator that changes the
-scene and yields how long each frame is shown, in milliseconds. It needs Pillow.
+scene and yields how long each frame is shown, in milliseconds. Frames dissolve into each other. It needs
+Pillow.
 """
 
 import json
@@ -21,10 +22,15 @@ from gallery_picture import blocks_of, sample
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "guide"
-SIZE = (440, 280)
-RAYS, SECONDS = 8, 12.0  # of a pixel, and of a frame at most
+SIZES = {"exploded": (960, 760)}  # others have SIZE
+SIZE = (960, 600)
+ROOMS = {"deposition": (0.2, 0.0)}  # share of the width for the legend
+RAYS, SECONDS = 5, 40.0  # of a pixel, and of a frame at most
 STEP, REST = 170, 1200  # milliseconds: of a moving picture, and where it stands
-MOST = 1_500_000  # bytes of a file
+DISSOLVE = {"deposition": 4, "section_sweep": 1, "exploded": 1}  # frames between two
+FADE = 60  # milliseconds of each of them
+GLASS = {"section_sweep": 0.14}  # the first frame over others, so that what is cut away is seen as glass
+MOST = 2_500_000  # bytes of a file
 
 
 def main(names):
@@ -41,6 +47,9 @@ def main(names):
             durations = json.loads(path.read_text(encoding="utf-8"))
             files = [path.with_name(f"{path.stem}_{n:02}.png") for n in range(len(durations))]
             frames = [Image.open(file).convert("RGB") for file in files]
+            if path.stem in GLASS:
+                frames = [Image.blend(frame, frames[0], GLASS[path.stem]) for frame in frames]
+            frames, durations = dissolved(frames, durations, DISSOLVE[path.stem])
             target = IMAGES / f"{path.stem}.webp"
             frames[0].save(
                 target,
@@ -48,7 +57,7 @@ def main(names):
                 append_images=frames[1:],
                 duration=durations,
                 loop=0,
-                quality=85,
+                quality=80,
                 method=6,
             )
             if target.stat().st_size > MOST:
@@ -56,11 +65,26 @@ def main(names):
     return done.returncode
 
 
+def dissolved(frames, durations, count):
+    """Frames and their durations with so many mixed ones between two, also before the first comes again."""
+    from PIL import Image
+
+    made, times = [], []
+    for number, frame in enumerate(frames):
+        after = frames[(number + 1) % len(frames)]
+        made.append(frame)
+        times.append(durations[number] - (count * FADE if durations[number] == STEP else 0))
+        for step in range(1, count + 1):
+            made.append(Image.blend(frame, after, step / (count + 1)))
+            times.append(FADE)
+    return made, times
+
+
 # -- in Blender
 
 
 def deposition(folder):
-    """The stages of a castle hill, one after another."""
+    """The stages of a castle hill, one after another, with the names of its layers."""
     model, picture = sample("castle_hill", folder)
     last = len(model.project.rocks[0].surfaces) - 1
     yield from shown(model, picture, [(model.stage(n), None) for n in range(last + 1)], 700)
@@ -72,7 +96,7 @@ def section_sweep(folder):
 
     model, picture = sample("castle_hill", folder)
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
-    planes = low[1] + (high[1] - low[1]) * np.linspace(0.04, 0.86, 8)
+    planes = low[1] + (high[1] - low[1]) * np.linspace(0.04, 0.86, 11)
     halves = [(model, None)]
     halves += [(model.cut_by_plane((0.0, y, 0.0), (0.0, 1.0, 0.0)).above, None) for y in planes]
     yield from there_and_back(shown(model, picture, halves, STEP))
@@ -84,34 +108,8 @@ def exploded(folder):
 
     model, picture = sample("castle_hill", folder)
     size = float(np.ptp(model.vertices[:, 2]))
-    lifts = [0.16 * size * share for share in (0.0, 0.08, 0.3, 0.62, 0.9, 1.0)]
+    lifts = [0.13 * size * share for share in (0.0, 0.04, 0.15, 0.32, 0.5, 0.68, 0.85, 0.96, 1.0)]
     yield from there_and_back(shown(model, picture, [(model, lift) for lift in lifts], STEP))
-
-
-def live_editing(folder):
-    """A valley is moved, and the blocks follow."""
-    import numpy as np
-    from realmodel.core import Library, Project, Property, Rock, Surface, build
-
-    along = np.linspace(0.0, 100.0, 61)
-    x, y = (a.ravel() for a in np.meshgrid(along, along))
-    column, row = (a.ravel() for a in np.meshgrid(np.arange(60), np.arange(60)))
-    a = row * 61 + column
-    triangles = np.concatenate([np.stack([a, a + 1, a + 62], 1), np.stack([a, a + 62, a + 61], 1)])
-    fold = 4.0 * np.sin((x + 0.3 * y) / 13.0)
-    colors = ("#8a8f99", "#c9b98f", "#a9532f", "#d9a35f", "#7d8f6a", "#e3d9ae")
-    library = Library([Property(n, f"Rock {n}", color=color) for n, color in enumerate(colors, 1)])
-    models = []
-    for middle in np.linspace(20.0, 80.0, 9):
-        ground = 46.0 + 0.05 * x - 32.0 * np.exp(-(((x - middle - 6.0 * np.sin(y / 16.0)) / 13.0) ** 2))
-        heights = [0.0 * x, *(8.0 * n + fold + 0.05 * x for n in range(1, 6)), ground]
-        surfaces = [
-            Surface(f"S{n}", vertices=np.column_stack([x, y, z]), triangles=triangles, property=max(n, 1))
-            for n, z in enumerate(heights)
-        ]
-        models.append((build(Project("live", [Rock("rock", surfaces)], library=library)), None))
-    picture = gallery_picture.Picture((50.0, 50.0, 20.0), folder)
-    yield from there_and_back(shown(models[0][0], picture, models, STEP))
 
 
 def shown(whole, picture, states, duration):
@@ -141,7 +139,7 @@ def there_and_back(states):
         yield picture, -duration
 
 
-ANIMATIONS = (deposition, section_sweep, exploded, live_editing)
+ANIMATIONS = (deposition, section_sweep, exploded)
 
 
 def in_blender(folder, *names):
@@ -151,6 +149,8 @@ def in_blender(folder, *names):
     import realmodel
 
     realmodel.register_for_batch()
+    from realmodel.core.drawing.drawing import Drawing
+
     gallery_picture.RAYS, gallery_picture.SECONDS = RAYS, SECONDS
     for draw in ANIMATIONS:
         name = draw.__name__
@@ -160,7 +160,12 @@ def in_blender(folder, *names):
         durations, files = [], []
         for number, (picture, duration) in enumerate(draw(Path(folder))):
             files.append(Path(folder) / f"{name}_{number:02}.png")
-            picture.render(files[-1], SIZE, 156.0, 26.0, (0.0, 0.0))
+            size, room = SIZES.get(name, SIZE), ROOMS.get(name, (0.0, 0.0))
+            picture.render(files[-1], size, 156.0, 26.0, room)
+            if name in ROOMS:
+                drawing = Drawing(gallery_picture.POINTS, gallery_picture.POINTS * size[1] / size[0])
+                gallery_picture.add_legend(drawing, list(picture.names.items()))
+                gallery_picture.put_over(files[-1], drawing)
             durations.append(duration)
         if durations[0] < 0:
             for number in range(len(files) - 2, 0, -1):

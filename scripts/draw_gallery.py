@@ -294,8 +294,8 @@ def rocks(folder):
     base = [shape for block, shape in zip(model.blocks, shapes, strict=True) if block.rock == BASE]
     near, far = meadow(next(item for item in blocks if item.name.startswith("Soil")), base, 2500.0)
     slopes = math.radians(44.0), 0.0  # without scree, which would be a row of dots along the steep bank
-    weathering.put_on(scene, [*blocks, near], weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, 0.6))
-    weathering.put_on(scene, [far], weathering.Weathering(0.0, 0.0, 1.0, 3, *slopes, 0))
+    weathering.put_on(scene, [*blocks, near], weathering.Weathering(0.34, 0.5, 0.34, 3, *slopes, 1, 0.6))
+    weathering.put_on(scene, [far], weathering.Weathering(0.0, 0.0, 0.34, 3, *slopes, 0))
     far.location.z = -2.0  # the meadow is worn, so its rim is lower than it was
     picture.landscape(sun=(math.radians(205.0), math.radians(24.0)), haze=6000.0)
     middle = np.concatenate(picture.points)
@@ -405,7 +405,7 @@ def overturned(folder):
     )
     beds = list(bpy.context.selected_objects)
     bpy.ops.realmodel.weathering(
-        strength=0.4, rounding=0.2, detail=1, plants=0.0, grass_slope=0.0, scree_slope=0.0
+        strength=0.15, rounding=0.2, detail=1, plants=0.0, grass_slope=0.0, scree_slope=0.0
     )
     corners = np.array([bed.matrix_world @ corner.co for bed in beds for corner in bed.data.vertices])
     low, high = corners.min(axis=0), corners.max(axis=0)

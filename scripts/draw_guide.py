@@ -23,7 +23,7 @@ WINDOWS = (  # (width, height), scale of the interface so that its letters are s
     (guide_recording.SIZE, 1.35, (guide_recording.carving,)),
     ((1500, 2400), 2.0, chapters.OF_PANELS),
     ((2300, 2200), 2.0, chapters.OF_DIALOGS),
-    ((1800, 640), 1.5, chapters.OF_BROWSERS),
+    ((1320, 520), 1.5, chapters.OF_BROWSERS),
     ((1900, 1400), 1.5, chapters.WITH_MANY_PANELS),
     ((1900, 1150), 1.5, chapters.WITH_PANELS),
     ((1900, 1000), 1.5, chapters.OF_VIEWPORTS),
@@ -35,6 +35,7 @@ WIDEST = 1200  # pixels
 # the legend, and the right side is a little darker.
 AMBIENT = 0.62
 LIGHTS = ((-0.35, 0.0, 0.94), 0.38), ((0.0, 1.0, 0.0), 0.2)
+LENS = 110.0  # millimeters, of the viewport: with a shorter one near corners of a model look too large
 PATIENCE = 1200.0  # seconds for one step, on a busy machine
 WIDER = 130  # pixels that the sidebar is wider than in a new file, at scale 1, so that names are not cut;
 WIDEST_SIDEBAR = 190  # in pictures of it alone, and in that of the window, which has the longest names
@@ -151,6 +152,7 @@ def chapter(walk, draw):
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     space.overlay.show_cursor = space.overlay.show_text = space.show_gizmo = False
     space.overlay.show_object_origins = False
+    space.lens = LENS
     space.shading.studio_light = "Default"
     space.shading.show_specular_highlight = False
     # empty where only panels are kept: drawing its objects takes long, and nobody sees them

@@ -235,7 +235,7 @@ def draw_weathering(folder):
     set_up(points, 150.0, 22.0, HALF)
     render(folder, "weathering_before")
     slopes = (math.radians(24.0), math.radians(36.0))
-    weathering.put_on(scene, items, weathering.Weathering(2.5, 0.6, 2.0, 1, *slopes, 3, 1.0))
+    weathering.put_on(scene, items, weathering.Weathering(0.6, 0.6, 0.3, 1, *slopes, 3, 1.0))
     render(folder, "weathering_after")
 
 
@@ -259,7 +259,7 @@ def draw_close(folder):
     for item in scene.objects:
         item.hide_render = item not in blocks
     slopes = math.radians(34.0), math.radians(44.0)
-    weathering.put_on(scene, blocks, weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, wear=0.15))
+    weathering.put_on(scene, blocks, weathering.Weathering(0.34, 0.5, 0.34, 3, *slopes, 1, wear=0.05))
     corners = np.array([item.matrix_world @ Vector(c) for item in blocks for c in item.bound_box])
     shown.points = [corners]
     azimuth, elevation = math.radians(215.0), math.radians(40.0)

@@ -4,6 +4,7 @@ pictures of it. Needs Blender."""
 
 import math
 
+import guide_artists
 import guide_features as features
 import guide_scenes
 from guide_window import (
@@ -122,15 +123,13 @@ def csv(walk):
     guide_scenes.import_tables()
     for item in bpy.data.objects:
         item.hide_set(item.name.endswith(" points"))
-    walk.area.spaces.active.overlay.show_floor = True  # beneath points that would hang in the air
-    fill_view(walk, guide_scenes.visible_meshes(), 0.98, math.radians(14.0))
+    lines = guide_scenes.drop_lines(bpy.context.scene)
+    fill_view(walk, guide_scenes.visible_meshes(), 0.94, math.radians(20.0))
     yield from keep(walk, "csv_points", panels=["start", "surfaces"])
-    walk.area.spaces.active.overlay.show_floor = False
+    bpy.data.objects.remove(lines)
     guide_scenes.settle_rock()
     yield from build(walk)
     group = bpy.context.scene.realmodel
-    group.view.show_contacts = False
-    group.color_by = "BLOCK"  # the names of the legend are those of the list then
     group.rocks[0].region.hide_set(True)  # a line that lies on the walls
     smooth()
     frame(walk)
@@ -193,9 +192,10 @@ def section(walk):
     guide_scenes.ghost(blocks())
     with viewport(walk):
         bpy.ops.realmodel.section_plane(axis="Y")
+    plane = bpy.context.scene.realmodel.view.plane
+    plane.location.y -= 0.16 * bpy.data.objects[guide_scenes.BOX].dimensions.y  # most of the model stays
     yield from settled(walk)
-    # its long edges would look like part of the model
-    bpy.context.scene.realmodel.view.plane.hide_set(True)
+    plane.hide_set(True)  # its long edges would look like part of the model
     fill_view(walk, [bpy.data.objects[guide_scenes.BOX]])
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
 
@@ -320,6 +320,8 @@ WITH_MANY_PANELS = (  # with a longer sidebar
     features.misfits,
     features.ensemble,
     features.strata_tab,
+    guide_artists.artists,
+    guide_artists.exported,
 )
 OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures, features.tiles)  # of the viewport alone
 AS_FOUND = (start, window)  # with panels open or closed as users find them

@@ -377,5 +377,6 @@ def assets(walk):
     yield from drag(walk, edge, (edge[0], edge[1] + 720))
     params = area.spaces.active.params
     params.asset_library_ref = "RealModel"
+    params.display_size = "NORMAL"
     yield from redrawn(walk, 100)
     save_picture(seen(walk, area), walk.folder / "assets.png")

@@ -8,6 +8,7 @@ from pathlib import Path
 SAMPLES = Path(__file__).resolve().parents[1] / "blend_samples"
 BOX = "box of the model"
 GRID_COLORS = ("#6f8296", "#d9b070", "#a4603f", "#e0cfa0", "#8c6d8a", "#7d9460")  # as in the library
+LAYER_COLORS = ("#7d8fa3", "#e0b56a")  # clay, sand
 GRABEN_COLORS = ("#c4aeaa", "#e6b069", "#97c0d6", "#f0e4ab", "#a9cc7a", "#d9b8cf")
 _GRIDS = {  # height, strength of the Displace
     "basement": (0.0, 1.2),
@@ -31,11 +32,42 @@ def import_tables():
     bpy.context.scene.realmodel.view.show_contacts = True
 
 
+def drop_lines(scene):
+    """Lines from the contacts of two tables to the plane z = 0, and the outline of their region there."""
+    import csv
+
+    import bpy
+    from realmodel.bl.project import project_settings
+
+    rows = []
+    for name in ("clay", "ground"):
+        with (SAMPLES / "two_layers" / f"{name}.csv").open(encoding="utf-8") as file:
+            rows += [tuple(float(row[key]) for key in "xyz") for row in csv.DictReader(file)]
+    tops = {(x, y): max(z for *plan, z in rows if plan == [x, y]) for x, y, _ in rows}
+    corners = [(x, y, 0.0) for x, y in ((0.0, 0.0), (100.0, 0.0), (100.0, 60.0), (0.0, 60.0))]
+    vertices = [place for (x, y), z in tops.items() for place in ((x, y, z), (x, y, 0.0))]
+    edges = [(n, n + 1) for n in range(0, len(vertices), 2)]
+    edges += [(len(vertices) + n, len(vertices) + (n + 1) % 4) for n in range(4)]
+    mesh = bpy.data.meshes.new("lines")
+    mesh.from_pydata(vertices + corners, edges, [])
+    item = bpy.data.objects.new("lines", mesh)
+    item.location = -project_settings.model_origin(scene)
+    scene.collection.objects.link(item)
+    return item
+
+
 def settle_rock():
-    """A region around the points, short edges, a base."""
+    """A region around the points, short edges, a base, and the names and colors of the example."""
     import bpy
 
-    rock = bpy.context.scene.realmodel.rocks[0]
+    scene = bpy.context.scene
+    rock = scene.realmodel.rocks[0]
+    names = {"clay": "Clay", "ground": "Sand"}
+    for row in rock.surfaces:
+        row.block = names[row.name]
+    for row in scene.realmodel.library:
+        row.name = names[row.name]
+    paint(scene.realmodel.library, LAYER_COLORS)
     bpy.ops.realmodel.region_around()
     rock.edge_length = 4.0
     rock.use_base, rock.base_elevation = True, 0.0
@@ -52,6 +84,7 @@ def grid(name, height, size, strength, seed):
     texture.noise_scale = 0.35 * size + 0.1 * seed
     modifier = item.modifiers.new("Displace", "DISPLACE")
     modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
+    modifier.direction = "Z"  # along normals outlines of grids would differ, and slivers stay
     return item
 
 

@@ -21,6 +21,7 @@ PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 # What the guide and the reference refer to beside themselves.
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
 LARGE, WIDTH = 8_000, 736  # bytes of a picture that is made smaller; pixels, as wide as a page
+MOVING, SHORT = 480, 70  # pixels, the width of a moving one; milliseconds of a frame that it does without
 QUALITY = 48  # of a picture as WebP, which takes half of what JPEG does
 _SOURCE = re.compile(r'<img[^>]* src="([^"]+)"')
 PAGE = """<!DOCTYPE html>
@@ -61,14 +62,41 @@ def _in_zip(picture):
     if len(content) <= LARGE or picture.endswith(".svg"):
         return picture, content
     image = Image.open(BytesIO(content))
-    if getattr(image, "is_animated", False):
-        return picture, content
-    image.thumbnail((WIDTH, image.height))
     smaller = BytesIO()
-    image.convert("RGB").save(smaller, "WEBP", quality=QUALITY, method=6)
+    if getattr(image, "is_animated", False):
+        _save_moving(image, smaller)
+    else:
+        image.thumbnail((WIDTH, image.height))
+        image.convert("RGB").save(smaller, "WEBP", quality=QUALITY, method=6)
     if smaller.tell() >= len(content):
         return picture, content
     return str(PurePosixPath(picture).with_suffix(".webp")), smaller.getvalue()
+
+
+def _save_moving(image, to):
+    """Writes a moving picture as wide as MOVING, without the frames that dissolve."""
+    frames, durations = [], []
+    for number in range(image.n_frames):
+        image.seek(number)
+        image.load()  # then the duration is known
+        duration = image.info["duration"]
+        if frames and duration < SHORT:
+            durations[-1] += duration
+            continue
+        frame = image.convert("RGB")
+        frame.thumbnail((MOVING, frame.height))
+        frames.append(frame)
+        durations.append(duration)
+    frames[0].save(
+        to,
+        "WEBP",
+        save_all=True,
+        append_images=frames[1:],
+        duration=durations,
+        loop=0,
+        quality=QUALITY,
+        method=6,
+    )
 
 
 def _target(name):

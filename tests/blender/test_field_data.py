@@ -6,6 +6,7 @@ import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
 from realmodel.bl.field import data, edits, handle
+from realmodel.bl.objects import exaggeration
 from realmodel.bl.project import observed_blocks, project_settings, surface_dips
 from realmodel.bl.scene import borehole_points
 
@@ -218,6 +219,21 @@ class FieldData(PanelCase):
         self.assertLess(self.model.view.misfit_count, count)
         self.model.view.show_misfits = False
         self.assertEqual((len(self.model.misfits), self.body("misfits")), (0, []))
+
+    def test_a_datum_is_shown_where_heights_are_stretched(self):
+        self.given(logs=LOGS)
+        self.region()
+        ops.build()
+        self.model.view.exaggeration = 5.0
+        kept = self.group(data.INTERVAL).datum(1)
+        handle.activate(bpy.context, kept)
+        bpy.context.view_layer.update()
+        item, top = handle.item_of(self.scene), np.array(exaggeration.matrix(self.scene))
+        shown = top @ (*(np.array(kept.place) - project_settings.model_origin(self.scene)), 1.0)
+        np.testing.assert_allclose(np.array(item.matrix_world)[:3, 3], shown[:3], rtol=1e-6)
+        self.assertEqual(top[2, 2], 5.0)
+        handle.take_place(self.scene)
+        self.assertEqual(handle.active(self.scene).place, kept.place, "it was not moved")
 
     def test_a_datum_that_is_gone_is_said(self):
         self.surface()

@@ -20,8 +20,9 @@ class ResidualsOfPoints(PanelCase):
         self.assertTrue(rows)
         self.assertEqual(len(item.data.polygons), 8 * sum(row[2] for row in rows))
         for row in rows:
-            self.assertGreaterEqual(abs(row[5]), row[4])
-            self.assertLess(abs(row[5]), 1e-9)  # tied surfaces pass through their points
+            self.assertEqual(row[3:6], (0.0, 0.0, 0.0))  # tied surfaces pass through their points
+        self.assertEqual({polygon.material_index for polygon in item.data.polygons}, {residuals._STEPS // 2})
+        self.assertIsNone(residuals.key(self.scene))
         ops.build()
         self.assertEqual(residuals.rows(self.scene), rows)
         self.model.view.show_residuals = False

@@ -5,6 +5,7 @@ import bpy
 
 from .. import props_strata
 from ..bl.jobs.fill_job import ErosionJob
+from ..bl.objects import filled_beds
 from ..bl.shading import strata_modifier, weathering
 from ..bl.shading.strata_presets import PRESETS, SHAPES
 from ..operators.baking import rocks
@@ -34,6 +35,8 @@ class REALMODEL_PT_strata_shape(_Step, bpy.types.Panel):
             grid.operator("realmodel.strata_rock_add", text=name).kind = kind
         if obj is None:
             hint(layout, "Add a rock, or select a mesh of your own.")
+        elif filled_beds.BED in obj:
+            hint(layout, f"{obj.name} is a bed. Edit Shape shows the mesh that it was made of.")
         elif values is None:
             hint(layout, f"{obj.name}: choose its beds.")
         else:
@@ -66,6 +69,9 @@ class REALMODEL_PT_strata_erosion(_Step, bpy.types.Panel):
     bl_order = 2
 
     def draw_step(self, layout, obj, values):
+        if obj is not None and filled_beds.BED in obj:
+            hint(layout, "Erosion is of a mesh before it is made solid: click Edit Shape.")
+            return
         if values is None:
             hint(layout, "Hard beds stand out, soft ones recede. Choose beds first.")
             return
@@ -87,9 +93,8 @@ class REALMODEL_PT_strata_looks(_Step, bpy.types.Panel):
         line = layout.row(align=True)
         line.operator("realmodel.weathering", icon="MOD_NOISE")
         line.operator("realmodel.weathering_remove", text="", icon="X")
-        line = layout.row(align=True)
-        line.operator("realmodel.unwrap", icon="UV")
-        line.operator("realmodel.bake_looks", icon="RENDER_STILL")
+        layout.operator("realmodel.unwrap", icon="UV")
+        layout.operator("realmodel.bake_looks", icon="RENDER_STILL")
         layout.operator("realmodel.set_up_picture", icon="LIGHT_SUN")
 
 

@@ -54,7 +54,8 @@ def show(scene):
     body = bodies.add(scene, bodies.RESIDUALS, "Residuals", shape)
     mesh, body[_STRETCH] = body.data, exaggeration.factor(scene)
     low, high = limits(scene)
-    steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
+    shares = (values[order] - low) / (high - low) if high > low else np.full(len(order), 0.5)
+    steps = shares * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
         code = hex_color(color)
         mesh.materials.append(colors.plain_material(f"Residual {code}", code))

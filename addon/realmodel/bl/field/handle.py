@@ -6,6 +6,7 @@ import numpy as np
 
 from ...core import RealModelError
 from ...core.validation.misfits import attitude_text
+from .. import display
 from ..display import bodies
 from ..host.debounce import DebouncedJob
 from ..objects import exaggeration, model_tree, viewports, visible
@@ -41,6 +42,7 @@ def activate(context, datum, jumps=False):
         empty.empty_display_type = "SPHERE"
         empty.show_in_front, empty.hide_render = True, True
         bodies.view_collection(scene).objects.link(empty)
+        display.exaggeration_changed(scene)
     scene.realmodel.view.datum = datum.text()
     empty.name = datum.hole or datum.name
     empty.empty_display_size = _SIZE * heights.extent(scene)

@@ -54,7 +54,7 @@ PRESETS = {
         "Faulted",
         {"beds": 14, "dip": math.radians(12), "faults": 3, "throw": 0.12, "palette": "COAL"},
     ),
-    "PRINT": ("Print in Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
+    "PRINT": ("Print Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
 }
 # Of each shape of core.filling.SHAPES its label, its description, and a preset with other values
 SHAPES = {

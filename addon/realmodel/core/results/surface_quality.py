@@ -22,6 +22,7 @@ from ..surfaces.surface_input import by_rock
 from .layer_values import at_places
 
 DEFAULT_FOLDS = 10
+_ROUNDING = 2.0**-48  # of the largest coordinate: residuals below it are rounding of heights
 _OF_VARIANCES = RANGE_BEYOND, NO_DEVIATION
 
 
@@ -130,7 +131,7 @@ def _deviation(
 @dataclass(frozen=True, eq=False)
 class Residuals:
     """Of one surface: its points (P, 3) float64 where it has an elevation, and point minus surface there,
-    (P,), model units. outside: how many points are beyond the surface."""
+    (P,), model units, 0 where it is below rounding. outside: how many points are beyond the surface."""
 
     rock: str
     surface: str
@@ -197,6 +198,7 @@ def residuals(model: ModelData) -> list[Residuals]:
                 heights = heights_of_points(model, number, at, r, points)
                 finite = np.isfinite(heights)
                 values = points[finite, 2] - heights[finite]
+                values[np.abs(values) <= _ROUNDING * np.abs(points).max()] = 0.0
                 rows.append(Residuals(rock.name, surface.name, points[finite], values, int((~finite).sum())))
             number += 1
     return rows
