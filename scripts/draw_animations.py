@@ -182,7 +182,7 @@ class _OfCamera:
         from realmodel.bl.host import versions
 
         scene = bpy.context.scene
-        scene.render.engine, scene.cycles.samples = "CYCLES", RAYS
+        scene.render.engine, scene.cycles.samples = "CYCLES", 3
         versions.plain_colors(scene)
         versions.denoise(scene)
         scene.render.resolution_x, scene.render.resolution_y = size

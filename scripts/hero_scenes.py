@@ -417,12 +417,18 @@ def badlands(scene):
     sun, spacing = (108.0, 15.0), 1.6
     x, y = np.arange(-190.0, 190.1, spacing), np.arange(-14.0, 330.1, spacing)
     u, v = np.meshgrid(x, y, indexing="ij")
-    start = 3.0 + 1.2 * rough(u, v, 30.0, 3, 4) + 0.4 * rough(u, v, 5.0, 5)
-    wash = (
-        _from_line(u, v, ((-190, 40), (-110, 60), (-50, 48), (10, 70), (60, 120), (120, 130), (190, 180)))
-        < 3.0
+    start = 3.0 + 1.2 * rough(u, v, 30.0, 3, 4) + 1.0 * rough(u, v, 5.0, 5)
+    washes = (
+        ((-190, 40), (-110, 60), (-50, 48), (10, 70), (60, 120), (120, 130), (190, 180)),
+        ((10, 70), (-30, 130), (-10, 200), (-60, 260), (-40, 330)),
+        ((-50, 48), (-70, 100), (-110, 130), (-120, 190), (-160, 240), (-150, 330)),
+        ((60, 120), (50, 180), (70, 230), (40, 280), (60, 330)),
+        ((120, 130), (130, 70), (100, 30), (110, -14)),
+        ((10, 70), (40, 50), (52, 20), (46, -14)),
+        ((-50, 48), (-38, 26), (-44, -14)),
+        ((120, 130), (140, 200), (120, 260), (150, 330)),
     )
-    wash |= _from_line(u, v, ((10, 70), (-30, 130), (-10, 200), (-60, 260), (-40, 330))) < 2.0
+    wash = np.minimum.reduce([_from_line(u, v, line) for line in washes]) < 2.2
     start = np.where(wash, 1.0 + 0.012 * v, start)
     land = rocks.drained(
         start,
@@ -432,7 +438,7 @@ def badlands(scene):
         1.0,
         1.25,
         fixed=wash,
-        smooth=0.06,
+        smooth=0.03,
         power=0.38,
         steepest=0.8,
     )
@@ -451,7 +457,7 @@ def badlands(scene):
         [eye, (0.0, 0.0, 60.0)],
     )
     bands = {1: "#c48a6a", 2: "#d9cbb0", 3: "#a8a078", 4: "#7a4a44", 5: "#c99a58"}
-    _weathered(hills, "#c2a27c", 2.2, bands, streaks=0.3, ledge=0.93, cover=0.35, tint="#a9755a")
+    _weathered(hills, "#c2a27c", 2.2, bands, streaks=0.35, ledge=0.84, cover=0.6, tint="#a9755a")
     far = parts.rock("Pan", "#c4ac8a", "CLAY", 8.0)
     parts.weather(far, "#8a7560", 300.0, streaks=0.0, ledge=0.9, cover=0.6)
     x = np.linspace(-36_000.0, 36_000.0, 150)
