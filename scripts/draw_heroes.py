@@ -23,6 +23,8 @@ import bpy
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "scripts")]
 
+from realmodel.bl.host import versions  # noqa: E402
+
 FILES = ROOT / "blend_samples" / "heroes"
 NAMES = ("canyon", "sea_cliff", "arch", "badlands", "island", "quarry")
 SIZE = (1920, 960)
@@ -30,11 +32,12 @@ MOST = 3_000_000  # bytes of a file
 
 
 def make(names):
-    """Makes files of scenes."""
+    """Makes files of scenes. Returns how many of them are too large."""
     import hero_scenes
     import realmodel
 
     realmodel.register()
+    too_large = 0
     for name in names or NAMES:
         begin = time.monotonic()
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
@@ -43,8 +46,8 @@ def make(names):
         save(FILES / f"{name}.blend")
         size = (FILES / f"{name}.blend").stat().st_size
         print(f"{name}: {size:,} bytes, {time.monotonic() - begin:.0f} s", flush=True)
-        if size > MOST:
-            print(f"{name}: more than {MOST:,} bytes", flush=True)
+        too_large += size > MOST
+    return too_large
 
 
 def set_render(scene):
@@ -78,11 +81,11 @@ def save(path):
         plain = Path(folder) / path.name
         bpy.ops.wm.save_as_mainfile(filepath=str(plain), compress=False, copy=True)
         # Blender compresses in small parts and quickly: the whole file by zstd is smaller
-        subprocess.run(["zstd", "-q", "-f", "-12", str(plain), "-o", str(path)], check=True)
+        subprocess.run(["zstd", "-q", "-f", "-19", str(plain), "-o", str(path)], check=True)
 
 
 def render(engine, folder, *rest):
-    """Renders files of scenes."""
+    """Renders files of scenes. rest: a width, samples, and names."""
     numbers = [int(each) for each in rest if each.isdigit()]
     names = [each for each in rest if not each.isdigit()]
     for name in names or NAMES:
@@ -95,11 +98,7 @@ def render(engine, folder, *rest):
             scene.render.engine = "CYCLES"
             if len(numbers) > 1:
                 scene.cycles.samples = numbers[1]
-            try:
-                scene.cycles.denoiser = "OPENIMAGEDENOISE"
-                scene.cycles.use_denoising = True
-            except TypeError:
-                scene.cycles.use_denoising = False
+            versions.denoise(scene)
         else:
             scene.render.engine = "BLENDER_EEVEE"
             if len(numbers) > 1:
@@ -111,12 +110,13 @@ def render(engine, folder, *rest):
 
 
 def main(arguments):
+    status = 0
     if arguments[0] == "make":
-        make(arguments[1:])
+        status = 1 if make(arguments[1:]) else 0
     else:
         render(*arguments)
     sys.stdout.flush()
-    os._exit(0)  # the module bpy may hang as it ends
+    os._exit(status)  # the module bpy may hang as it ends
 
 
 main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:])

@@ -13,8 +13,9 @@ from mathutils.bvhtree import BVHTree
 from realmodel.bl.host import versions
 from realmodel.bl.objects import meshes, placing
 from realmodel.bl.objects.materials import set_color
-from realmodel.bl.shading import strata_modifier
+from realmodel.bl.shading import strata_modifier, strata_values
 from realmodel.core.base.work import Work
+from realmodel.core.filling import hardness_of_beds
 from realmodel.core.filling.erosion import cubic_lattice, meshed
 
 _LOOK_SLOTS = 5  # rocks of a palette
@@ -379,9 +380,6 @@ def stepped(levels, hardness, low, high, height, cliffs=0.22):
 
 def beds_in(item):
     """The boundaries (B - 1,) of an object's level beds, and how hard each is (B,)."""
-    from realmodel.bl.shading import strata_values
-    from realmodel.core.filling import hardness_of_beds
-
     beds, _ = strata_modifier.beds_of(item)
     drawn = strata_values.strata_of(item.realmodel_strata, beds.high - beds.low)
     middle = 0.5 * (beds.low + beds.high)
