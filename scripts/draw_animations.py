@@ -49,7 +49,7 @@ def main(names):
             frames = [Image.open(file).convert("RGB") for file in files]
             if path.stem in GLASS:
                 frames = [Image.blend(frame, frames[0], GLASS[path.stem]) for frame in frames]
-            frames, durations = dissolved(frames, durations, DISSOLVE[path.stem])
+            frames, durations = dissolved(frames, durations, DISSOLVE.get(path.stem, 0))
             target = IMAGES / f"{path.stem}.webp"
             frames[0].save(
                 target,
@@ -112,6 +112,82 @@ def exploded(folder):
     yield from there_and_back(shown(model, picture, [(model, lift) for lift in lifts], STEP))
 
 
+def time_lapse(folder):
+    """Beds are deposited, folded and eroded, in ten seconds: the modifier Strata on a mesh that changes."""
+    import bpy
+    import hero_parts
+    import hero_rocks
+    import numpy as np
+    from realmodel.bl.shading import strata_modifier
+
+    high, full = 38.0, 60.0  # of what is deposited, and of the box in which beds are laid
+    x, y = np.linspace(-62.0, 62.0, 94), np.linspace(-46.0, 46.0, 70)
+    u, v = np.meshgrid(x, y, indexing="ij")
+    vertices, _ = mesh = hero_parts.block(x, y, np.full(u.shape, full), 0.0)
+    values = {"beds": 20, "variation": 0.8, "dip": 0.0, "rock_looks": False, "seed": 3}
+    values |= {"fold_amplitude": 0.0, "fold_wavelength": 0.55, "fold_axis": 0.5}
+    item = hero_rocks.strata("Rock", mesh, "CANYON", is_compact=False, **values)
+    bpy.ops.realmodel.set_up_picture(sun_elevation=0.5, sun_azimuth=2.9, scene_settings=True)
+    corners = np.concatenate([vertices * (1.0, 1.0, share) for share in (0.0, 0.9)])
+    gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 156.0, 20.0, (0.0, 0.0))
+
+    def frame(amplitude, top):
+        hero_rocks.reshape(item, vertices)
+        strata_modifier.set_values(item, {"fold_amplitude": amplitude})
+        beds, _ = strata_modifier.beds_of(item)
+        plan = np.column_stack([u.ravel(), v.ravel()])
+        datum = beds.datum(plan, beds.strips(plan)).reshape(u.shape) - full / 2.0
+        places = vertices.copy()
+        places[: u.size, 2] = np.clip(top(datum), 1.0, full).ravel()
+        hero_rocks.reshape(item, places)
+        return _OfCamera(), 250
+
+    ripple = 0.25 * hero_parts.rough(u, v, 12.0, 3)
+    for share in np.linspace(0.06, 1.0, 16):
+        yield frame(0.0, lambda _, share=share: high * share + ripple)
+    most = 0.13
+    for share in np.linspace(0.1, 1.0, 10):
+        yield frame(most * share, lambda datum: high + datum - datum.mean() + ripple)
+    edge = np.zeros(u.shape, bool)
+    edge[:, 0] = edge[0, :] = True
+    rivers = np.where(edge, 6.0, 16.0 + 8.0 * np.abs(hero_parts.rough(u, v, 40.0, 8)))
+    land = hero_rocks.drained(
+        rivers,
+        x[1] - x[0],
+        lambda z: np.full(len(z), 0.12),
+        16,
+        1.0,
+        2.2,
+        fixed=edge,
+        smooth=0.1,
+        steepest=0.9,
+    )
+    for share in np.linspace(0.1, 1.0, 10):
+        yield frame(
+            most,
+            lambda datum, share=share: np.minimum(high + datum - datum.mean(), land + 52.0 * (1.0 - share)),
+        )
+    for strength in (0.25, 0.5, 0.75, 1.0):
+        hero_rocks.erode(item, 60_000, strength, scree=0.0)
+        yield _OfCamera(), 250
+
+
+class _OfCamera:
+    """What the scene's camera sees."""
+
+    def render(self, file, size, *_):
+        import bpy
+        from realmodel.bl.host import versions
+
+        scene = bpy.context.scene
+        scene.render.engine, scene.cycles.samples = "CYCLES", 3
+        versions.plain_colors(scene)
+        versions.denoise(scene)
+        scene.render.resolution_x, scene.render.resolution_y = size
+        scene.render.image_settings.file_format, scene.render.filepath = "PNG", str(file)
+        bpy.ops.render.render(write_still=True)
+
+
 def shown(whole, picture, states, duration):
     """Shows models one after another; the camera stays where it sees the first one and the last one.
     states: (model, how far each block is lifted above the one beneath, or None)."""
@@ -139,7 +215,7 @@ def there_and_back(states):
         yield picture, -duration
 
 
-ANIMATIONS = (deposition, section_sweep, exploded)
+ANIMATIONS = (deposition, section_sweep, exploded, time_lapse)
 
 
 def in_blender(folder, *names):

@@ -64,6 +64,8 @@ def contents(platform, modules, wheels):
         if not path.name.startswith("_native.")
     }
     for path in files_below(ROOT / "blend_samples"):
+        if path.suffix == ".blend":  # of up to 3 MB, while the zip has a limit
+            continue
         files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path.read_bytes()
     files[f"{TOP}/blender_manifest.toml"] = manifest(platform, wheels)
     files[f"{TOP}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
