@@ -110,7 +110,7 @@ def eroded_mesh(item):
 
 def thinned(item, faces, views):
     """Leaves about so many triangles of an eroded mesh, small ones where cameras see it from nearby, and
-    joins them to quads. views: where the cameras are. It stays closed."""
+    joins them to quads. views: where the cameras are."""
     mesh = eroded_mesh(item)
     count = len(mesh.polygons)
     values = np.zeros(count, bool)
@@ -121,6 +121,7 @@ def thinned(item, faces, views):
         mesh = _collapsed(mesh, faces / count, np.round(_coarse(mesh, views), 1))
     made = compact(mesh, f"{item.name} Eroded")
     strata_modifier.show_eroded(item, made)
+    made.name = f"{item.name} Eroded"  # the one before had this name
     print(f"{item.name}: {count:,} triangles, {len(made.polygons):,} polygons are left", flush=True)
 
 

@@ -43,7 +43,7 @@ class HeroScenes(unittest.TestCase):
         for bed in filled:
             self.assertTrue(open_edges(bed.data) == 0, bed.name)
         if not filled:
-            eroded = [mesh for mesh in bpy.data.meshes if mesh.name.endswith(" Eroded")]
+            eroded = [mesh for mesh in bpy.data.meshes if " Eroded" in mesh.name]
             self.assertEqual(len(eroded), len(strata))
             for mesh in eroded:
                 self.assertGreater(len(mesh.polygons), 10_000, mesh.name)
