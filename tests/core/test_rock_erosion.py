@@ -17,7 +17,7 @@ from realmodel.core import (
     rock_shape,
 )
 from realmodel.core.base import work
-from realmodel.core.base.triangles import open_edges
+from realmodel.core.base.triangles import edges_of, open_edges
 from realmodel.core.filling import (
     PIECES,
     SHAPES,
@@ -34,6 +34,7 @@ from realmodel.core.filling import (
     scree_within,
 )
 from realmodel.core.filling.erosion import cubic_lattice, winding
+from realmodel.core.structures.shapes.continued import connected
 from solids import box, moved, together, torus, volume
 from test_filling import ball
 
@@ -74,6 +75,18 @@ def test_closed_and_inside_at_any_strength(seed, strength, bumps, kind):
     assert not len(open_edges(*made))
     assert 0 < volume(*made) <= volume(*mesh) * 1.02
     assert not crosses_itself(made)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 10**6), st.integers(6, 30), st.floats(0.3, 1.0))
+def test_an_arch_keeps_its_bridge(seed, beds, strength):
+    """However thick its beds are: the thick base beside it does not count for it."""
+    mesh = rock_shape("arch", 1.0, seed)
+    made = eroded(mesh, Strata(beds=beds, seed=seed), replace(COARSE, strength=strength, faces=20_000))
+    parts = connected(edges_of(made[1])).reshape(-1, len(made[1]))[0]
+    of_top = made[1][parts == parts[made[0][made[1], 2].max(axis=1).argmax()]]
+    assert made[0][:, 2].max() > 0.8 * mesh[0][:, 2].max()
+    assert volume(made[0], of_top) > 0.9 * volume(*made)
 
 
 PRESETS = (

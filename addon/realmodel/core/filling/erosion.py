@@ -35,6 +35,7 @@ _MOST_NODES = 24_000_000  # of the lattice: about a gigabyte
 _MARGIN = 2  # nodes around the mesh
 _DEEPEST = 3.0  # mean beds: of erosion at strength 1
 _LEFT = 0.7  # of the distance from the surface to the innermost place: what erosion can take
+_FINER = 0.7  # of a radius of balls the next one
 _LARGE = 0.12  # of the size of the mesh: beds count as no thicker
 _ONTO = 0.12  # spacings: a surface this near to a node passes through it, for triangles that are no slivers
 _CRUMB = 5e-4  # of the volume: lesser parts that come loose are gone
@@ -227,8 +228,7 @@ def _beside(inside: np.ndarray) -> np.ndarray:
 def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None:
     """Sets the field to that of what is left."""
     inward, spacing = values.inward, lattice.spacing[0]
-    most = _thickness(lattice, values, math.ceil(depth.deepest / spacing))
-    most *= _LEFT
+    most = _LEFT * _thickness(lattice, values)
     chosen = np.flatnonzero((inward > 0) & (inward < np.minimum(most, depth.deepest) + spacing))
     at = tuple(values.index[chosen].T)
     deep, known = np.zeros(lattice.counts, np.float32), np.zeros(lattice.counts, np.float32)
@@ -249,12 +249,20 @@ def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None
     values.field[all_at] = -np.clip(left, -2.0 * spacing, 2.0 * spacing)
 
 
-def _thickness(lattice: Lattice, values: _Values, by: int) -> np.ndarray:
-    """(N,) the greatest distance from the surface within so many nodes: erosion leaves a part of it, so that
-    thin walls and arches stay."""
+def _thickness(lattice: Lattice, values: _Values) -> np.ndarray:
+    """(N,) the radius of about the largest ball inside of the mesh that each node lies in, as far as distances
+    are measured: erosion leaves a part of it, so that thin walls and arches stay beside thick ones (local
+    thickness; T. Hildebrand and P. Ruegsegger 1997)."""
+    at, spacing = tuple(values.index.T), lattice.spacing[0]
     inward = np.zeros(lattice.counts, np.float32)
-    inward[tuple(values.index.T)] = values.inward
-    return greatest_around(inward, by)[tuple(values.index.T)].astype(float)
+    inward[at] = values.inward
+    thickness = np.maximum(values.inward, spacing)
+    radius = float(inward.max())
+    while radius > spacing:
+        reached = greatest_around(inward >= radius, math.ceil(radius / spacing))[at]
+        thickness[reached] = np.maximum(thickness[reached], radius)
+        radius *= _FINER
+    return thickness
 
 
 def greatest_around(field: np.ndarray, by: int) -> np.ndarray:
