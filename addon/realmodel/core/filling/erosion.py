@@ -123,6 +123,8 @@ def eroded_within(
     values = _distances(work, lattice, corners, kept, inside, _DEEPEST * unit * erosion.strength)
     depth = _Depth(beds, hardness_of_beds(beds.count, strata), erosion, unit, strata.seed)
     _erode(work, lattice, values, depth)
+    if not (values.field < 0.0).any():
+        raise InputRefused("erosion leaves nothing of it", advice="choose more faces or less strength")
     with work.phase(0.9, 1.0, "meshing"):
         return meshed(work, lattice, values.field)
 
@@ -250,14 +252,14 @@ def _erode(work: Work, lattice: Lattice, values: _Values, depth: _Depth) -> None
 
 
 def _thickness(lattice: Lattice, values: _Values) -> np.ndarray:
-    """(N,) the radius of about the largest ball inside of the mesh that each node lies in, as far as distances
-    are measured: erosion leaves a part of it, so that thin walls and arches stay beside thick ones (local
-    thickness; T. Hildebrand and P. Ruegsegger 1997)."""
+    """(N,) the radius of about the largest ball inside of the mesh that each node lies in, as far as
+    distances are measured: erosion leaves a part of it, so that thin walls and arches stay beside thick ones
+    (local thickness; T. Hildebrand and P. Ruegsegger 1997)."""
     at, spacing = tuple(values.index.T), lattice.spacing[0]
     inward = np.zeros(lattice.counts, np.float32)
     inward[at] = values.inward
-    thickness = np.maximum(values.inward, spacing)
     radius = float(inward.max())
+    thickness = np.maximum(values.inward, min(radius, spacing))
     while radius > spacing:
         reached = greatest_around(inward >= radius, math.ceil(radius / spacing))[at]
         thickness[reached] = np.maximum(thickness[reached], radius)
