@@ -470,7 +470,7 @@ def badlands(scene):
     parts.sunlight(scene, sun, "#ffc890", 4.8, 900.0)
     parts.sky(scene, sun, "#5b87bf", "#e6d6c6", "#ffdcae", 0.9, 0.6, 4)
     parts.air(9_000.0, "#c8b9b4", 0.8)
-    parts.camera(scene, eye, (eye[0] + 3.0, 100.0, eye[2] - 17.0), 29.0)
+    parts.camera(scene, eye, (eye[0] + 3.0, 100.0, eye[2] - 9.2), 43.5)
 
 
 def _badlands_details(hills, eye):

@@ -35,7 +35,7 @@ def write(scene, items, size=0.0):
         if len(mesh.polygons):
             arrays = arrays_of(mesh)
             wet = wetness(at, *arrays[:2], versions.edge_vertices(mesh), *ends)
-            _put(scene, obj, Layers(projection(mesh, at, arrays, size).uv, wet))
+            _put(scene, obj, BedLayers(projection(mesh, at, arrays, size).uv, wet))
     return size
 
 
@@ -65,7 +65,7 @@ def surface_of(item):
 
 
 @dataclass(eq=False)
-class Layers:
+class BedLayers:
     """What a mesh gets: uv (C, 2) float32, wet (V,) and, of beds, joints (V,). On the surface of the mesh
     that beds fill also what that has there: smooth (F,), slots (F,), -1 elsewhere, uvs (C, 2) and weights
     (V,) by their names. Elsewhere UV maps are along the bedding."""
@@ -80,7 +80,7 @@ class Layers:
 
 
 def of_beds(solids, matrix, surface, joints, threads):
-    """The Layers of new beds, in any thread. solids: their PolygonMesh; matrix: (4, 4) to the scene; surface:
+    """BedLayers of new beds, in any thread. solids: their PolygonMesh; matrix: (4, 4) to the scene; surface:
     as of `surface_of`, both in its coordinates; joints: (V,) of each."""
     scale = abs(np.linalg.det(matrix[:3, :3])) ** (1.0 / 3.0)
     extents = np.concatenate([[s.coordinates.min(axis=0), s.coordinates.max(axis=0)] for s in solids])
@@ -102,7 +102,7 @@ def of_beds(solids, matrix, surface, joints, threads):
         arrays = solid.offsets, solid.corners, solid.corner_edges
         above = solid.bedding.height * solid.bedding.thickness
         uv = box_projection.project(at, arrays, unit, (solid.face_surface >= 0, above)).uv
-        made = Layers(uv, wetness(at, *arrays[:2], solid.edges, *ends), near)
+        made = BedLayers(uv, wetness(at, *arrays[:2], solid.edges, *ends), near)
         _keep(made, solid, surface, *closest)
         found.append(made)
     return found
@@ -130,7 +130,7 @@ def _keep(made, solid, surface, near, away):
 
 
 def finish(scene, beds, layers, slots):
-    """Gives new beds their Layers. slots: materials that the surface of the filled mesh keeps, if any."""
+    """Gives new beds their BedLayers. slots: materials that the surface of the filled mesh keeps, if any."""
     for bed, made in zip(beds, layers, strict=True):
         _put(scene, bed, made)
         mesh = bed.data
