@@ -64,7 +64,7 @@ class _StrataJob(ThreadJob):
         except InputRefused as error:
             self.warnings = [*self.warnings, f"no scree: {error.what}"]
             return None
-        scale = abs(np.linalg.det(self._shape.matrix[:3, :3])) ** (1.0 / 3.0)
+        scale = placing.mean_scale(self._shape.matrix)
         _, rocks = filling.rocks_of_beds(self._beds.count, self._strata.palette, self._strata.seed)
         pieces = [
             (rocks[bed] - 1, (places / scale, of))
@@ -110,9 +110,10 @@ class ErosionJob(_StrataJob):
         (vertices, triangles), joints, heap = made
         count, down = len(triangles), np.zeros(len(vertices))
         if heap is not None:
-            triangles = np.concatenate([triangles, heap[1] + len(vertices)])
-            vertices, down = np.concatenate([vertices, heap[0]]), np.append(down, heap[2])
-            strata_modifier.set_rubble(obj, *heap[3:])
+            of_scree, others, down_scree, *rubble = heap
+            triangles = np.concatenate([triangles, others + len(vertices)])
+            vertices, down = np.concatenate([vertices, of_scree]), np.append(down, down_scree)
+            strata_modifier.set_rubble(obj, *rubble)
         mesh = meshes.triangle_mesh(f"{obj.name} Eroded", vertices, triangles)
         joints = np.append(joints, np.zeros(len(vertices) - len(joints), np.float32))
         mesh.attributes.new(rock_layers.JOINTS, "FLOAT", "POINT").data.foreach_set("value", joints)
@@ -171,9 +172,10 @@ class FillJob(_StrataJob):
             collection.objects.link(bed)
         if heap is not None:
             name = f"{obj.name} Scree"
-            scree = bpy.data.objects.new(name, meshes.triangle_mesh(name, *heap[:2]))
-            strata_modifier.set_rubble(obj, *heap[3:])
-            strata_modifier.put_scree_on(scree, obj, heap[2])
+            vertices, triangles, down, *rubble = heap
+            scree = bpy.data.objects.new(name, meshes.triangle_mesh(name, vertices, triangles))
+            strata_modifier.set_rubble(obj, *rubble)
+            strata_modifier.put_scree_on(scree, obj, down)
             placing.stand_at(scree, obj)
             collection.objects.link(scree)
         beds = list(collection.objects)

@@ -2,6 +2,7 @@
 """Objects that an operation makes beside another or from it: where they stand, and what is selected."""
 
 import bpy
+import numpy as np
 
 
 def stand_at(item, other):
@@ -15,6 +16,11 @@ def stand_at(item, other):
         setattr(item, name, getattr(other, name))
     for constraint in other.constraints:
         item.constraints.copy(constraint)
+
+
+def mean_scale(matrix):
+    """By how much a matrix (4, 4) makes lengths larger, in the geometric mean of the axes."""
+    return abs(np.linalg.det(matrix[:3, :3])) ** (1.0 / 3.0)
 
 
 def hide(item):

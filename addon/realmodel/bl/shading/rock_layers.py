@@ -10,7 +10,7 @@ from ...core.base.work import native_module, on_threads
 from ...core.display import box_projection, polygon_mesh
 from ...core.display.wetness import wetness
 from ..host import versions
-from ..objects import exaggeration, filled_beds, meshes, model_tree, shapes
+from ..objects import exaggeration, filled_beds, meshes, model_tree, placing, shapes
 from ..project import library_rows
 from . import looks, strata_modifier, weathering
 
@@ -82,7 +82,7 @@ class BedLayers:
 def of_beds(solids, matrix, surface, joints, threads):
     """BedLayers of new beds, in any thread. solids: their PolygonMesh; matrix: (4, 4) to the scene; surface:
     as of `surface_of`, both in its coordinates; joints: (V,) of each."""
-    scale = abs(np.linalg.det(matrix[:3, :3])) ** (1.0 / 3.0)
+    scale = placing.mean_scale(matrix)
     extents = np.concatenate([[s.coordinates.min(axis=0), s.coordinates.max(axis=0)] for s in solids])
     unit = float(np.linalg.norm(np.ptp(extents, axis=0)) or 1.0) * scale / looks.UNITS
     places = [placed(solid.coordinates, matrix) for solid in solids]
@@ -226,7 +226,7 @@ def _texture_unit(scene, item):
     """That of the looks of an object at scale 1, in the scene."""
     if filled_beds.BED not in item:
         return looks.diagonal(scene) / looks.UNITS
-    scale = abs(np.linalg.det(exaggeration.true_matrix(item)[:3, :3])) ** (1.0 / 3.0)
+    scale = placing.mean_scale(exaggeration.true_matrix(item))
     return filled_beds.size(item) * scale / looks.UNITS
 
 

@@ -17,7 +17,7 @@ from ...core.project.looks import DEFAULT, LOOKS
 from ..host import caches, versions
 from ..host.geometry_nodes import GeometryNodes
 from ..host.nodes import group_once, modifier_with
-from ..objects import filled_beds, materials, meshes
+from ..objects import filled_beds, materials, meshes, placing
 from ..project import library_rows
 from . import edge_wear, looks, scatter
 
@@ -119,7 +119,7 @@ def put_on(scene, items, given):
             size = filled_beds.size(members[0])
         values = _values(given, _thickness(together, size), size / looks.UNITS)
         for obj in members:
-            scale = abs(np.linalg.det(np.array(obj.matrix_world)[:3, :3])) ** (1.0 / 3.0) or 1.0
+            scale = placing.mean_scale(np.array(obj.matrix_world)) or 1.0
             near = {"Camera": scene.camera if given.near < _FAR else None, "Near": given.near / scale}
             _set(obj, values | near)
     for material in _rocks(items):
@@ -167,14 +167,17 @@ def _thickness(items, size):
 def cost(items, wanted, most, camera=None):
     """The number of subdivisions, at most the one wanted, that makes no more exposed polygons than `most`,
     how many polygons and bytes of memory these are, about, and how far from a camera all are made."""
-    away = np.concatenate([np.zeros(0), *(_distances(obj, camera) for obj in items)])
-    near = _FAR if camera is None or not len(away) else 2.0 * float(away.min())
-    less = np.searchsorted(np.array(_BANDS) * near, away)
+    near, less, corners = _FAR, np.zeros(1, int), np.array([sum(map(_exposed_corners, items))])
+    if camera is not None and corners[0]:
+        away = np.concatenate([_distances(obj, camera) for obj in items])
+        near = 2.0 * float(away.min())
+        less, corners = np.unique(np.searchsorted(np.array(_BANDS) * near, away), return_counts=True)
     polygons = sum(len(obj.data.polygons) for obj in items)
     detail = wanted
     while True:
         level = np.maximum(detail - less, min(detail, 1))
-        exposed = int((4.0 ** (level - 1)).sum())  # a corner makes a polygon, and without any four are one
+        # a corner makes a polygon, and without any four are one
+        exposed = int((corners * 4.0 ** (level - 1)).sum())
         if exposed <= most or not detail:
             return detail, exposed, (exposed + polygons) * _BYTES, near
         detail -= 1
@@ -183,13 +186,16 @@ def cost(items, wanted, most, camera=None):
 _known = caches.new(most=200)  # corners of a mesh that are exposed
 
 
+def _exposed_corners(obj):
+    """How many corners of a block are exposed; a panel asks at each redraw."""
+    key = obj.data.name_full, len(obj.data.loops)
+    if key not in _known:
+        _known[key] = int(np.count_nonzero(_exposed(obj)))
+    return _known[key]
+
+
 def _distances(obj, camera):
-    """(N,) of the exposed corners of a block from a camera; 0 without one."""
-    if camera is None:
-        key = obj.data.name_full, len(obj.data.loops)
-        if key not in _known:
-            _known[key] = int(np.count_nonzero(_exposed(obj)))
-        return np.zeros(_known[key])
+    """(N,) of the exposed corners of a block from a camera."""
     at = meshes.mesh_coordinates(obj.data)[versions.corner_vertices(obj.data)[_exposed(obj)]]
     matrix = np.array(obj.matrix_world)
     return np.linalg.norm(at @ matrix[:3, :3].T + matrix[:3, 3] - camera.matrix_world.translation, axis=1)

@@ -98,13 +98,8 @@ class _Joined:
         levels: np.ndarray,
         shared: SharedCorners,
     ):
-        self.work, self.fields, self.contacts, self.levels, self.shared = (
-            work,
-            fields,
-            contacts,
-            levels,
-            shared,
-        )
+        self.work, self.fields, self.shared = work, fields, shared
+        self.contacts, self.levels = contacts, levels
         self.values = np.concatenate([field.values for field in fields])
         self.middles = np.empty((0, 3))
         self.of_middles = np.empty((len(fields), 0), bool)

@@ -111,7 +111,7 @@ def _check_names_of_data(project: Project, rock: Rock) -> None:
     unit_names = project.names_of_units(rock)
     for code, name in rock.names.items():
         with naming(rock.item):
-            fits(code, "")  # refuses what is no pattern
+            fits(code, "")  # refuses an invalid regular expression
         if not is_name(code) or not isinstance(name, str):
             raise rock.refused(f"'names' must give a name for each name, not {name!r}", "names", advice)
         if name and name not in unit_names:

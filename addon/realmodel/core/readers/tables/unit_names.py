@@ -109,7 +109,7 @@ class UnitNames:
 
 def fits(pattern: str, code: str) -> bool:
     """Whether a code fits a pattern of * and ?, or a regular expression between slashes that finds something
-    in it, whatever the capitals. Raises InputRefused for what is no regular expression."""
+    in it, whatever the capitals. Raises InputRefused for an invalid one."""
     regular = _REGULAR.match(pattern)
     if regular is None:
         return fnmatchcase(code.casefold(), pattern.casefold())
