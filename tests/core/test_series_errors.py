@@ -15,11 +15,14 @@ from realmodel.core import (
     from_loop,
 )
 from realmodel.core.fields import rises
+from realmodel.core.fields.given_kind import Kind, with_variance
 from realmodel.core.project.project_checks import check_project
 from realmodel.core.readers.tables.observations import Observations, read_observed_places
 from realmodel.core.readers.tables.unit_names import UnitNames
 from realmodel.core.settings.data_files import ObservationFile
 
+VALUES = 1e-3  # variance of errors
+NOTHING_KNOWN = Kind(((), ()), 3, 0.0, 0.0, 0.0, [], 1.0, [], [], [], [], 0.0)
 SQUARE = [[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]]
 LID = Surface("lid", vertices=[[*corner, 400.0] for corner in SQUARE], triangles=[[0, 1, 2], [0, 2, 3]])
 
@@ -68,6 +71,38 @@ def test_a_surface_that_is_not_tied_misses_its_contacts_by_their_errors():
     for tie in (True, False):
         missed = np.abs(off(model([Surface("a", points=noisy(), tie=tie)], error=8.0), 0, noisy())).max()
         assert missed > 5.0 if not tie else missed < 1e-6
+
+
+@pytest.mark.parametrize("given", [{"range": 300.0}, {"dip_error": 10.0}, {"error": 8.0, "range": 300.0}])
+@pytest.mark.parametrize("slope", [0.0, 0.1])
+def test_data_on_a_plane_give_the_plane(given, slope):
+    points, _ = places(20, 1)
+    points[:, 2] = 100 + slope * points[:, 0]
+    dips = SpaceDips(places(8, 3)[0], np.tile([-slope, 0, 1.0], (8, 1)))
+    series = Series("s", dips=dips, resolution=60.0, **given)
+    surfaces = [Surface("a", points=points, series="s"), LID]
+    rock = Rock("r", surfaces, SQUARE, edge_length=200.0, base_elevation=-200.0, series=[series])
+    assert abs(off(build(Project("p", [rock]), cells="blocks"), 0, points)).max() < 1e-6
+
+
+@pytest.mark.parametrize("draws", [0.3, 0.9, 0.99])
+def test_the_variance_on_which_errors_depend_is_found(draws):
+    """Also where a round draws little nearer to it."""
+
+    def solve(kind):
+        scale = VALUES / kind.value_error
+        return {"kind": tuple(kind._replace(scale=0.01 * (scale / 0.01) ** draws))}
+
+    _, kind = with_variance(NOTHING_KNOWN, VALUES, 0.0, solve)
+    assert abs(kind.scale - 0.01) < 0.02 * 0.01
+
+
+def test_where_errors_explain_all_data_nothing_else_is_left():
+    kind = NOTHING_KNOWN
+    _, kind = with_variance(
+        kind, VALUES, 0.0, lambda kind: {"kind": tuple(kind._replace(scale=0.3 * VALUES / kind.value_error))}
+    )
+    assert kind.scale < 1e-6 * VALUES
 
 
 def test_dips_that_are_off_count_less():

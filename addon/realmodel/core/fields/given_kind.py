@@ -15,9 +15,11 @@ from .lattice import Lattice
 
 _ROUNDS = 12  # in which the variance is found, on which the errors depend
 _NEAR = 0.02  # of the variance: then it is found
+_LONGEST = math.log(100.0)  # step of the logarithm of the variance
 # Of Matern's covariance with smoothness 7/2 the distance where it is 0.05, in units of its length.
 _PRACTICAL = 6.88
 _LEAST_ERRORS = 1e-10, 1e-8  # of values and slopes with a range: less would be singular to rounding
+_NOTHING = 1e6  # of the variance of errors: so little of it is nothing
 _ONE_WAVE = [1.0] * 7  # normal numbers that make its frequency; its size is 0
 
 
@@ -82,14 +84,35 @@ def solved_as_given(
         kind = kind.with_range(length / (0.5 * float(norm(high - low))))
         kind = kind._replace(value_error=_LEAST_ERRORS[0], slope_error=_LEAST_ERRORS[1])
         kind = kind._replace(scale=solve(kind)["kind"][6])
-    for _ in range(_ROUNDS):
-        before = kind.scale
-        solution = solve(kind.with_errors(values, slopes))
-        kind = Kind(*solution["kind"])
-        if abs(kind.scale - before) < _NEAR * before:
-            break
-    if found.even:
+    if kind.scale == 0.0:  # the drift alone meets all data, and is the field whatever is given
+        return likely
+    solution, kind = with_variance(kind, values, slopes, solve)
+    if found.even and kind.scale > 0.0:
         even_error = found.even_error * found.scale / kind.scale
         solution = solve(kind._replace(even=found.even, even_error=even_error))
         solution["kind"] = tuple(Kind(*solution["kind"])._replace(scale=kind.scale))
     return solution
+
+
+def with_variance(kind: Kind, values: float, slopes: float, solve: Solve) -> tuple[dict[str, Any], Kind]:
+    """The solution of a kind with these variances of errors, and its kind with the variance of the kernel
+    that follows from them: by secants of the logarithms of what goes into a round and what comes out. Where
+    errors explain all that the data show, it falls until nothing but the drift is left."""
+    last: tuple[float, float] | None = None  # a logarithm, and by how much another came out
+    for _ in range(_ROUNDS):
+        before = math.log(kind.scale)
+        solution = solve(kind.with_errors(values, slopes))
+        kind = Kind(*solution["kind"])
+        if kind.scale == 0.0:
+            break
+        step = off = math.log(kind.scale) - before
+        if last is not None and (off - last[1]) * (before - last[0]) < 0:
+            step = -off * (before - last[0]) / (off - last[1])
+        elif last is not None:
+            step = math.copysign(_LONGEST, off)
+        step = max(-_LONGEST, min(_LONGEST, step))
+        kind = kind._replace(scale=math.exp(before + step))
+        if abs(step) < _NEAR or kind.scale * _NOTHING < values:
+            break
+        last = before, off
+    return solution, kind
