@@ -55,6 +55,7 @@ unset PYTHONDONTWRITEBYTECODE # hundreds of interpreters would compile all modul
 # Steps are beside one another: threads that have nothing to do must not spin. The add-on sees to that itself but
 # where OpenMP is loaded before it, as in Debian's Blender; the C++ tests do not.
 export OMP_WAIT_POLICY=passive
+export OPENBLAS_NUM_THREADS=1 # the add-on has no use for its threads, which spin as NumPy is loaded
 # The interpreter inside Debian's Blender; the tests of the core run on the same version.
 python=/usr/bin/python3
 [[ -x $python ]] || python=$(command -v python3)

@@ -334,7 +334,7 @@ OwnedComplex terrain(int n, bool blocks) {
 
 TEST(Topology, PassesTerrainsWithTheSameFindingsForAnyThreads) {
     for (const bool blocks : {false, true}) {
-        auto model = terrain(50, blocks);
+        auto model = terrain(kSanitized ? 25 : 50, blocks);
         EXPECT_EQ(failed(check(model)), Names{});
         for (std::size_t f = 100; f < model.loops.size(); f += 997)
             std::reverse(model.loops[f].begin(), model.loops[f].end());
