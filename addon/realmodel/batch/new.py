@@ -29,6 +29,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     for table in _TABLES:
         parser.add_argument(f"--{table}", type=Path, metavar="F", help=f"table of the {table} of boreholes")
     parser.add_argument("--block", metavar="NAME", help="column with the units, in tables of boreholes")
+    parser.add_argument(
+        "--names", type=Path, metavar="F", help="table of two columns, code and unit: what codes mean"
+    )
     parser.add_argument("--map", type=Path, metavar="F", help="polygons of units: a geological map")
     parser.add_argument("--map-layer", metavar="NAME", help="layer of the map")
     parser.add_argument(
@@ -80,6 +83,7 @@ def run(options: argparse.Namespace) -> None:
         ground=options.ground,
         region=options.region,
         dips=options.dips,
+        names=options.names,
         units=options.units,
         crs=options.crs,
         name=options.out.resolve().name,

@@ -8,6 +8,7 @@ from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, 
 from ...core.readers import (
     Picks,
     UnitNames,
+    dip_warnings,
     names_units,
     read_dips,
     read_dips_of_rock,
@@ -237,6 +238,8 @@ def _read(scene, rock, tables, units):
         of_rock.append(named)
         left_out += not_used
     of_series = [read_space_dips(file, unit) for file in tables.series_dips]
+    for file in (*tables.dips, *tables.rock_dips, *tables.series_dips):
+        warnings += dip_warnings(file, unit)
     known_names = {*units.surfaces, *units.blocks, *units.bodies}
     codes = [entry.block for entry in left_out if entry.kind == "unknown_block"]
     meant = {}

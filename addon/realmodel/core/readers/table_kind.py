@@ -15,6 +15,7 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from .formats import HOLES, format_of
 from .hole_files import read_hole_files
+from .tables.attitudes import COMBINED, is_combined
 from .tables.dialects.workbook import is_workbook, sheet_names
 from .tables.dips import DIPS, NAMED
 from .tables.hole_data import MEANINGS
@@ -119,6 +120,7 @@ def with_sheets(boreholes: Boreholes) -> tuple[Boreholes, dict[str, str]]:
 def _are_dips(columns: Mapping[str, str]) -> bool:
     meanings = columns.keys()
     has_angles = "dip" in meanings and not {"dip_direction", "strike"}.isdisjoint(meanings)
+    has_angles = has_angles or any(is_combined(columns.get(name, "")) for name in COMBINED)
     return {"x", "y"} <= meanings and ({"slope_x", "slope_y"} <= meanings or has_angles)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -141,6 +141,7 @@ OBSERVED = {
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
+_LOOKED_AT = 1000  # rows that tell the decimal sign
 _SEPARATORS = ",;|\t "  # a row of these alone is empty, as Excel writes them
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _MOST_TURNED = 720.0  # degrees
@@ -298,14 +299,7 @@ def rows(
     _require(given, header, needed)
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
-    decimal = given.decimal or "."
-    if given.decimal is None:
-        entries = list(_parts(body, separator))
-        has_points = any("." in entry and is_number(entry) for entry in entries)
-        of_commas = [entry for entry in entries if "," in entry and is_number(entry, ",")]
-        # in quotes between commas 1,234 may have a sign between thousands
-        has_commas = any(separator != "," or not _GROUPED.fullmatch(entry) for entry in of_commas)
-        decimal = "," if has_commas and not has_points else "."
+    decimal = given.decimal or _decimal(_parts(body, separator), separator)
     total = max(body.count("\n"), 1)
     for number, line in enumerate(body.split("\n")):
         if number % _STEP == 0:
@@ -314,6 +308,16 @@ def rows(
         if not stripped.strip(_SEPARATORS) or stripped.startswith("#"):
             continue
         yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
+
+
+def _decimal(entries: Iterable[str], separator: str) -> str:
+    """The decimal sign of a table by some of its entries: a comma where numbers have one and none a point."""
+    every = list(entries)
+    has_points = any("." in entry and is_number(entry) for entry in every)
+    of_commas = [entry for entry in every if "," in entry and is_number(entry, ",")]
+    # in quotes between commas 1,234 may have a sign between thousands
+    has_commas = any(separator != "," or not _GROUPED.fullmatch(entry) for entry in of_commas)
+    return "," if has_commas and not has_points else "."
 
 
 def _header(given: Reading, file: Path, layout: TableLayout, known: Columns) -> TableHeader:
@@ -330,7 +334,9 @@ def sheet_rows(
     units = {meaning: sheet.units[at] for meaning, at in columns.items() if at < len(sheet.units)}
     header = TableHeader(file, sheet.names, sheet.line, columns, units, sheet.row_name)
     _require(given, header, needed)
-    return [Row(header, line, entries) for line, entries in sheet.rows]
+    entries = (row[at] for _, row in sheet.rows[:_LOOKED_AT] for at in columns.values() if at < len(row))
+    decimal = given.decimal or _decimal(entries, ",")
+    return [Row(header, line, entries, decimal) for line, entries in sheet.rows]
 
 
 def rows_in_one_unit(
