@@ -80,6 +80,8 @@ def table_kind(
         return "survey"
     if {"hole", "from", "to"} <= logged.keys():
         return "assays"
+    if {"hole", "block"} <= logged.keys() and not {"from", "to"}.isdisjoint(logged):
+        return "intervals"
     raise InputRefused(
         f"its columns do not say whether it has {', '.join(TABLE_KINDS[:-1])} or {TABLE_KINDS[-1]}",
         file=file,

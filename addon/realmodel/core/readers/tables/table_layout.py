@@ -22,6 +22,7 @@ _SIGNS = "#!%/"
 _COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:([,.'’\xa0\u202f ])\d{3})(?:\1\d{3})*(?:[.,]\d*)?")
+WITH_UNIT = re.compile(r"([+-]?\d[\d.,]*)\s*([^\W\d][\w.]*|'|\")")  # a number with its unit
 _COMMENT = re.compile(r"(^|(?<=[\s,;|]))#.*$")
 _TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
 _NAMES_SHOWN = 12
@@ -74,6 +75,12 @@ def is_any_number(entry: str) -> bool:
     """Whether an entry of a row is a number, with a decimal point or comma, or in groups of thousands. Where
     commas separate, an entry that has one stands in quotes."""
     return is_number(entry) or is_number(entry, ",") or bool(_GROUPED.fullmatch(entry))
+
+
+def _has_unit(entry: str) -> bool:
+    """Whether an entry is a length with its unit."""
+    written = WITH_UNIT.fullmatch(entry)
+    return written is not None and unit_of(written[2]) is not None
 
 
 @dataclass(frozen=True)
@@ -151,7 +158,7 @@ def table_layout(
     first, headings, count = len(lines), [], 0
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
-        numbers = sum(is_any_number(entry) for entry in entries)
+        numbers = sum(is_any_number(entry) or _has_unit(entry) for entry in entries)
         if numbers and not (
             numbers < expected.numbers and any(plain_name(entry) in known_names for entry in entries)
         ):
