@@ -7,7 +7,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Protocol
 
@@ -287,15 +287,15 @@ class Row:
         return self.with_values(values)
 
     def text(self, column: str) -> str:
-        at = self.columns[column]
+        at = self.header.columns[column]
         if at >= len(self.entries):
             raise self.refuse(f"{at + 1} values are needed, there are {len(self.entries)}")
         return self.entries[at]
 
     def has(self, column: str) -> bool:
         """Whether there is such a column, with a value in this row."""
-        at = self.columns.get(column, len(self.entries))
-        return at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
+        at = self.header.columns.get(column)
+        return at is not None and at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
 
     @property
     def is_used(self) -> bool:
@@ -338,6 +338,8 @@ def rows(
     table = _opened(given, file, known, needed, sheet)
     layout = table.layout
     header = _header(given, file, layout, known)
+    if sheet is not None:  # lines of several sheets are told apart
+        header = replace(header, file=file.with_name(f"{file.name}[{sheet}]"))
     _require(given, header, needed)
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
@@ -523,6 +525,7 @@ def _parts(body: str, separator: str) -> Iterator[str]:
         yield from fields(line, separator)
 
 
+@lru_cache(maxsize=1 << 16)
 def normalized_name(name: str) -> str:
     """A name, for comparing, in small letters, and with one sign for the spaces, hyphens and underscores that
     may part its words."""
