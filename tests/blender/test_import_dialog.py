@@ -11,10 +11,15 @@ from panel_case import PanelCase, ops
 from realmodel.bl.field import field_tables, profiles
 from realmodel.bl.project import reading_text
 from realmodel.core import InputRefused
+from realmodel.core.base.packages import vendored
 from realmodel.core.readers import preview_table
+from realmodel.operators.boreholes import shown_kind
 from realmodel.operators.chosen_tables import ChosenTables
-from realmodel.props_import import IGNORED
+from realmodel.operators.imports import previews
+from realmodel.props_import import IGNORED, OF_HOLES
 from realmodel.ui.panel import wrapped
+
+LOG = ([0, 4, "Sand"], [4, 6, "Ton"])
 
 
 def headings(path, columns, of="points"):
@@ -62,6 +67,47 @@ class Menus(PanelCase):
             directory=str(self.folder), files=[{"name": name} for name in tables], columns=columns
         )
         self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["Ton", "Sand"])
+
+    def workbook(self, **more):
+        openpyxl = vendored("openpyxl", "openpyxl", "writing a workbook", by_its_name=True)
+        book = openpyxl.Workbook()
+        book.remove(book.active)
+        sheets = {
+            "Notes": [["drilled in May"], ["by two rigs"]],
+            "Holes": [["BHID", "X", "Y", "Z"], ["B1", 0, 0, 9], ["B2", 5, 0, 9]],
+            "Logs": [["BHID", "From", "To", "Code"], *[[h, *i] for h in ("B1", "B2") for i in LOG]],
+        }
+        for name, rows in {**sheets, **more}.items():
+            sheet = book.create_sheet(name)
+            for row in rows:
+                sheet.append(row)
+        path = self.folder / "site.xlsx"
+        book.save(path)
+        return path
+
+    def test_sheets_of_a_workbook(self):
+        """Each has its own menus, and they are read together."""
+        path = self.workbook()
+        self.assertEqual(field_tables.hole_sheets(path), {"Holes": "collars", "Logs": "intervals"})
+        shown = list(previews(SimpleNamespace(of=OF_HOLES, filepath=str(path), files=[], directory="")))
+        self.assertEqual([preview.title for preview in shown], ["site.xlsx[Holes]", "site.xlsx[Logs]"])
+        self.assertEqual(field_tables.columns_of(shown[1])["block"], "Code")
+        said = shown_kind(path, "")
+        self.assertEqual(said[0], "boreholes")
+        self.assertEqual(list(said[2]), ["Holes: collars", "Logs: intervals"])
+        ops.boreholes_read(filepath=str(path))
+        self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["Ton", "Sand"])
+
+    def test_a_row_of_a_sheet_is_left_out(self):
+        path = self.workbook(Logs=[["BHID", "From", "To", "Code"], ["B1", 0, 4, "Sand"], ["B2", 0, 3, "Ton"]])
+        ops.boreholes_read(filepath=str(path), left_out="site.xlsx[Logs]:3")
+        self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["Sand"])
+
+    def test_sheets_are_chosen(self):
+        path = self.workbook(Other=[["BHID", "From", "To", "Code"], ["B1", 0, 4, "Sand"]])
+        self.refused(ops.boreholes_read, "both have intervals", filepath=str(path))
+        ops.boreholes_read(filepath=str(path), layer="Holes; Other")
+        self.assertEqual([row.name for row in self.model.rocks[0].surfaces], ["Sand"])
 
     def test_an_ignored_column_of_field_data(self):
         """Whichever it is, it is not read; one that another table has is not ignored in silence."""

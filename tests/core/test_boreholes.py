@@ -334,6 +334,10 @@ def test_a_workbook_holds_all_tables(tmp_path):
         read_boreholes(twice)
     with pytest.raises(InputRefused, match="no sheet has the columns"):
         read_boreholes(workbook(tmp_path / "none.xlsx", Notes=sheets["Notes"]))
+    chosen = ";".join(name for name in sheets if name != "Notes")
+    assert len(read_boreholes(twice, layer=chosen).intervals) == len(read_boreholes(file).intervals)
+    with pytest.raises(InputRefused, match="no sheet 'Nothing'"):
+        read_boreholes(twice, layer="Nothing")
 
 
 @pytest.mark.parametrize(("of_collars", "of_log"), [("1", "1.0"), ("007", "7"), ("12", "0012"), ("7.0", "7")])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that hold all tables of boreholes: AGS and others, by small reconstructions."""
 
+import csv
 import re
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from realmodel.core import Boreholes, InputRefused, UsageError, build, load_project, read_boreholes
 from realmodel.core.readers import read_picks, table_contents, table_kind
 from realmodel.core.readers.hole_values import read_interval_values
+from realmodel.core.readers.tables.table_layout import is_number
 from test_reported_boreholes import LOG, PLACES, assert_layers
 
 PROJECT = """format = 1
@@ -86,6 +88,30 @@ def test_ags(write, content):
     assert list(found.collars) == ["hole", "x", "y", "z", "end"] and len(found.collars) == 5
     assert list(found.intervals) == ["hole", "from", "to", "block"] and len(found.intervals) == 15
     assert len(found.picks) == len(found.survey) == len(found.problems) == len(found.warnings) == 0
+
+
+def rewritten(text, separator, decimal, quotes):
+    """AGS as a spreadsheet saves it that was opened as a table."""
+    lines = []
+    for row in csv.reader(text.splitlines()):
+        entries = [entry.replace(".", decimal) if is_number(entry) else entry for entry in row]
+        mark = '"' if quotes else ""
+        lines.append(separator.join(f"{mark}{entry.replace(chr(34), '')}{mark}" for entry in entries))
+    longest = max(map(len, csv.reader(text.splitlines())))
+    return "\r\n".join(line + separator * (longest - 1 - line.count(separator)) for line in lines)
+
+
+@pytest.mark.parametrize("quotes", [False, True])
+@pytest.mark.parametrize("signs", [";,", ";.", "\t,", "\t.", ",."])
+@pytest.mark.parametrize("content", [ags4(by=1.2345), ags3()])
+def test_ags_of_a_spreadsheet(write, content, signs, quotes):
+    plain = content.replace("CLAY, sandy", "CLAY sandy")
+    wanted = read_boreholes(write("site.ags", plain))
+    found = read_boreholes(write("site.ags", rewritten(plain, *signs, quotes)))
+    for table in ("collars", "intervals"):
+        for name, column in getattr(wanted, table).items():
+            np.testing.assert_array_equal(getattr(found, table)[name], column)
+    assert found.problems == []
 
 
 def test_spaces_count_where_a_text_of_ags_goes_on(write):

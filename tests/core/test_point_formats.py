@@ -236,6 +236,23 @@ def test_headers_of_other_programs(write, text):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "INLINE :  100 XLINE :  7   1.0  2.0  3.5\nINLINE :  101 XLINE :  8   4.0  5.0  6.5\n",
+        "INLINE: 100 XLINE: 7 1.0 2.0 3.5\nINLINE: 101 XLINE: 8 4.0 5.0 6.5\n",
+        "/ Geosoft\n/ X Y Z\nLine 10\n 1.0 2.0 3.5\nTie 20\n 4.0 5.0 6.5\n",
+        "2\n1.0 2.0 3.5 255 0 0\n4.0 5.0 6.5 255 0 0\n",
+        "//X Y Z R G B\n2\n1.0 2.0 3.5 255 0 0\n4.0 5.0 6.5 255 0 0\n",
+        '"x" "y" "z"\n"1" 1 2 3.5\n"2" 4 5 6.5\n',
+        "x y z\n1,0 2,0 3,5\n4,0 5,0 6,5\n",
+        "Point,Northing,Easting,Elevation\n7,2,1,3.5\n9,5,4,6.5\n",
+    ],
+)
+def test_points_of_other_programs(write, text):
+    assert read_points(write("p.txt", text)).xyz.tolist() == [[1, 2, 3.5], [4, 5, 6.5]]
+
+
+@pytest.mark.parametrize(
     "rows",
     [
         "451,234.5;5,932,425;1,599",

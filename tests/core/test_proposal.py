@@ -248,9 +248,40 @@ def test_codes_mean_what_names_say(tmp_path):
     assert project.proposal.order == ["Rock", "Chalk", "Alluvium", "Soil"]
     assert "X*" not in project.rocks[0].names
     assert build(project).observed().share == 1.0
-    load_project(project.save(tmp_path / "saved"))
+    saved = load_project(project.save(tmp_path / "saved"))
+    assert saved.rocks[0].names == project.rocks[0].names
+    assert build(saved).observed().share == 1.0
     with pytest.raises(InputRefused, match="no regular expression"):
         propose_project(boreholes=tables, names={"/(/": "Chalk"})
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Qal*,Alluvium\nS1,Soil\n/^k[0-9]$/,Chalk\nLC,\n",
+        "code;unit\nQal*;Alluvium\nS1;Soil\n/^k[0-9]$/;Chalk\nLC;\nX9;not there\n",
+        "ID\tUnit\tCode\n1\tAlluvium\tQal*\n2\tSoil\tS1\n3\tChalk\tk7\n4\t\tLC\n",
+    ],
+)
+def test_meanings_of_codes_from_a_table(tmp_path, text):
+    hole = [("S1", 2), ("LC", 1), ("Qal-2", 3), ("Qal old", 2), ("k7", 18), ("Rock", 20)]
+    tables = write_tables(tmp_path, [hole] * 9)
+    (tmp_path / "codes.csv").write_text(text)
+    options = [f"--{kind}={file}" for kind, file in tables.items()]
+    assert run_new(*options, f"--names={tmp_path / 'codes.csv'}", f"--out={tmp_path / 'out'}").returncode == 0
+    order = json.loads((tmp_path / "out/proposal.json").read_text())["order"]
+    assert order == ["Rock", "Chalk", "Alluvium", "Soil"]
+    assert build(load_project(tmp_path / "out/project.toml")).observed().share == 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "said"), [("S1\n", "a code and a unit"), ("a,B\na,C\n", "'a' means 'B' and 'C'")]
+)
+def test_tables_of_codes_that_are_refused(tmp_path, text, said):
+    tables = write_tables(tmp_path, [PLAIN] * 9)
+    (tmp_path / "codes.csv").write_text(text)
+    with pytest.raises(InputRefused, match=said):
+        propose_project(boreholes=tables, names=tmp_path / "codes.csv")
 
 
 def test_boreholes_are_given_in_one_way(tmp_path):

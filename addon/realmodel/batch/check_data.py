@@ -45,6 +45,7 @@ def _problems(project: Project) -> tuple[dict[str, list[str]], int]:
     from ..core.readers.tables.hole_problems import LEFT_OUT, NOT_REACHED, problem_warnings
     from ..core.readers.tables.observations import left_out_of
     from ..core.surfaces.field_data import read_field_data
+    from ..core.surfaces.prepare import table_warnings
     from ..core.surfaces.surface_input import SurfaceInput
 
     listed: dict[str, list[str]] = {}
@@ -70,7 +71,7 @@ def _problems(project: Project) -> tuple[dict[str, list[str]], int]:
         lost = [problem for problem in problems if problem.action == LEFT_OUT and problem.kind != NOT_REACHED]
         left_out += len(others) + len(lost)
         listed.setdefault(rock.item, []).extend(f"{text} ({LEFT_OUT})" for text in others)
-        sentences = [*field.picks.warnings, *field.map_warnings]
+        sentences = [*field.picks.warnings, *field.map_warnings, *table_warnings(rock, project.units)]
         warn([text for text in sentences if text not in problem_warnings(problems)], rock.item)
         for surface, met in field.surfaces:
             if surface.has_points:

@@ -4,10 +4,15 @@
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from . import PROGRAM
 from .options import parse as parse_build
+
+if TYPE_CHECKING:
+    from ..core.proposal.proposal import ProposedProject
 
 _TABLES = ("collars", "survey", "intervals", "picks")
 _USAGE = f"""{PROGRAM} new FILE --out FOLDER [options]
@@ -29,6 +34,16 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     for table in _TABLES:
         parser.add_argument(f"--{table}", type=Path, metavar="F", help=f"table of the {table} of boreholes")
     parser.add_argument("--block", metavar="NAME", help="column with the units, in tables of boreholes")
+    parser.add_argument(
+        "--column",
+        metavar="MEANING=NAME",
+        action="append",
+        default=[],
+        help="column of a table of boreholes that is called otherwise, such as z=ZCOORDB; may be repeated",
+    )
+    parser.add_argument(
+        "--names", type=Path, metavar="F", help="table of two columns, code and unit: what codes mean"
+    )
     parser.add_argument("--map", type=Path, metavar="F", help="polygons of units: a geological map")
     parser.add_argument("--map-layer", metavar="NAME", help="layer of the map")
     parser.add_argument(
@@ -55,9 +70,35 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return options
 
 
+def _column(text: str) -> tuple[str, str | int]:
+    """(meaning, name or number) of --column. Raises UsageError."""
+    from ..core import UsageError
+
+    meaning, sign, name = text.partition("=")
+    if not sign or not name.strip():
+        raise UsageError(f"--column {text}: write it as --column z=ZCOORDB")
+    return meaning.strip(), int(name) if name.strip().isdecimal() else name.strip()
+
+
+def _proposed(**keys: Any) -> ProposedProject:
+    """propose_project; what a refusal says to write in a project file it says as options. Raises
+    RealModelError."""
+    from ..core import InputRefused, propose_project
+
+    try:
+        return propose_project(**keys)
+    except InputRefused as error:
+        said = re.sub(r'columns = \{ (\w+) = "([^"]*)" \}', r'--column \1="\2"', error.advice or "")
+        if said == (error.advice or ""):
+            raise
+        raise InputRefused(
+            error.what, file=error.file, line=error.line, item=error.item, advice=said
+        ) from error
+
+
 def run(options: argparse.Namespace) -> None:
     """Writes the folder, and builds its project where outputs are named. Raises RealModelError."""
-    from ..core import UsageError, propose_project
+    from ..core import UsageError
     from ..core.proposal.folder import require_new
     from .run import run as run_build
 
@@ -70,16 +111,19 @@ def run(options: argparse.Namespace) -> None:
     if map_keys and options.map is None:
         raise UsageError("--map-layer and --map-block go with --map")
     boreholes = {"file": options.file} if options.file else tables
-    if options.block is not None:
+    columns = dict(_column(text) for text in options.column)
+    columns |= {} if options.block is None else {"block": options.block}
+    if columns:
         if not boreholes:
-            raise UsageError("--block goes with boreholes")
-        boreholes["columns"] = {"block": options.block}
-    project = propose_project(
+            raise UsageError("--block and --column go with boreholes")
+        boreholes["columns"] = columns
+    project = _proposed(
         boreholes=boreholes or None,
         map=map_keys or None,
         ground=options.ground,
         region=options.region,
         dips=options.dips,
+        names=options.names,
         units=options.units,
         crs=options.crs,
         name=options.out.resolve().name,

@@ -202,7 +202,7 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
             columns, problem = reading_text.of_named(self.named_columns()), ""
         except InputRefused as error:
             columns, problem = self.columns, str(error)
-        self.draw_tables(layout, lambda path: self._said(path, columns))
+        self.draw_tables(layout, lambda preview: self._said(preview.file, columns, preview.sheet))
         drawn = [preview.file for preview in self._previews[:SHOWN]]
         self._draw_kinds(layout.column(align=True), [path for path in shown if path not in drawn], LETTERS)
         for text, icon in [(problem, "ERROR")] if problem else self._said_of_all(context):
@@ -219,9 +219,9 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
                 lines.active = False
                 message(lines, text, icon=icon, most=most)
 
-    def _said(self, path, columns):
-        """(text, icon) of what a file is taken for, and of what is read of it."""
-        text, icon, contained = shown_kind(path, columns, self.map_layer, self.map_block)
+    def _said(self, path, columns, sheet=None):
+        """(text, icon) of what a file, or a sheet of it, is taken for, and of what is read of it."""
+        text, icon, contained = shown_kind(path, columns, self.map_layer, self.map_block, sheet)
         return [(text, icon), *((part, "BLANK1") for part in contained)]
 
     def _said_of_all(self, context):
@@ -261,20 +261,23 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
         return True  # a file of any ending; what the chosen tables are is drawn anew
 
 
-def shown_kind(path, columns, map_layer="", map_block=""):
-    """What a chosen file is taken for, an icon, and sentences of what is read of it."""
-    key = stored_arrays.file_stamp(path), columns, map_layer, map_block
+def shown_kind(path, columns, map_layer="", map_block="", sheet=None):
+    """What a chosen file, or a sheet of it, is taken for, an icon, and sentences of what is read of it."""
+    key = stored_arrays.file_stamp(path), columns, map_layer, map_block, sheet
     if key not in _kinds:
         try:
             named = reading_text.named_columns(columns)
             kind = "boreholes" if field_tables.has_holes(path) else None
             kind = "log" if kind and is_log(path) else kind
             kind = "map" if field_tables.is_map(path) else kind
-            if kind == "map":
+            sheets = {} if sheet is not None else field_tables.hole_sheets(path)
+            if sheets:
+                kind, contained = "boreholes", [f"{name}: {of}" for name, of in sheets.items()]
+            elif kind == "map":
                 contained = _map_contents(path, map_layer.strip() or None, map_block.strip())
             else:
-                contained = () if kind else _contained(*table_contents(path, named))
-            _kinds[key] = kind or table_kind(path, named), "CHECKMARK", contained
+                contained = () if kind else _contained(*table_contents(path, named, sheet))
+            _kinds[key] = kind or table_kind(path, named, sheet), "CHECKMARK", contained
         except RealModelError as error:
             _kinds[key] = error.what, "ERROR", ()
     return _kinds[key]

@@ -78,7 +78,8 @@ class ChosenTables(TableDialog, FilesImportHelper):
     )
     layer: StringProperty(
         name="Layer",
-        description="Object of an OMF or geoh5 file with the boreholes. Empty: all boreholes of the file",
+        description="Object of an OMF or geoh5 file with the boreholes, or the sheets of a workbook, with "
+        "semicolons. Empty: all boreholes of the file",
     )
     collars: StringProperty(
         name="Collars",
@@ -166,7 +167,7 @@ class ChosenTables(TableDialog, FilesImportHelper):
         """{meaning: column} of those that are called otherwise than usually, as they were typed or chosen in
         the menus; False for what is ignored. Raises InputRefused where tables contradict one another."""
         columns = reading_text.named_columns(self.columns)
-        chosen = [(self.columns_of(p.file), self.understood(p)) for p in self._previews]
+        chosen = [(self.columns_of(p.key), self.understood(p)) for p in self._previews]
         for of_table, usual in chosen:
             columns |= {m: name for m, name in of_table.items() if usual.get(m) != name}
         columns |= {m: False for of_table, usual in chosen for m in usual if m not in of_table}

@@ -52,9 +52,9 @@ class TableDialog:
             for number, name in enumerate(preview.names, 1):
                 heading = self.headings.add()
                 is_name = preview.names.count(name) == 1 and not name.isdecimal()
-                heading.file, heading.of = str(preview.file), self.of
+                heading.file, heading.of = preview.key, self.of
                 heading.column = name if is_name else str(number)
-            self._mean(preview.file, columns)
+            self._mean(preview.key, columns)
         self._before = self._meanings()
         return reading
 
@@ -91,10 +91,10 @@ class TableDialog:
         one. reading: the other import options."""
         new = []
         for preview in self._previews if self.options.is_invoke else ():
-            columns, header = self.columns_of(preview.file), tuple(preview.names)
+            columns, header = self.columns_of(preview.key), tuple(preview.names)
             known = profiles.of_header(self.of, header)
             if preview.has_header and (known or reading or columns != self.understood(preview)):
-                name = preview.file.stem if known is None else known.name
+                name = (preview.sheet or preview.file.stem) if known is None else known.name
                 new.append(profiles.ImportProfile(name, self.of, header, columns, dict(reading)))
         if new:
             try:
@@ -103,18 +103,18 @@ class TableDialog:
                 self.report({"WARNING"}, f"the choices are not remembered: {error}")
 
     def draw_tables(self, layout, said):
-        """said(path): (text, icon) of each message about a table."""
+        """said(preview): (text, icon) of each message about a table."""
         for preview in self._previews[:SHOWN]:
             box = layout.box()
-            box.label(text=preview.file.name, icon="FILE")
+            box.label(text=preview.title, icon="FILE")
             self._draw_table(box, preview)
-            for text, icon in said(preview.file):
+            for text, icon in said(preview):
                 message(box.column(align=True), text, icon=icon, most=LETTERS)
         if len(self._previews) > SHOWN:
             layout.label(text=f"and {counted(len(self._previews) - SHOWN, 'more table')}")
 
     def _draw_table(self, layout, preview):
-        headings = self.headings_of(preview.file)
+        headings = self.headings_of(preview.key)
         for begin in range(0, len(headings), _BESIDE):
             row = layout.row(align=True)
             for number, heading in enumerate(headings[begin : begin + _BESIDE], begin):

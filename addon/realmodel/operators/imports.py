@@ -12,6 +12,7 @@ from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl.display import bodies
+from ..bl.field import field_tables
 from ..bl.host import caches, notices
 from ..bl.objects import shapes, viewports
 from ..bl.objects.stored_arrays import file_stamp
@@ -45,7 +46,7 @@ from ..core.readers.tables.hole_tables import normalized_name
 from ..core.settings.data_files import MESH_READING, READING
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
-from ..props_import import AXES, OF_POINTS, UNITS
+from ..props_import import AXES, OF_HOLES, OF_POINTS, UNITS
 from ..props_schema import properties_of
 from ..registration import drop_handler
 from ..ui import panel
@@ -96,8 +97,12 @@ class FilesImportHelper(ImportHelper):
 
 
 def previews(properties):
-    """Previews of the tables among the chosen files."""
+    """Previews of the tables among the chosen files, and of the sheets of workbooks with boreholes."""
     for path in chosen_files(properties):
+        sheets = field_tables.hole_sheets(path) if properties.of == OF_HOLES and os.path.isfile(path) else ()
+        yield from (preview_table(path, sheet=sheet) for sheet in sheets)
+        if sheets:
+            continue
         if os.path.isfile(path) and path.suffix.lower() in endings(TABLE):
             with contextlib.suppress(InputRefused):  # files that are no tables are refused when they are read
                 if not (is_mesh_file(path) or objects_in(path)):
@@ -242,7 +247,7 @@ class REALMODEL_OT_surface_add(
             return
         if len(self.objects) > 1:
             self.draw_objects(layout)
-        self.draw_tables(layout, lambda path: self._said(context, path))
+        self.draw_tables(layout, lambda preview: self._said(context, preview.file))
         layout.use_property_split = True
         for key in _OTHERS:
             if self._previews or key != "decimal":

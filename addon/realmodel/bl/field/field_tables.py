@@ -8,6 +8,7 @@ from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, 
 from ...core.readers import (
     Picks,
     UnitNames,
+    dip_warnings,
     names_units,
     read_dips,
     read_dips_of_rock,
@@ -20,6 +21,9 @@ from ...core.readers import (
 from ...core.readers.formats import HOLES, SHAPES, endings, format_of
 from ...core.readers.hole_values import is_log, read_interval_values
 from ...core.readers.object_input import is_object_file
+from ...core.readers.table_kind import sheet_kinds
+from ...core.readers.tables.dialects.workbook import is_workbook, sheet_names
+from ...core.readers.tables.hole_data import MEANINGS
 from ...core.readers.tables.hole_tables import COLLARS, OBSERVED, columns_in, normalized_name
 from ...core.readers.tables.table_layout import plain_name
 from ...core.settings.data_files import HOLE_COLUMNS as OF_HOLES
@@ -132,12 +136,17 @@ def _boreholes(tables, of_holes):
     """Boreholes, with those of the rows that are named which their tables have. Raises OptionRefused."""
     names = {Path(file).name for kind in _ONE_OF_EACH if (file := tables.get(kind)) is not None}
     rows = {
-        key: [row for row in of_holes.get(key, ()) if row.rpartition(":")[0].strip() in names]
+        key: [row for row in of_holes.get(key, ()) if _file_of(row) in names]
         for key in ("unrepaired", "left_out")
     }
     boreholes = Boreholes(**tables, **of_holes | rows)
     boreholes.check()
     return boreholes
+
+
+def _file_of(row):
+    """The name of the file of a row such as collars.csv:17 or site.xlsx[Collars]:17."""
+    return row.rpartition(":")[0].strip().partition("[")[0]
 
 
 def is_map(path):
@@ -146,17 +155,28 @@ def is_map(path):
 
 
 def has_holes(path):
-    """Whether a file has boreholes by its format, with all of their tables at once."""
-    return is_object_file(path) or format_of(path, HOLES) is not None
+    """Whether a file has boreholes by its format, with all of their tables at once, or in several sheets."""
+    return is_object_file(path) or format_of(path, HOLES) is not None or bool(hole_sheets(path))
+
+
+def hole_sheets(path):
+    """{sheet: kind} of a workbook with several, as far as they are tables of boreholes; empty for others."""
+    try:
+        if not is_workbook(path) or len(sheet_names(path)) < 2:
+            return {}
+        return {name: kind for name, kind in sheet_kinds(path).items() if kind in MEANINGS}
+    except InputRefused:
+        return {}
 
 
 def columns_of(preview):
     """{meaning: column} of a TablePreview, by name, or by number from 1, as the table is understood without a
     word."""
     try:
-        known, _ = table_contents(preview.file)
+        known, _ = table_contents(preview.file, sheet=preview.sheet)
     except InputRefused:
-        known = columns_in(Boreholes(), preview.file, {key: COLLARS[key] for key in ("hole", "x", "y", "z")})
+        places = {key: COLLARS[key] for key in ("hole", "x", "y", "z")}
+        known = columns_in(Boreholes(), preview.file, places, preview.sheet)
     plain = [plain_name(name) for name in preview.names]
     numbered = {meaning: plain.index(name) for meaning, name in known.items() if name in plain}
     is_known = preview.has_header
@@ -237,6 +257,8 @@ def _read(scene, rock, tables, units):
         of_rock.append(named)
         left_out += not_used
     of_series = [read_space_dips(file, unit) for file in tables.series_dips]
+    for file in (*tables.dips, *tables.rock_dips, *tables.series_dips):
+        warnings += dip_warnings(file, unit)
     known_names = {*units.surfaces, *units.blocks, *units.bodies}
     codes = [entry.block for entry in left_out if entry.kind == "unknown_block"]
     meant = {}

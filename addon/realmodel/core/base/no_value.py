@@ -5,7 +5,7 @@
 NO_VALUE = frozenset(
     (
         *("", "-", "--", "na", "n/a", "n.a.", "nan", "nr", "null", "none", "absent", "?", "#n/a", "nd"),
-        *("n.d.", "undef", "undefined", "no data", "nodata", "missing"),
+        *("n.d.", "*", "undef", "undefined", "no data", "nodata", "missing"),
     )
 )
 # Coordinates that may be real, and that often mean that there is none.

@@ -148,6 +148,8 @@ def _rock_lines(rock: Rock, why: Mapping[str, str], files: _Files) -> list[str]:
         lines += ["# The polygons of units on the ground", f"map = {_inline(rock.map, files)}"]
     if rock.dips is not None:
         lines.append(f"dips = {_inline(rock.dips, files)}")
+    if rock.names:
+        lines += ["# What codes in the tables mean, as given", f"names = {toml_value(rock.names)}"]
     return lines
 
 

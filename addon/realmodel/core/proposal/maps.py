@@ -14,7 +14,7 @@ from ..base.errors import InputRefused
 from ..readers import UnitNames
 from ..readers.map_input import read_shapes
 from ..readers.maps.shapes import Heights
-from ..readers.tables.dips import read_dips_of_rock
+from ..readers.tables.dips import dip_warnings, read_dips_of_rock
 from ..readers.tables.hole_tables import normalized_name
 from ..readers.tables.table_layout import names_shown
 from ..readers.unit_polygons import UnitPolygon, read_unit_polygons
@@ -183,6 +183,7 @@ def _add_dips(found: MapUnits, dips: DipFile, known: UnitNames, units: str) -> N
     """A bed that dips beneath the next unit is older than that."""
     names = list(found.evidence.names)
     measured, _ = read_dips_of_rock(dips, known, units)
+    found.warnings += dip_warnings(dips, units)
     far = _FAR * float(np.ptp(found.box, axis=0).max())
     steepness = np.hypot(*measured.gradients.T)
     used = measured.in_use & (steepness > np.tan(np.radians(_LEVEL)))

@@ -22,6 +22,7 @@ from ..project.project_checks import check_project
 from ..project.structure_entries import Body
 from ..readers import read_mesh
 from ..readers.borehole_tables import boreholes_of
+from ..readers.code_counts import read_names
 from ..readers.formats import MESH, RASTER, format_of
 from ..readers.map_input import system_of_map
 from ..readers.point_input import read_point_file, read_raster_heights
@@ -81,7 +82,7 @@ def propose_project(
     ground: PointFile | MeshFile | str | Path | None = None,
     region: ArrayLike | MapLayer | str | Path | None = None,
     dips: DipFile | str | Path | None = None,
-    names: Mapping[str, str] | None = None,
+    names: Mapping[str, str] | str | Path | None = None,
     units: str = MODEL_UNIT,
     name: str | None = None,
     crs: str | None = None,
@@ -93,7 +94,8 @@ def propose_project(
     map: a file of polygons, or a MapFile or its keys; without `block`, the attribute of units is found.
     ground: a raster, points or a mesh; None: the collars. region: (N, 2), or a file; None: around the data.
     dips: a table. names: what codes of the data mean, as `names` of Rock: {"SST": "Sandstone", "Qal*":
-    "Alluvium", "LC": ""}. units: of the model. name: of the project. crs: as of Project; None: as files say.
+    "Alluvium", "LC": ""}, or a table of two columns, code and unit. units: of the model. name:
+    of the project. crs: as of Project; None: as files say.
 
     The order of units follows from which lies over which; see `ProposedProject.proposal`. Raises InputRefused
     naming the file, UsageError.
@@ -103,7 +105,8 @@ def propose_project(
     ... )  # doctest: +SKIP
     """
     of_files = _map(map, ground), dip_file_of(dips), _ground_of(ground)
-    data = _Data(_boreholes(boreholes, units), *of_files, dict(names or {}))
+    meanings = read_names(names) if isinstance(names, (str, Path)) else dict(names or {})
+    data = _Data(_boreholes(boreholes, units), *of_files, meanings)
     if data.boreholes is None and data.map is None:
         raise UsageError("propose_project needs boreholes or a map")
     if data.map is not None and data.ground is None and data.boreholes is None:

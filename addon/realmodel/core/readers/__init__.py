@@ -14,7 +14,15 @@ from .object_input import objects_in
 from .point_input import PointData, read_point_file, read_points
 from .table_kind import TABLE_KINDS, table_contents, table_kind
 from .tables.boreholes import Picks
-from .tables.dips import gradient_of, names_units, normal_of, read_dips, read_dips_of_rock, read_space_dips
+from .tables.dips import (
+    dip_warnings,
+    gradient_of,
+    names_units,
+    normal_of,
+    read_dips,
+    read_dips_of_rock,
+    read_space_dips,
+)
 from .tables.observations import read_observed_places
 from .tables.table_preview import TablePreview, preview_table
 from .tables.unit_names import UnitNames
@@ -25,6 +33,7 @@ __all__ = [
     "PointData",
     "TablePreview",
     "UnitNames",
+    "dip_warnings",
     "gradient_of",
     "is_mesh_file",
     "names_units",

@@ -68,11 +68,11 @@ def read_repaired(
         tables = read_hole_rows(given, model_unit, step, sheets=sheets)
         tables.lines = lines
         tables.warnings += warnings
-    elif given.layer is not None:
-        what = f"it is a table, so it has no object '{given.layer}'"
-        raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     else:
         given, names = with_sheets(given)
+        if given.layer is not None:
+            what = f"it is a table, so it has no object '{given.layer}'"
+            raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
         tables = read_hole_files(given, model_unit, step, sheets=names)
     repair(tables, units)
     return tables

@@ -7,15 +7,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..base.text import no_step
+from ..base.errors import InputRefused
+from ..base.text import no_step, read_text
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes, MapFile, ObservationFile
 from ..settings.dips import DipFile
 from .borehole_input import read_repaired
 from .object_input import is_object_file
+from .tables.dialects.workbook import is_workbook, sheet_text
 from .tables.dips import DIPS, NAMED
-from .tables.hole_tables import OBSERVED, Row, rows
-from .tables.table_layout import is_number
+from .tables.hole_tables import OBSERVED, Row, column_key, rows
+from .tables.table_layout import fields, is_number
 from .unit_polygons import read_unit_polygons
 
 FieldData = Boreholes | ObservationFile | DipFile | MapFile
@@ -45,6 +47,45 @@ def count_codes(*data: FieldData, units: str = MODEL_UNIT) -> list[CodeCount]:
                 counted[code] = counted.get(code, 0) + 1
                 lengths[code] = lengths.get(code, 0.0) + length
     return [CodeCount(code, len(holes[code]), counted[code], lengths[code]) for code in counted]
+
+
+_OF_CODES = frozenset(
+    ("code", "codes", "lithcode", "lithologycode", "rockcode", "unitcode", "legendcode", "from")
+)
+_OF_UNITS = frozenset(
+    ("unit", "name", "meaning", "means", "block", "surface", "formation", "group", "lithology", "rock")
+)
+
+
+def read_names(file: str | Path) -> dict[str, str]:
+    """The meanings of codes in a table of two columns, code and unit, or of more where the header names these
+    two; a unit that is empty: the code means nothing. Raises InputRefused naming file and line."""
+    file = Path(file)
+    text = sheet_text(file, None, lambda _cells: True).decode() if is_workbook(file) else read_text(file)
+    lines = [(n, line) for n, line in enumerate(text.split("\n"), 1) if line.strip(" \t\r,;|")]
+    lines = [(n, line.rstrip("\r")) for n, line in lines if not line.startswith("#")]
+    if not lines:
+        raise InputRefused("there are no names in it", file=file)
+    separator = next((sign for sign in ";\t|,=" if sign in lines[0][1]), ",")
+    keys = [column_key(name) for name in fields(lines[0][1], separator)]
+    of_code, of_unit = (
+        next((n for n, k in enumerate(keys) if k in known), None) for known in (_OF_CODES, _OF_UNITS)
+    )
+    if of_code is None or of_unit is None:
+        of_code, of_unit = 0, 1
+    else:
+        lines = lines[1:]
+    names: dict[str, str] = {}
+    for n, line in lines:
+        entries = fields(line, separator)
+        if len(entries) <= max(of_code, of_unit) or not entries[of_code]:
+            raise InputRefused(
+                "a code and a unit are needed", file=file, line=n, advice="write SST,Sandstone"
+            )
+        code, unit = entries[of_code], entries[of_unit]
+        if names.setdefault(code, unit) != unit:
+            raise InputRefused(f"'{code}' means '{names[code]}' and '{unit}'", file=file, line=n)
+    return names
 
 
 def _codes(source: FieldData, units: str) -> Iterator[tuple[str, str, float]]:

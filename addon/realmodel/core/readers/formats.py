@@ -177,6 +177,8 @@ _NOT_READ = (
         "save its surfaces as OBJ, STL or glTF: FreeCAD and Blender can",
     ),
     (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
+    (rb"# \.PCD v", "a cloud of points of PCL (PCD)", "save it as PLY or text: CloudCompare can"),
+    (rb"\{\\rtf", "a text with formatting (RTF)", "save its table as CSV"),
     (rb"%PDF-", "a PDF", "save its table as CSV"),
     (rb"\x1f\x8b|BZh\d|\xfd7zXZ", "compressed by gzip, bzip2 or xz", "unpack it"),
     (rb"Rar!\x1a|7z\xbc\xaf", "an archive (RAR or 7z)", "unpack it"),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -15,6 +16,7 @@ from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
 from .formats import HOLES, format_of
 from .hole_files import read_hole_files
+from .tables.attitudes import COMBINED, is_combined
 from .tables.dialects.workbook import is_workbook, sheet_names
 from .tables.dips import DIPS, NAMED
 from .tables.hole_data import MEANINGS
@@ -79,11 +81,30 @@ def table_kind(
         return "survey"
     if {"hole", "from", "to"} <= logged.keys():
         return "assays"
+    if {"hole", "block"} <= logged.keys() and not {"from", "to"}.isdisjoint(logged):
+        return "intervals"
     raise InputRefused(
         f"its columns do not say whether it has {', '.join(TABLE_KINDS[:-1])} or {TABLE_KINDS[-1]}",
         file=file,
         advice="name its columns, as in hole = BHID; depth = FROM",
     )
+
+
+def sheet_kinds(
+    file: str | Path, columns: Mapping[str, str | int] | None = None, chosen: str | None = None
+) -> dict[str, str]:
+    """The kinds of the sheets of a workbook, as table_kind, by their names; without those that are of none.
+    chosen: the names of the sheets that count, with semicolons; None: all. Raises InputRefused for a name
+    that no sheet has."""
+    file, kinds = Path(file), dict[str, str]()
+    names = sheet_names(file)
+    wanted = names if chosen is None else [name.strip() for name in chosen.split(";") if name.strip()]
+    for name in wanted:
+        if name not in names:
+            raise InputRefused(f"it has no sheet '{name}'", file=file, advice=f"it has {', '.join(names)}")
+        with suppress(InputRefused):
+            kinds[name] = table_kind(file, columns, name)
+    return kinds
 
 
 def with_sheets(boreholes: Boreholes) -> tuple[Boreholes, dict[str, str]]:
@@ -94,18 +115,13 @@ def with_sheets(boreholes: Boreholes) -> tuple[Boreholes, dict[str, str]]:
     if file is None or not is_workbook(file):
         return boreholes, {}
     sheets: dict[str, str] = {}
-    for name in sheet_names(file):
-        try:
-            kind = table_kind(file, boreholes.columns, name)
-        except InputRefused:
-            continue
+    for name, kind in sheet_kinds(file, boreholes.columns, boreholes.layer).items():
         if kind not in MEANINGS or getattr(boreholes, kind) is not None:
             continue
         if kind in sheets:
             what = f"sheets '{sheets[kind]}' and '{name}' both have {kind}"
-            raise InputRefused(
-                what, file=file, advice="save one of them as a file of its own, or rename its columns"
-            )
+            advice = f'name those that count: layer = "{"; ".join(sheets.values())}"'
+            raise InputRefused(what, file=file, advice=advice)
         sheets[kind] = name
     if not sheets:
         advice = "a sheet of intervals has the columns hole, from, to and block"
@@ -113,12 +129,13 @@ def with_sheets(boreholes: Boreholes) -> tuple[Boreholes, dict[str, str]]:
             "no sheet has the columns of collars, surveys, picks or intervals", file=file, advice=advice
         )
     tables: dict[str, Any] = dict.fromkeys(sheets, file)
-    return replace(boreholes, file=None, **tables), sheets
+    return replace(boreholes, file=None, layer=None, **tables), sheets
 
 
 def _are_dips(columns: Mapping[str, str]) -> bool:
     meanings = columns.keys()
     has_angles = "dip" in meanings and not {"dip_direction", "strike"}.isdisjoint(meanings)
+    has_angles = has_angles or any(is_combined(columns.get(name, "")) for name in COMBINED)
     return {"x", "y"} <= meanings and ({"slope_x", "slope_y"} <= meanings or has_angles)
 
 
@@ -129,11 +146,11 @@ def _by_azimuth(columns: Mapping[str, str]) -> bool:
 
 
 def table_contents(
-    file: str | Path, columns: Mapping[str, str | int] | None = None
+    file: str | Path, columns: Mapping[str, str | int] | None = None, sheet: str | None = None
 ) -> tuple[dict[str, str], list[str]]:
     """What is read of a table: its columns, by meaning, as columns_in, and the codes of surfaces or blocks in
-    its first 2,000 rows, sorted. columns: as for table_kind. Raises InputRefused."""
-    reading, kind = Boreholes(columns=columns or {}), table_kind(file, columns)
+    its first 2,000 rows, sorted. columns, sheet: as for table_kind. Raises InputRefused."""
+    reading, kind = Boreholes(columns=columns or {}), table_kind(file, columns, sheet)
     first: Iterable[Row]
     if format_of(file, HOLES) is not None:
         whole = read_hole_files(replace(reading, file=file), MODEL_UNIT)
@@ -142,8 +159,9 @@ def table_contents(
         by_meaning = {} if header is None else {key: header.names[at] for key, at in header.columns.items()}
         coded = [key for key in ("surface", "block") if key in by_meaning]
     else:
-        by_meaning = columns_in(reading, Path(file), _KNOWN[kind])
+        by_meaning = columns_in(reading, Path(file), _KNOWN[kind], sheet)
         coded = [key for key in ("surface", "block") if key in by_meaning and kind != "collars"]
-        first = islice(rows(reading, Path(file), _KNOWN[kind], (), no_step), _LOOKED_AT) if coded else ()
+        read = rows(reading, Path(file), _KNOWN[kind], (), no_step, sheet) if coded else iter(())
+        first = islice(read, _LOOKED_AT)
     codes = {row.text(key) for row in first for key in coded if row.has(key)}
     return by_meaning, sorted(codes)

@@ -286,7 +286,7 @@ MESH_READING = {key: READING[key] for key in settings_of(MeshFile) if key != "fi
 
 HOLE_COLUMNS = (
     *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
-    *("from", "to", "block", "end", "use"),
+    *("from", "to", "thickness", "block", "end", "use"),
 )
 DOWNWARD_DIPS = ("negative", "positive")
 SIGN = Setting(kind="sign")  # a character of a table

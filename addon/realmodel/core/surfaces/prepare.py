@@ -20,9 +20,8 @@ from ..project.plan_input import map_layer, read_constraints, read_rings, read_s
 from ..project.project import Project, Rock, surface_item
 from ..project.series import Series
 from ..project.structure_entries import Fault
-from ..readers import read_dips, read_space_dips
+from ..readers import dip_warnings, read_dips, read_space_dips
 from ..readers.rasters.geotiff import geotiff_system
-from ..readers.tables.dips import DIPS
 from ..readers.tables.hole_tables import OBSERVED, unit_warnings
 from ..settings.crs import epsg_code
 from ..settings.dips import Dips, SpaceDips, as_given
@@ -69,7 +68,10 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
     surfaces_by_number = dict(reader(work, asked))
     inputs, first = [], 0
     for project_rock, field, (warnings, of_picks) in zip(project.rocks, fields, all_warnings, strict=True):
-        warnings += _other_units(project_rock, project.units)
+        warnings += [
+            BuildWarning(text, "points", project_rock.name)
+            for text in table_warnings(project_rock, project.units)
+        ]
         warnings += _other_systems(project_rock, project.crs)
         rock = field.rock
         surfaces = [surfaces_by_number[number] for number in range(first, first + len(rock.surfaces))]
@@ -118,18 +120,16 @@ def _require_points(entry: RockInput) -> None:
             raise InputRefused(what, file=surface.shape_file, item=surface_item(entry.rock, surface))
 
 
-def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
-    """The warnings about units in the headers of the tables of dips and observations of a rock mass."""
-    warnings: list[BuildWarning] = []
-    for table, columns in (
-        (rock.observation_file, OBSERVED),
-        *((dip_file, DIPS) for dip_file in rock.dip_files),
-    ):
-        if table is not None:
-            with naming(rock.item):
-                texts = unit_warnings(table, Path(table.file), columns, units)
-            warnings += [BuildWarning(text, "points", rock.name) for text in texts]
-    return warnings
+def table_warnings(rock: Rock, units: str) -> list[str]:
+    """Sentences about the units and the angles in the tables of observations and dips of a rock mass."""
+    texts: list[str] = []
+    with naming(rock.item):
+        if rock.observation_file is not None:
+            file = Path(rock.observation_file.file)
+            texts += unit_warnings(rock.observation_file, file, OBSERVED, units)
+        for dip_file in rock.dip_files:
+            texts += dip_warnings(dip_file, units)
+    return texts
 
 
 def _other_systems(rock: Rock, crs: str | None) -> list[BuildWarning]:

@@ -8,6 +8,7 @@ Geoenvironmental Data*, editions 3.1 (2004) and 4.1 (2020), ags.org.uk.
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -41,6 +42,9 @@ _GRIDS = {
 }
 
 
+_NAMES = re.compile(r'"?(HEADING\b|\*\??[A-Z])')  # a line with the names of columns
+
+
 @dataclass
 class _Group:
     line: int
@@ -52,7 +56,7 @@ class _Group:
 def begins_as_ags(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is AGS 3 or 4."""
     text = head.removeprefix(BOM).lstrip()
-    return text.startswith((b'"GROUP"', b'"**', b"**PROJ", b"GROUP,"))
+    return re.match(rb'"GROUP"|"\*\*|\*\*PROJ|GROUP[,;\t]', text) is not None
 
 
 def read_ags(file: Path) -> dict[str, RawTable]:
@@ -121,9 +125,16 @@ def _groups(file: Path) -> dict[str, _Group]:
 
 
 def _entries(file: Path) -> Iterator[tuple[int, list[str]]]:
-    for line, text in enumerate(read_text(file).split("\n"), 1):
-        if text.strip():
-            yield line, next(csv.reader([text.strip()], skipinitialspace=True)) or [""]
+    """The entries of the lines that are not empty. Programs that open the file as a table may write it with
+    semicolons or tabs in the place of commas."""
+    lines = read_text(file).split("\n")
+    names = next((text for text in lines if _NAMES.match(text.strip())), ",")
+    separator = max(",;\t", key=names.count)
+    for line, text in enumerate(lines, 1):
+        stripped = text.strip()
+        if stripped.strip(separator):
+            row = next(csv.reader([stripped], delimiter=separator, skipinitialspace=True)) or [""]
+            yield line, row
 
 
 def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:

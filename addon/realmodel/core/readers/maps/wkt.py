@@ -26,6 +26,9 @@ _KINDS = (
 )
 _BARE = re.compile(r"\s*\(\s*[-+.\d]")  # points of a MULTIPOINT without brackets of their own
 _DEEPEST = 50
+_OPENS = re.compile(
+    r"\s*(?:SRID=\d+;\s*)?[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE
+)  # no table of points
 _HEAD = 4096  # bytes: those of text have no zeros
 
 
@@ -37,7 +40,8 @@ def parse_wkt(text: str, file: Path | None = None, heights: bool = False) -> Sha
 
 def begins_as_wkt_file(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is well-known text."""
-    return begins_as_wkt(head.removeprefix(BOM).decode("latin-1"))
+    text = head.removeprefix(BOM).decode("latin-1")
+    return begins_as_wkt(text) and _OPENS.match(text) is not None
 
 
 def read_wkt(layer: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,8 @@ from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...settings.dips import NORMAL, DipFile, Dips, SpaceDips
 from ...settings.directions import gradient_of, normal_of
-from .hole_tables import OBSERVED, Row, rows, rows_in_one_unit
+from .attitudes import COMBINED, DoubtfulDips, with_numbers
+from .hole_tables import OBSERVED, Columns, Row, rows, rows_in_one_unit, unit_warnings
 from .observations import LeftOut
 from .points import AXES
 from .unit_names import UnitNames
@@ -24,7 +26,7 @@ DIPS = {
     "dip": (
         *("dip", "dip_angle", "dipangle", "inclination", "incl", "plunge"),
         *("Fallen", "Einfallen", "Fallwinkel", "Einfallwinkel"),
-        *("pendage", "buzamiento", "inclinación", "helling", "hellingshoek"),
+        *("pendage", "buzamiento", "inclinación", "helling", "hellingshoek", *COMBINED["dip"]),
     ),
     "dip_direction": (
         *("dip_direction", "dipdirection", "dip direction", "dip_dir", "dipdir", "dip dir", "dip_azimuth"),
@@ -32,8 +34,12 @@ DIPS = {
         *("Fallrichtung", "Einfallrichtung", "Einfallsrichtung"),
         *("Azimut", "direction_pendage", "direction de pendage", "azimut de pendage", "Acimut"),
         *("direccion_buzamiento", "dirección de buzamiento", "hellingsrichting"),
+        *COMBINED["dip_direction"],
     ),
-    "strike": ("strike", "strike_rhr", "strike rhr", "strike_rh", "Streichen", "rumbo", "strekking"),
+    "strike": (
+        *("strike", "strike_rhr", "strike rhr", "strike_rh", "Streichen", "rumbo", "strekking"),
+        *COMBINED["strike"],
+    ),
     "polarity": ("polarity", "younging", "facing"),
     "slope_x": ("slope_x", "dz_dx"),
     "slope_y": ("slope_y", "dz_dy"),
@@ -54,9 +60,22 @@ _ELSEWHERE = 'leave the row out: steep folds belong in a series with kind = "fie
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
     """The dips of a table, all of one surface, in the model's unit. Raises InputRefused naming file and
     line."""
-    return _dips(
-        given, list(rows_in_one_unit(given, Path(given.file), DIPS, ("x", "y"), step, model_unit)), model_unit
-    )
+    return _dips(given, _rows(given, DIPS, ("x", "y"), step, model_unit)[0], model_unit)
+
+
+def dip_warnings(given: DipFile, model_unit: str = MODEL_UNIT) -> list[str]:
+    """The warnings about the units and the angles of a table of dips. Raises InputRefused naming file and
+    line."""
+    doubtful = _rows(given, DIPS, ("x", "y"), no_step, model_unit)[1]
+    return [*unit_warnings(given, Path(given.file), DIPS, model_unit), *doubtful.warnings()]
+
+
+def _rows(
+    given: DipFile, known: Columns, needed: Sequence[str], step: Step, model_unit: str
+) -> tuple[list[Row], DoubtfulDips]:
+    """The rows of a table with their angles as numbers, and which of these are doubtful."""
+    every = list(rows_in_one_unit(given, Path(given.file), known, needed, step, model_unit))
+    return with_numbers(every, [name for name, column in given.columns.items() if column is not False])
 
 
 def read_dips_of_rock(
@@ -67,7 +86,7 @@ def read_dips_of_rock(
     chosen_rows, surfaces, blocks = [], [], []
     left_out: list[LeftOut] = []
     known = {**DIPS, **NAMED}
-    every = list(rows_in_one_unit(given, Path(given.file), known, ("x", "y"), step, model_unit))
+    every, _ = _rows(given, known, ("x", "y"), step, model_unit)
     for row in every:
         code = next((row.text(key) for key in NAMED if row.has(key)), "")
         surface = block = ""
@@ -117,7 +136,7 @@ def read_space_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = n
     file = Path(given.file)
     plan, height = factors(given.units, model_unit)
     places, normals, used = [], [], []
-    for row in rows_in_one_unit(given, file, DIPS, ("x", "y", "z"), step, model_unit):
+    for row in _rows(given, DIPS, ("x", "y", "z"), step, model_unit)[0]:
         places.append((plan * row.number("x"), plan * row.number("y"), height * row.number("z")))
         normals.append(_normal(row))
         used.append(row.is_used)

@@ -24,6 +24,7 @@ from .hole_tables import (
     header_factors,
     rows,
     sheet_rows,
+    with_units_of_cells,
 )
 
 MEANINGS: dict[str, Columns] = {
@@ -108,6 +109,7 @@ def read_hole_rows(
             tables.system = tables.system or table.system
         else:
             table_rows = list(rows(boreholes, Path(file), known, required[kind], slow, table))
+        table_rows = with_units_of_cells(table_rows)
         setattr(tables, kind, table_rows)
         if table_rows:
             header = table_rows[0].header

@@ -16,6 +16,7 @@ from .hole_data import HoleTables
 from .hole_problems import DECIDED, LEFT_OUT, NOT_REACHED, REPAIRED, USED, ProblemList, problem_warnings
 from .hole_tables import Row, column_key, normalized_name
 from .holes import end_of
+from .interval_ends import with_both_ends
 from .interval_repair import repair_intervals
 from .survey_repair import repair_survey
 from .table_layout import is_number
@@ -25,11 +26,12 @@ _NUMBERS = {
     "collars": ("x", "y", "z", "end", "depth", "azimuth", "dip", "inclination"),
     "survey": ("depth", "azimuth", "dip", "inclination"),
     "picks": ("x", "y", "z", "depth", "elevation"),
-    "intervals": ("x", "y", "z", "from", "to"),
+    "intervals": ("x", "y", "z", "from", "to", "thickness"),
 }
 _HEIGHTS = ("x", "y", "z", "elevation")  # columns whose values may be below 0
 _NULLS = frozenset(OFTEN_NO_VALUE)
 _ALWAYS = 1e19  # so large nothing is
+_IN_GROUPS = re.compile(r"[+-]?\d{1,3}(?:(?P<sign>[.,'’\u00a0\u202f ])\d{3})(?:(?P=sign)\d{3})*(?:[.,]\d*)?")
 _WHOLE = re.compile(r"0*(\d+)(?:[.,]0+)?")  # names of holes that are numbers, as programs write these
 _OTHERS = 3  # holes that have two surfaces in the other order make a hole look wrong
 # Beyond the range of the others by so many times it, a collar is none of them.
@@ -59,6 +61,7 @@ def repair(tables: HoleTables, units: UnitNames | None = None) -> None:
     if tables.survey is not None:
         tables.survey = repair_survey(tables, problems)
     if tables.intervals is not None:
+        tables.intervals = with_both_ends(tables, problems)
         tables.intervals = repair_intervals(tables, units, problems)
     if tables.picks is not None:
         tables.picks = _repaired_picks(tables, units, problems)
@@ -119,7 +122,8 @@ def _cleaned(rows: list[Row], columns: Sequence[str], problems: ProblemList) -> 
         gone = set(map(id, repeated))
         rows = [row for row in rows if id(row) not in gone]
     for column in columns:
-        if column in header.columns:
+        is_idle = column == "thickness" and {"from", "to"} <= header.columns.keys()
+        if column in header.columns and not is_idle:
             rows = _cleaned_column(rows, column, problems)
     return rows
 
@@ -127,6 +131,10 @@ def _cleaned(rows: list[Row], columns: Sequence[str], problems: ProblemList) -> 
 def _cleaned_column(rows: list[Row], column: str, problems: ProblemList) -> list[Row]:
     values = [_number(row, column) for row in rows]
     wrong = [n for n, value in enumerate(values) if value is None]
+    if wrong:
+        rows = _ungrouped(rows, column, wrong)
+        values = [_number(row, column) for row in rows]
+        wrong = [n for n, value in enumerate(values) if value is None]
     if 2 * len(wrong) > len(rows):
         return rows
     usual = np.array([value for value in values if value is not None and np.isfinite(value)])
@@ -147,6 +155,20 @@ def _number(row: Row, column: str) -> float | None:
         return float("nan")
     entry = row.text(column)
     return float(entry.replace(",", ".")) if is_number(entry, row.decimal) else None
+
+
+def _ungrouped(rows: list[Row], column: str, wrong: Sequence[int]) -> list[Row]:
+    """Rows without signs between thousands in a column, where they are nothing else. wrong: the rows whose
+    entries are no numbers."""
+    changed = list(rows)
+    for n in wrong:
+        entry = rows[n].text(column)
+        grouped = _IN_GROUPS.fullmatch(entry)
+        sign = grouped["sign"] if grouped is not None else ""
+        plain = entry.replace(sign, "") if sign else entry
+        if sign and (sign not in ".," or entry.count(sign) > 1 or {".", ","} <= set(entry)):
+            changed[n] = rows[n].with_values({column: plain.replace(",", ".").replace(".", rows[n].decimal)})
+    return changed
 
 
 def _nulls(values: np.ndarray, column: str) -> set[float]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Protocol
 
@@ -16,9 +16,9 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.no_value import NO_VALUE, OFTEN_NO_VALUE
 from ...base.text import Step
-from ...base.units import factor, stated_units, unit_text_of_column
+from ...base.units import factor, stated_units, unit_of, unit_text_of_column
 from .points import AXES, TextTable, open_table
-from .table_layout import Expected, TableLayout, column_number, fields, is_number, plain_name
+from .table_layout import WITH_UNIT, Expected, TableLayout, column_number, fields, is_number, plain_name
 
 # Names of columns of programs and surveys the world over, compared by column_key: English, German, French,
 # Spanish and Dutch, and those of Leapfrog, Surpac, Datamine, Micromine, Vulcan, gINT, AGS, GSWA, DINO and
@@ -30,6 +30,8 @@ _HOLE_NAMES = (
     *("nitg_nr", "nitg", "Bohrung", "Bohrung Nr", "Bohrungsname", "Bohrungsnummer", "Bohrloch"),
     *("Bohrprofil", "Bohr_ID", "Sondage", "nom_sondage", "Forage", "nom_forage", "Sondeo", "Pozo"),
     *("Barreno", "Boring", "Boringnummer", "Boornummer", "Boorgat"),
+    *("id_bss", "code_bss", "Sondaggio", "nome sondaggio", "Furo", "Otwór", "nazwa otworu", "Borrhål"),
+    *("Borehull", "dhid", "drill_hole", "drillhole_name", "collar_name", "hole_number_id"),
 )
 _PLACE_NAMES = ("location_id", "loca_id", "loc_id", "point_id", "site_id", "original_name", "name", "id")
 _HOLE = (*_HOLE_NAMES, *_PLACE_NAMES)
@@ -40,11 +42,15 @@ PICKS = {
     "x": (
         *("x", "easting", "east", "loca_nate", "hole_nate", "national_grid_easting", "x_collar", "collar_x"),
         *("location_x", "x_coordinate", "x_coordinaat", "x_koordinate", "x_lambert", "xl", *AXES["x"]),
+        *("xcoord", "x_utm", "utm_x", "utm_e", "x_l93", "nat_east", "nat_grid_east", "grid_east"),
+        *("mine_east", "local_east", "hole_east", "collar_east", "coord_x", "Est"),
     ),
     "y": (
         *("y", "northing", "north", "loca_natn", "hole_natn", "national_grid_northing", "y_collar"),
         *("collar_y", "location_y", "y_coordinate", "y_coordinaat", "y_koordinate", "y_lambert", "yl"),
         *AXES["y"],
+        *("ycoord", "y_utm", "utm_y", "utm_n", "y_l93", "nat_north", "nat_grid_north", "grid_north"),
+        *("mine_north", "local_north", "hole_north", "collar_north", "coord_y", "Nord"),
     ),
     "z": (
         *("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height", "ground_level", "loca_gl"),
@@ -63,6 +69,8 @@ PICKS = {
         *("collar_elevation", "elevation_z", "location_z", "z_coordinate", "z_coordinaat", "z_koordinate"),
         *("Ansatzhöhe", "Ansatzhoehe", "Ansatzpunkt", "Geländehöhe", "Gelaendehoehe", "GOK"),
         *("Maaiveld", "Maaiveldhoogte", "Cota boca", *_HEIGHT, *AXES["z"]),
+        *("zcoord", "zcoordb", "z_utm", "utm_z", "z_sol", "alti_sol", "nat_rl", "grid_rl", "mine_rl"),
+        *("local_rl", "hole_rl", "Quota", "Rzędna", "coord_z", "surface_rl"),
     ),
     "surface": (
         *("surface", "horizon", "top", "marker", "formation", "unit", "pick", "surface_name", "horizon_name"),
@@ -95,6 +103,8 @@ COLLARS = {
         *("hole_depth", "hole_length", "length", "loca_fdep", "hole_fdep", "Endteufe", "Endtiefe"),
         *("Gesamttiefe", "Bohrtiefe", "Longueur", "Longitud", "Einddiepte", "Profondeur finale"),
         *("Profundidad final",),
+        *("Profundidad total", "prof_investigation", "profondità finale", "profondità", "Profundidade"),
+        *("Głębokość", "Slutdjup", "hole_td"),
     ),
     "use": ("use",),
 }
@@ -104,6 +114,19 @@ _BLOCK = (
     *("geology_code", "geol_leg", "legend_code", "code", "layer", "lithology_1", "Einheit", "Schicht"),
     *("Gestein", "Stratigraphie", "Lithologie", "Litología", "Unidad", "Formación", "Grondsoort"),
     *("Hoofdgrondsoort", "Eenheid", "Terrain", "Roche"),
+    *("Litologia", "Jordart", "Petro", "Petrographie", "geocod", "geocode", "geol_code", "lith1_code"),
+    *("lith_1_code", "major_lith", "main_lith", "primary_lith", "rock_name", "strat_unit", "strat_code"),
+    *("unit_code", "unit_name", "graphic", "material", "soil", "soil_type", "domain", "stratum", "hsu"),
+)
+_THICKNESS = (
+    "thickness",
+    "thick",
+    "length",
+    "interval_length",
+    "Mächtigkeit",
+    "Épaisseur",
+    "espesor",
+    "dikte",
 )
 INTERVALS = {
     "hole": _HOLE,
@@ -113,6 +136,19 @@ INTERVALS = {
         *("depth_to_top", "upper_depth", "start_depth", "depth_start", "interval_from", "md_from", "from_md"),
         *("Von", "Tiefe von", "von Tiefe", "Tiefe oben", "Desde", "prof_desde", "De", "Toit", "prof_toit"),
         *("prof_debut", "Profondeur toit", "Van", "Bovenkant", "Bovenkant laag", "diepte_van", "md", "tvd"),
+        *(
+            "samp_from",
+            "geol_from",
+            "lith_from",
+            "interval_top",
+            "top_md",
+            "Teufe von",
+            "Obergrenze",
+            "Strop",
+            "Från",
+        ),
+        *("top_elev", "top_elevation", "elev_top", "elevation_top", "z_top", "top_z", "from_z", "z_from"),
+        *("Da", "Fra"),
         "depth",
     ),
     "to": (
@@ -121,8 +157,13 @@ INTERVALS = {
         *("depth_end", "interval_to", "md_to", "to_md", "Bis", "Tiefe bis", "bis Tiefe", "Tiefe unten"),
         *("Hasta", "prof_hasta", "à", "Mur", "prof_mur", "prof_fin", "Profondeur mur", "Tot", "Onderkant"),
         *("Onderkant laag", "diepte_tot", "Basis"),
+        *("Untergrenze", "samp_to", "geol_to", "lith_to", "interval_bottom", "interval_base", "base_md"),
+        *("bottom_md", "Teufe bis", "prof_base", "Spąg", "Till", "Até", "bottom_elev", "bottom_elevation"),
+        *("elev_bottom", "base_elev", "base_elevation", "elevation_bottom", "z_bottom", "z_base"),
+        *("bottom_z", "base_z", "to_z", "z_to", "Til", "A"),
     ),
     "block": _BLOCK,
+    "thickness": _THICKNESS,
     **DIRECTIONS,
     "use": ("use",),
 }
@@ -138,9 +179,11 @@ OBSERVED = {
     "error": ("height_error",),
     "thickness": ("thickness", "true_thickness"),
 }
+_OTHER_END = {"from": "to", "to": "from"}  # of an interval: one follows from the others of its hole
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
+_LOOKED_AT = 1000  # rows that tell the decimal sign
 _SEPARATORS = ",;|\t "  # a row of these alone is empty, as Excel writes them
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _MOST_TURNED = 720.0  # degrees
@@ -244,15 +287,15 @@ class Row:
         return self.with_values(values)
 
     def text(self, column: str) -> str:
-        at = self.columns[column]
+        at = self.header.columns[column]
         if at >= len(self.entries):
             raise self.refuse(f"{at + 1} values are needed, there are {len(self.entries)}")
         return self.entries[at]
 
     def has(self, column: str) -> bool:
         """Whether there is such a column, with a value in this row."""
-        at = self.columns.get(column, len(self.entries))
-        return at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
+        at = self.header.columns.get(column)
+        return at is not None and at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
 
     @property
     def is_used(self) -> bool:
@@ -295,17 +338,12 @@ def rows(
     table = _opened(given, file, known, needed, sheet)
     layout = table.layout
     header = _header(given, file, layout, known)
+    if sheet is not None:  # lines of several sheets are told apart
+        header = replace(header, file=file.with_name(f"{file.name}[{sheet}]"))
     _require(given, header, needed)
     separator = layout.separator
     body = table.raw[layout.body :].decode(table.encoding)
-    decimal = given.decimal or "."
-    if given.decimal is None:
-        entries = list(_parts(body, separator))
-        has_points = any("." in entry and is_number(entry) for entry in entries)
-        of_commas = [entry for entry in entries if "," in entry and is_number(entry, ",")]
-        # in quotes between commas 1,234 may have a sign between thousands
-        has_commas = any(separator != "," or not _GROUPED.fullmatch(entry) for entry in of_commas)
-        decimal = "," if has_commas and not has_points else "."
+    decimal = given.decimal or _decimal(_parts(body, separator), separator)
     total = max(body.count("\n"), 1)
     for number, line in enumerate(body.split("\n")):
         if number % _STEP == 0:
@@ -314,6 +352,16 @@ def rows(
         if not stripped.strip(_SEPARATORS) or stripped.startswith("#"):
             continue
         yield Row(header, layout.body_line + number, layout.fields(line.rstrip("\r")), decimal)
+
+
+def _decimal(entries: Iterable[str], separator: str) -> str:
+    """The decimal sign of a table by some of its entries: a comma where numbers have one and none a point."""
+    every = list(entries)
+    has_points = any("." in entry and is_number(entry) for entry in every)
+    of_commas = [entry for entry in every if "," in entry and is_number(entry, ",")]
+    # in quotes between commas 1,234 may have a sign between thousands
+    has_commas = any(separator != "," or not _GROUPED.fullmatch(entry) for entry in of_commas)
+    return "," if has_commas and not has_points else "."
 
 
 def _header(given: Reading, file: Path, layout: TableLayout, known: Columns) -> TableHeader:
@@ -330,14 +378,16 @@ def sheet_rows(
     units = {meaning: sheet.units[at] for meaning, at in columns.items() if at < len(sheet.units)}
     header = TableHeader(file, sheet.names, sheet.line, columns, units, sheet.row_name)
     _require(given, header, needed)
-    return [Row(header, line, entries) for line, entries in sheet.rows]
+    entries = (row[at] for _, row in sheet.rows[:_LOOKED_AT] for at in columns.values() if at < len(row))
+    decimal = given.decimal or _decimal(entries, ",")
+    return [Row(header, line, entries, decimal) for line, entries in sheet.rows]
 
 
 def rows_in_one_unit(
     given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step, model_unit: str
 ) -> Iterator[Row]:
     """The same, in the unit of the key `units`, or else in that of the model."""
-    every = _without_nulls(list(rows(given, file, known, needed, step)))
+    every = _without_nulls(with_units_of_cells(list(rows(given, file, known, needed, step))))
     factors = header_factors(every[0].header, given.units, model_unit)[0] if every else {}
     for row in every:
         yield row.scaled(factors) if factors else row
@@ -360,6 +410,33 @@ def _without_nulls(every: list[Row]) -> list[Row]:
         row.with_values(dict.fromkeys(columns, "")) if columns else row
         for row, columns in zip(every, nulls, strict=True)
     ]
+
+
+def with_units_of_cells(every: list[Row]) -> list[Row]:
+    """Rows in which lengths are numbers where each is written with its unit, as 12.5 m: it is that of the
+    column then."""
+    header = every[0].header if every else None
+    if header is None:
+        return every
+    found: dict[str, set[str]] = {}
+    for row in every[:_LOOKED_AT]:
+        for meaning in LENGTHS & header.columns.keys():
+            written = WITH_UNIT.fullmatch(row.text(meaning)) if row.has(meaning) else None
+            if written is not None:
+                found.setdefault(meaning, set()).add(written[2])
+    units = {meaning: texts for meaning, texts in found.items() if len(set(map(unit_of, texts))) == 1}
+    units = {meaning: texts for meaning, texts in units.items() if unit_of(next(iter(texts))) is not None}
+    if not units:
+        return every
+    header = replace(
+        header, units={**header.units, **{meaning: min(texts) for meaning, texts in units.items()}}
+    )
+    changed = []
+    for row in every:
+        cells = {meaning: WITH_UNIT.fullmatch(row.text(meaning)) for meaning in units if row.has(meaning)}
+        plain = {m: cell[1] for m, cell in cells.items() if cell is not None and cell[2] in units[m]}
+        changed.append(replace(row, header=header).with_values(plain))
+    return changed
 
 
 def header_factors(
@@ -448,6 +525,7 @@ def _parts(body: str, separator: str) -> Iterator[str]:
         yield from fields(line, separator)
 
 
+@lru_cache(maxsize=1 << 16)
 def normalized_name(name: str) -> str:
     """A name, for comparing, in small letters, and with one sign for the spaces, hyphens and underscores that
     may part its words."""
@@ -513,7 +591,7 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
 
 def _require(reading: Reading, header: TableHeader, needed: Sequence[str]) -> None:
     for column in needed:
-        if column not in header.columns:
+        if column not in header.columns and _OTHER_END.get(column) not in header.columns:
             called = reading.columns.get(column)
             what = f"the header has no column {called or column}"
             advice = f'name it: columns = {{ {column} = "..." }}'

@@ -22,6 +22,7 @@ _SIGNS = "#!%/"
 _COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:([,.'’\xa0\u202f ])\d{3})(?:\1\d{3})*(?:[.,]\d*)?")
+WITH_UNIT = re.compile(r"([+-]?\d[\d.,]*)\s*([^\W\d][\w.]*|'|\")")  # a number with its unit
 _COMMENT = re.compile(r"(^|(?<=[\s,;|]))#.*$")
 _TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
 _NAMES_SHOWN = 12
@@ -74,6 +75,12 @@ def is_any_number(entry: str) -> bool:
     """Whether an entry of a row is a number, with a decimal point or comma, or in groups of thousands. Where
     commas separate, an entry that has one stands in quotes."""
     return is_number(entry) or is_number(entry, ",") or bool(_GROUPED.fullmatch(entry))
+
+
+def _has_unit(entry: str) -> bool:
+    """Whether an entry is a length with its unit."""
+    written = WITH_UNIT.fullmatch(entry)
+    return written is not None and unit_of(written[2]) is not None
 
 
 @dataclass(frozen=True)
@@ -146,12 +153,14 @@ def table_layout(
     content = [n for n, text in enumerate(texts) if text.strip() and not _is_comment(text)]
     if not content:
         raise InputRefused("there are no rows in it", file=file)
+    if _is_count(content, texts, expected.numbers):
+        content = content[1:]
     if separator is None:
         separator = _separator([texts[n] for n in content], expected.numbers, expected.columns)
     first, headings, count = len(lines), [], 0
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
-        numbers = sum(is_any_number(entry) for entry in entries)
+        numbers = sum(is_any_number(entry) or _has_unit(entry) for entry in entries)
         if numbers and not (
             numbers < expected.numbers and any(plain_name(entry) in known_names for entry in entries)
         ):
@@ -168,7 +177,25 @@ def table_layout(
         )
     wanted = [name for name in expected.wanted if isinstance(name, str)]
     name_line, names = _header(headings, commented, wanted, known_names)
+    if names is not None and len(names) + 1 == count and _are_row_names(content, first, texts):
+        names = ("", *names)  # as R writes tables
     return replace(layout(separator, names, first, name_line), units=(units[0], units[1]))
+
+
+def _is_count(content: list[int], texts: list[str], numbers: int) -> bool:
+    """Whether the first line is the number of points, as of clouds of points."""
+    first = texts[content[0]].strip()
+    return (
+        numbers > 1
+        and len(content) > 1
+        and first.isdecimal()
+        and len(re.split(r"[\s,;]+", texts[content[1]])) > 2
+    )
+
+
+def _are_row_names(content: list[int], first: int, texts: list[str]) -> bool:
+    """Whether the first entries of the first rows are their names, which stand in quotes."""
+    return all(texts[n].lstrip().startswith('"') for n in content[:4] if n >= first)
 
 
 def _is_unit(text: str) -> bool:
@@ -195,11 +222,14 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
     """The separator of the first line that has enough columns and numbers; else of the first with enough
     columns."""
     for text in texts:
+        able = []
         for separator in _SEPARATORS:
             entries = fields(_COMMENT.sub("", text), separator)
             counted = sum(is_any_number(entry) for entry in entries)
             if len(entries) >= columns and counted >= numbers:
-                return separator
+                able.append((len(fields(texts[0], separator)) == len(entries), separator))
+        if able:  # with decimal commas between blanks the header tells
+            return max(able, key=lambda one: one[0])[1]
     for separator in _SEPARATORS:
         if len(fields(_COMMENT.sub("", texts[0]), separator)) >= columns:
             return separator

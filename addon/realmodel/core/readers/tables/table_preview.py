@@ -27,7 +27,7 @@ class TablePreview:
     they are written. axes: the columns that are taken for x, y and z; only those that are known where the
     header does not name all. splits: {column: its values in the order of the file}, of columns that may name
     surfaces; those that plainly do come first. is_plain: whether the first does. problem: why the table
-    cannot be read."""
+    cannot be read. sheet: of a workbook that has several."""
 
     file: Path
     names: list[str]
@@ -37,19 +37,32 @@ class TablePreview:
     splits: dict[str, list[str]] = field(default_factory=dict)
     is_plain: bool = False
     problem: str = ""
+    sheet: str | None = None
+
+    @property
+    def key(self) -> str:
+        """Which table it is, of all files."""
+        return str(self.file) if self.sheet is None else f"{self.file}[{self.sheet}]"
+
+    @property
+    def title(self) -> str:
+        return Path(self.key).name
 
 
-def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) -> TablePreview:
-    """A preview of a table of text. columns: as in PointFile. Raises InputRefused if it is not a table."""
+def preview_table(
+    file: str | Path, columns: Sequence[str | int] | None = None, sheet: str | None = None
+) -> TablePreview:
+    """A preview of a table of text, or of the sheet of a workbook. columns: as in PointFile. Raises
+    InputRefused if it is not a table."""
     file = Path(file)
-    table = open_table(file, Expected(None, columns or (), KNOWN))
+    table = open_table(file, Expected(None, columns or (), KNOWN), sheet)
     rows = _sampled_rows(table)
     count = max((len(row) for row in rows[:100]), default=0)
     names = list(table.layout.names or ())
     names = [name or str(n + 1) for n, name in enumerate(names)] if len(names) == count else []
     has_header = bool(names)
     names = names or [str(n + 1) for n in range(count)]
-    preview = TablePreview(file, names, head_rows(table, _ROWS), has_header)
+    preview = TablePreview(file, names, head_rows(table, _ROWS), has_header, sheet=sheet)
     try:
         used = wanted_columns(table, columns)
         preview.axes = {axis: names[n] for axis, n in zip(AXES, used, strict=True) if n < count}

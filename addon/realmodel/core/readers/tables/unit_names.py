@@ -89,6 +89,16 @@ class UnitNames:
         return spellings
 
     def _found(self, code: str) -> str | None:
+        """_look_up of each code once."""
+        if code not in self._known:
+            self._known[code] = self._look_up(code)
+        return self._known[code]
+
+    @cached_property
+    def _known(self) -> dict[str, str | None]:
+        return {}
+
+    def _look_up(self, code: str) -> str | None:
         """A name as `names` or the rock mass has it, None where neither does; numbers also as programs write
         them that know no whole ones (51.0)."""
         whole = _WHOLE.fullmatch(code)

@@ -25,7 +25,7 @@ from ...heights.interpolate import checked_points
 from ...project.project import Project
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import body_times, displaced_surfaces
-from ...readers import read_mesh, read_space_dips
+from ...readers import dip_warnings, read_mesh, read_space_dips
 from ...readers.fault_input import read_fault_points
 from ...settings.dips import SpaceDips
 from ...surfaces.rock_input import RockInput
@@ -66,6 +66,9 @@ def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarnin
             if fault.point_file is not None:
                 points, texts = read_fault_points(fault.point_file, fault.stick, units)
             warnings += [BuildWarning(f"{fault.item}: {text}", "points") for text in texts]
+            if fault.dip_file is not None:
+                said = dip_warnings(fault.dip_file, units)
+                warnings += [BuildWarning(f"{fault.item}: {text}", "points") for text in said]
             vertices, triangles = _fitted(work, fault, points, _dips_of(fault, units))
         else:
             vertices, triangles = _mesh_of(fault, units, warnings)
