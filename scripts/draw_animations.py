@@ -27,7 +27,8 @@ SIZE = (960, 600)
 ROOMS = {"deposition": (0.2, 0.0)}  # share of the width for the legend
 RAYS, SECONDS = 5, 40.0  # of a pixel, and of a frame at most
 STEP, REST = 170, 1200  # milliseconds: of a moving picture, and where it stands
-DISSOLVE = {"deposition": 4, "section_sweep": 1, "exploded": 1}  # frames between two
+LAPSE = 240  # of a picture of the time lapse
+DISSOLVE = {"deposition": 4, "section_sweep": 1, "exploded": 1, "time_lapse": 1}  # frames between two
 FADE = 60  # milliseconds of each of them
 GLASS = {"section_sweep": 0.14}  # the first frame over others, so that what is cut away is seen as glass
 MOST = 2_500_000  # bytes of a file
@@ -113,23 +114,26 @@ def exploded(folder):
 
 
 def time_lapse(folder):
-    """Beds are deposited, folded and eroded, in ten seconds: the modifier Strata on a mesh that changes."""
+    """Beds are deposited, folded and cut by rivers, and hard ones stand out, in ten seconds: the modifier
+    Strata on a mesh that changes, which is divided at its beds so that they have sharp edges."""
     import bpy
     import hero_parts
     import hero_rocks
     import numpy as np
+    from realmodel.bl.objects import meshes
     from realmodel.bl.shading import strata_modifier
+    from realmodel.core.filling import divided_at_beds
 
     high, full = 38.0, 60.0  # of what is deposited, and of the box in which beds are laid
-    x, y = np.linspace(-62.0, 62.0, 94), np.linspace(-46.0, 46.0, 70)
+    x, y = np.linspace(-62.0, 62.0, 125), np.linspace(-46.0, 46.0, 93)
     u, v = np.meshgrid(x, y, indexing="ij")
-    vertices, _ = mesh = hero_parts.block(x, y, np.full(u.shape, full), 0.0)
-    values = {"beds": 20, "variation": 0.8, "dip": 0.0, "rock_looks": False, "seed": 3}
+    vertices, triangles = mesh = hero_parts.block(x, y, np.full(u.shape, full), 0.0)
+    values = {"beds": 26, "variation": 0.8, "dip": 0.0, "seed": 3}
     values |= {"fold_amplitude": 0.0, "fold_wavelength": 0.55, "fold_axis": 0.5}
     item = hero_rocks.strata("Rock", mesh, "CANYON", is_compact=False, **values)
-    bpy.ops.realmodel.set_up_picture(sun_elevation=0.5, sun_azimuth=2.9, scene_settings=True)
+    bpy.ops.realmodel.set_up_picture(sun_elevation=0.5, sun_azimuth=3.75, scene_settings=True)
     corners = np.concatenate([vertices * (1.0, 1.0, share) for share in (0.0, 0.9)])
-    gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 156.0, 20.0, (0.0, 0.0))
+    gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 156.0, 24.0, (0.0, 0.0))
 
     def frame(amplitude, top):
         hero_rocks.reshape(item, vertices)
@@ -140,16 +144,18 @@ def time_lapse(folder):
         places = vertices.copy()
         places[: u.size, 2] = np.clip(top(datum), 1.0, full).ravel()
         hero_rocks.reshape(item, places)
-        return _OfCamera(), 250
+        divided = meshes.triangle_mesh("Rock Divided", *divided_at_beds(places, triangles, beds))
+        strata_modifier.show_eroded(item, divided)
+        return _OfCamera(), LAPSE
 
     ripple = 0.25 * hero_parts.rough(u, v, 12.0, 3)
-    for share in np.linspace(0.06, 1.0, 16):
+    for share in np.linspace(0.06, 1.0, 9):
         yield frame(0.0, lambda _, share=share: high * share + ripple)
     most = 0.13
-    for share in np.linspace(0.1, 1.0, 10):
+    for share in np.linspace(0.14, 1.0, 7):
         yield frame(most * share, lambda datum: high + datum - datum.mean() + ripple)
     edge = np.zeros(u.shape, bool)
-    edge[:, 0] = edge[0, :] = True
+    edge[:, 0] = edge[-1, :] = True  # the sides that are seen, where rivers flow out
     rivers = np.where(edge, 6.0, 16.0 + 8.0 * np.abs(hero_parts.rough(u, v, 40.0, 8)))
     land = hero_rocks.drained(
         rivers,
@@ -162,14 +168,14 @@ def time_lapse(folder):
         smooth=0.1,
         steepest=0.9,
     )
-    for share in np.linspace(0.1, 1.0, 10):
+    for share in np.linspace(0.12, 1.0, 8):
         yield frame(
             most,
             lambda datum, share=share: np.minimum(high + datum - datum.mean(), land + 52.0 * (1.0 - share)),
         )
-    for strength in (0.25, 0.5, 0.75, 1.0):
-        hero_rocks.erode(item, 60_000, strength, scree=0.0)
-        yield _OfCamera(), 250
+    for strength in (0.3, 0.65, 1.0):
+        hero_rocks.erode(item, 150_000, strength, scree=0.0)
+        yield _OfCamera(), LAPSE if strength < 1.0 else 2 * REST
 
 
 class _OfCamera:

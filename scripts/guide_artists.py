@@ -5,7 +5,7 @@ Needs Blender."""
 import math
 
 import sculptures
-from guide_window import fill_view, keep, open_tab, viewport
+from guide_window import fill_view, keep, open_tab, viewed, viewport
 
 _BEDS = (
     60.0,
@@ -20,12 +20,13 @@ def artists(walk):
 
     bpy.context.preferences.view.show_tooltips = False
     with viewport(walk):
-        bpy.ops.realmodel.strata_rock_add(kind="CLIFF", strength=1.3, faces=100_000)
+        bpy.ops.realmodel.strata_rock_add(kind="CLIFF", strength=1.3, faces=600_000)
     item = bpy.context.active_object
     yield from open_tab(walk, "strata_shape")
     region, scale = walk.region("UI"), bpy.context.preferences.view.ui_scale
     walk.click(region.x + _BEDS[0] * scale, region.y + region.height - _BEDS[1] * scale)
-    fill_view(walk, [item], 0.92, azimuth=math.radians(150.0))
+    fill_view(walk, [item], 0.92, math.radians(10.0), azimuth=math.radians(190.0))
+    item.select_set(False)  # without the outlines of its stones
     yield from keep(walk, "artists_eroded")
     region = walk.region("WINDOW")
     walk.move(region.x + 0.12 * region.width, region.y + 0.9 * region.height)
@@ -53,13 +54,14 @@ def artists(walk):
 
 
 def exported(walk):
-    """A cliff that was exported as glTF, in an empty file, as Material Preview shows it."""
+    """An arch that was exported as glTF, in an empty file, as Material Preview shows it."""
     import bpy
     import numpy as np
+    from driver import save_picture
 
-    path = walk.folder / "cliff.glb"
+    path = walk.folder / "arch.glb"
     with viewport(walk):
-        bpy.ops.realmodel.strata_rock_add(kind="CLIFF", faces=40_000)
+        bpy.ops.realmodel.strata_rock_add(kind="ARCH", strength=0.6, seed=2, faces=40_000)
         bpy.ops.realmodel.fill_with_strata("EXEC_DEFAULT", use_dialog=False)
         if "gltf" not in dir(bpy.ops.export_scene):
             bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
@@ -74,4 +76,4 @@ def exported(walk):
         item.select_set(False)
     fill_view(walk, [o for o in bpy.data.objects if o.type == "MESH"], 0.9, azimuth=math.radians(150.0))
     yield walk.redrawn(20)
-    yield from keep(walk, "artists_export")
+    save_picture(viewed(walk), walk.folder / "artists_export.png")

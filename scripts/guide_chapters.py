@@ -66,7 +66,7 @@ def modes(walk):
     group = bpy.context.scene.realmodel
     group.view.show_legend = False
     yield from settled(walk)
-    frame(walk, 0.9)
+    frame(walk, 0.78)  # surfaces reach farther than blocks
     pictures = []
     for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
         group.display = mode
@@ -75,8 +75,11 @@ def modes(walk):
         yield from settled(walk)
         pictures.append(labeled(viewed(walk), modes_of(group)[mode]))
     side_by_side(pictures, walk.folder / "view_modes.png", 2)
-    group.display, pictures = "BLOCKS", []
-    for stage in (3, 6, 9, 10):
+    group.display, pictures, stages = "BLOCKS", [], (3, 6, 9, 10)
+    group.stage = stages[1]  # the highest one
+    yield from settled(walk)
+    frame(walk, 0.76)
+    for stage in stages:
         group.stage = stage
         yield from settled(walk)
         pictures.append(labeled(viewed(walk), f"Stage {stage}: {group.rocks[0].surfaces[stage].name}"))

@@ -363,6 +363,25 @@ class Surfaces(PanelCase):
         ops.build()
         self.assertAlmostEqual(self.volumes()["base block"], 75e3, places=3)
 
+    def test_another_file_is_chosen(self):
+        paths = [self.folder / name for name in ("first.csv", "second.csv")]
+        for path in paths:
+            path.write_text("x,y,z\n" + "".join(f"{x},{y},{z}\n" for x, y, z in POINTS))
+        ops.surface_add(filepath=str(paths[0]))
+        surface = self.rock().surfaces[0]
+        given = {"row": surface.path_from_id(), "key": "filepath"}
+        ops.file_choose(filepath=str(paths[1]), **given)
+        self.assertEqual(surface.filepath, str(paths[1]))
+        self.refused(ops.file_choose, "file not found", filepath=str(self.folder / "none.csv"), **given)
+        self.refused(ops.file_choose, "no setting 'rocks.name'", row="rocks", key="name", none=True)
+        self.save_and_open()
+        surface = self.rock().surfaces[0]
+        surface.filepath = "//first.csv"
+        ops.file_choose(filepath=str(paths[1]), **given)  # stays relative
+        self.assertEqual(surface.filepath, "//second.csv")
+        ops.file_choose(none=True, **given)
+        self.assertEqual(surface.filepath, "")
+
 
 class Library(PanelCase):
     def without_properties(self):

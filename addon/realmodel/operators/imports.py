@@ -26,7 +26,7 @@ from ..bl.project import (
     settings,
 )
 from ..bl.scene import data_objects, live
-from ..core import InputRefused, MeshFile, PointFile, RealModelError
+from ..core import InputRefused, MeshFile, PointFile, RealModelError, UsageError
 from ..core.base.errors import HeightsMissing, counted
 from ..core.base.triangles import open_edges
 from ..core.project.terrain import NAME as TERRAIN
@@ -107,6 +107,49 @@ def previews(properties):
             with contextlib.suppress(InputRefused):  # files that are no tables are refused when they are read
                 if not (is_mesh_file(path) or objects_in(path)):
                     yield preview_table(path)
+
+
+class REALMODEL_OT_file_choose(Reporting, bpy.types.Operator, ImportHelper):
+    """Choose another file, or none"""
+
+    bl_label = "Choose File"
+
+    row: StringProperty(
+        name="Row", description="Path of the settings in the scene", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    key: StringProperty(
+        name="Setting", description="Setting that has the path of the file", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    filepath: StringProperty(name="File", description="The file", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    none: BoolProperty(name="None", description="Take no file", options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, context, properties):
+        if properties.none:
+            return "Take no file"
+        return f"{_of_setting(context, properties)}\nClick to choose another file"
+
+    def invoke(self, context, event):
+        if self.none:
+            return self.execute(context)
+        self.filepath = str(project_settings.absolute(_of_setting(context, self)))
+        return ImportHelper.invoke(self, context, event)
+
+    def act(self, context):
+        before = _of_setting(context, self)
+        path = "" if self.none else self.filepath
+        if path:
+            require_file(project_settings.absolute(path))
+            path = bpy.path.relpath(path) if before.startswith("//") else path
+        setattr(context.scene.path_resolve(self.row), self.key, path)
+
+
+def _of_setting(context, properties):
+    """The path that a setting has now. Raises UsageError where there is no such setting."""
+    try:
+        return getattr(context.scene.path_resolve(properties.row), properties.key)
+    except (ValueError, AttributeError) as error:
+        raise UsageError(f"the scene has no setting '{properties.row}.{properties.key}'") from error
 
 
 class REALMODEL_OT_surface_add(

@@ -56,7 +56,8 @@ def right_label(layout, text):
 
 
 def file_field(layout, row, key, text=""):
-    """A field of a file that shows its name; the icon beside it is of the field with the whole path."""
+    """A field of a file: a button with its name, whose tooltip has the whole path, and one that empties it.
+    Blender's own field would show the two ends of the path."""
     path = getattr(row, key)
     if not path:
         layout.prop(row, key, **({"text": text} if text else {}))
@@ -64,10 +65,9 @@ def file_field(layout, row, key, text=""):
     line = layout.split(factor=0.4)
     right_label(line, text or row.bl_rna.properties[key].name)
     field = line.row(align=True)
-    field.label(text=re.split(r"[\\\\/]", path)[-1])
-    button = field.row()
-    button.ui_units_x = 2.0  # with less the icon leaves the panel
-    button.prop(row, key, text="")
+    for shown, icon in ((re.split(r"[\\\\/]", path)[-1], "FILE_FOLDER"), ("", "X")):
+        button = field.operator("realmodel.file_choose", text=shown, icon=icon, translate=False)
+        button.row, button.key, button.none = row.path_from_id(), key, not shown
 
 
 def hint(layout, text):
