@@ -102,7 +102,7 @@ def rewritten(text, separator, decimal, quotes):
 
 
 @pytest.mark.parametrize("quotes", [False, True])
-@pytest.mark.parametrize("signs", [";,", ";.", "\t,", "\t.", ",."])
+@pytest.mark.parametrize("signs", [";,", "|.", ";.", "\t,", "\t.", ",."])
 @pytest.mark.parametrize("content", [ags4(by=1.2345), ags3()])
 def test_ags_of_a_spreadsheet(write, content, signs, quotes):
     plain = content.replace("CLAY, sandy", "CLAY sandy")
