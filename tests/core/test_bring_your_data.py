@@ -100,6 +100,14 @@ def rms(write):
     assert len(read_points(GRIDS / "irap_binary.gri").xyz) == 11
 
 
+def charisma_and_geosoft(write):
+    for text in (
+        "INLINE :  100 XLINE :  7   1.0  2.0  3.5\nINLINE :  101 XLINE :  8   4.0  5.0  6.5\n",
+        "/ X Y Z\nLine 10\n 1.0 2.0 3.5\nTie 20\n 4.0 5.0 6.5\n",
+    ):
+        assert read_points(write("h.txt", text)).xyz.tolist() == [[1, 2, 3.5], [4, 5, 6.5]]
+
+
 def openworks(write):
     read = read_points(write("h.dat", OPENWORKS))
     assert read.xyz.tolist() == [[536881.63, 6729209.97, -1.0], [536891.05, 6729218.18, -1.5]]
@@ -269,6 +277,7 @@ PROGRAMS = {
     "Leapfrog": leapfrog,
     "Petrel": petrel,
     "RMS": rms,
+    "Charisma, Geosoft": charisma_and_geosoft,
     "OpenWorks": openworks,
     "GOCAD, SKUA": gocad,
     "Surpac": surpac,

@@ -102,7 +102,7 @@ def rewritten(text, separator, decimal, quotes):
 
 
 @pytest.mark.parametrize("quotes", [False, True])
-@pytest.mark.parametrize("signs", [";,", ";.", "\t,", "\t.", ",."])
+@pytest.mark.parametrize("signs", [";,", "|.", ";.", "\t,", "\t.", ",."])
 @pytest.mark.parametrize("content", [ags4(by=1.2345), ags3()])
 def test_ags_of_a_spreadsheet(write, content, signs, quotes):
     plain = content.replace("CLAY, sandy", "CLAY sandy")
@@ -149,7 +149,10 @@ def test_inclined_holes_of_ags(write):
     ("text", "words"),
     [
         (quoted(("GROUP", "PROJ"), ("HEADING", "PROJ_ID"), ("DATA", "1")), "it has no rows of LOCA or HOLE"),
-        (ags4().replace("GEOL_TOP", "GEOL_TOPP"), "the header has no column from"),
+        (
+            ags4().replace("GEOL_TOP", "GEOL_TOPP").replace("GEOL_BASE", "BASED"),
+            "the header has no column from",
+        ),
         (ags3().replace('"H0","10","10"', '"<CONT>","10","10"'), "<CONT> continues no row"),
     ],
 )

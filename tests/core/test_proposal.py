@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Projects from data alone: orders, lenses, rules, maps, and the folder that is written."""
 
+import csv
 import json
 import subprocess
 import sys
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ from realmodel.core import (
 )
 from realmodel.core.proposal.order import evidence_of, find_order
 from test_hole_files import ags4
+from test_point_formats import workbook
 
 PLAN = [(100.0 * (n % 3), 100.0 * (n // 3)) for n in range(9)]
 PLAIN = [("Soil", 2), ("Sand", 5), ("Clay", 18), ("Rock", 20)]
@@ -271,6 +274,14 @@ def test_meanings_of_codes_from_a_table(tmp_path, text):
     assert run_new(*options, f"--names={tmp_path / 'codes.csv'}", f"--out={tmp_path / 'out'}").returncode == 0
     order = json.loads((tmp_path / "out/proposal.json").read_text())["order"]
     assert order == ["Rock", "Chalk", "Alluvium", "Soil"]
+    assert build(load_project(tmp_path / "out/project.toml")).observed().share == 1.0
+
+
+def test_a_workbook_makes_a_project_that_builds(tmp_path):
+    tables = write_tables(tmp_path, [PLAIN] * 9)
+    sheets = {kind: list(csv.reader(Path(file).read_text().splitlines())) for kind, file in tables.items()}
+    file = workbook(tmp_path / "site.xlsx", Notes=[["drilled in May"]], **sheets)
+    assert run_new(file, "--out", tmp_path / "out").returncode == 0
     assert build(load_project(tmp_path / "out/project.toml")).observed().share == 1.0
 
 

@@ -111,9 +111,13 @@ def with_sheets(boreholes: Boreholes) -> tuple[Boreholes, dict[str, str]]:
     """The same with the sheets of a workbook that is its `file` in the places of those tables that are not
     named, and the names of these sheets by their kind; other sheets are ignored. Raises InputRefused where
     there are several of a kind, or none."""
-    file = None if boreholes.file is None else Path(boreholes.file)
-    if file is None or not is_workbook(file):
+    whole = boreholes.file
+    if whole is None and boreholes.picks is not None and boreholes.files == [Path(boreholes.picks)]:
+        whole = boreholes.picks  # boreholes = "site.xlsx"
+    file = None if whole is None else Path(whole)
+    if file is None or not is_workbook(file) or (boreholes.file is None and len(sheet_names(file)) < 2):
         return boreholes, {}
+    boreholes = replace(boreholes, file=file, picks=None if whole is boreholes.picks else boreholes.picks)
     sheets: dict[str, str] = {}
     for name, kind in sheet_kinds(file, boreholes.columns, boreholes.layer).items():
         if kind not in MEANINGS or getattr(boreholes, kind) is not None:

@@ -56,7 +56,7 @@ class _Group:
 def begins_as_ags(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is AGS 3 or 4."""
     text = head.removeprefix(BOM).lstrip()
-    return re.match(rb'"GROUP"|"\*\*|\*\*PROJ|GROUP[,;\t]', text) is not None
+    return re.match(rb'"GROUP"|"\*\*|\*\*PROJ|GROUP[,;|\t]', text) is not None
 
 
 def read_ags(file: Path) -> dict[str, RawTable]:
@@ -126,10 +126,10 @@ def _groups(file: Path) -> dict[str, _Group]:
 
 def _entries(file: Path) -> Iterator[tuple[int, list[str]]]:
     """The entries of the lines that are not empty. Programs that open the file as a table may write it with
-    semicolons or tabs in the place of commas."""
+    semicolons, tabs or bars in the place of commas."""
     lines = read_text(file).split("\n")
     names = next((text for text in lines if _NAMES.match(text.strip())), ",")
-    separator = max(",;\t", key=names.count)
+    separator = max(",;\t|", key=names.count)
     for line, text in enumerate(lines, 1):
         stripped = text.strip()
         if stripped.strip(separator):
