@@ -15,12 +15,14 @@ from realmodel.bl.objects import meshes, placing
 from realmodel.bl.objects.materials import set_color
 from realmodel.bl.shading import strata_modifier, strata_values
 from realmodel.core.base.work import Work
-from realmodel.core.filling import hardness_of_beds
+from realmodel.core.filling import divided_at_beds, hardness_of_beds
 from realmodel.core.filling.erosion import cubic_lattice, meshed
 
 _LOOK_SLOTS = 5  # rocks of a palette
 _BASE_FACES = 26_000  # triangles of a base mesh at most, so that the files stay small
 _SCREE = "scree"  # the attribute of the faces of scree, while a mesh is thinned
+_UNDIVIDED = 0.9  # triangles of a thinned mesh, of the polygons that it has once it is divided at its beds
+_SHARP = math.radians(48.0)  # the angle between faces from which an edge is sharp
 
 
 def solid(low, high, spacing, inside):
@@ -109,8 +111,9 @@ def eroded_mesh(item):
 
 
 def thinned(item, faces, views):
-    """Leaves about so many triangles of an eroded mesh, small ones where cameras see it from nearby, and
-    joins them to quads. views: where the cameras are."""
+    """Leaves about so many polygons of an eroded mesh, small ones where cameras see it from nearby: fewer
+    triangles, divided at the beds so that these have sharp edges, and joined to quads. views: where the
+    cameras are."""
     mesh = eroded_mesh(item)
     count = len(mesh.polygons)
     values = np.zeros(count, bool)
@@ -118,11 +121,31 @@ def thinned(item, faces, views):
     numbers = mesh.attributes.new(_SCREE, "INT", "FACE")  # bmesh of Blender 3.4 has no layers of booleans
     numbers.data.foreach_set("value", values.astype(np.int32))
     if count > faces:
-        mesh = _collapsed(mesh, faces / count, np.round(_coarse(mesh, views), 1))
-    made = compact(mesh, f"{item.name} Eroded")
+        mesh = _collapsed(mesh, _UNDIVIDED * faces / count, np.round(_coarse(mesh, views), 1))
+    made = compact(_divided(mesh, strata_modifier.beds_of(item)[0]), f"{item.name} Eroded", is_smooth=True)
     strata_modifier.show_eroded(item, made)
     made.name = f"{item.name} Eroded"  # the one before had this name
     print(f"{item.name}: {count:,} triangles, {len(made.polygons):,} polygons are left", flush=True)
+
+
+def _divided(mesh, beds):
+    """A mesh of triangles whose rock is divided at the beds, its faces with the number of their bed as that
+    of their material."""
+    places, triangles = np.empty(3 * len(mesh.vertices)), np.empty(3 * len(mesh.polygons), np.int32)
+    scree = np.zeros(len(mesh.polygons), np.int32)
+    mesh.vertices.foreach_get("co", places)
+    mesh.polygons.foreach_get("vertices", triangles)
+    mesh.attributes[_SCREE].data.foreach_get("value", scree)
+    triangles = triangles.reshape(-1, 3)
+    places, rock = divided_at_beds(places.reshape(-1, 3), triangles[scree == 0], beds)
+    triangles = np.concatenate([rock, triangles[scree != 0]])
+    made = meshes.triangle_mesh("divided", places, triangles)
+    of_bed = 1 + beds.numbers(places[triangles].mean(axis=1))
+    of_bed[len(rock) :] = 0
+    made.polygons.foreach_set("material_index", of_bed.astype(np.int32))
+    is_scree = (np.arange(len(triangles)) >= len(rock)).astype(np.int32)
+    made.attributes.new(_SCREE, "INT", "FACE").data.foreach_set("value", is_scree)
+    return made
 
 
 def _collapsed(mesh, ratio, weights=None):
@@ -142,19 +165,25 @@ def _collapsed(mesh, ratio, weights=None):
     return fewer
 
 
-def compact(mesh, name):
-    """A mesh that takes little space in a compressed file: quads where two triangles are nearly flat,
-    vertices in the order of their places, coordinates rounded to a 20,000th of its size."""
+def compact(mesh, name, is_smooth=False):
+    """A mesh that takes little space in a compressed file: quads where two triangles of one material are
+    nearly flat, vertices in the order of their places, coordinates rounded to a 20,000th of its size.
+    is_smooth: with smooth faces between sharp edges."""
     work = bmesh.new()
     work.from_mesh(mesh)
     bmesh.ops.join_triangles(
-        work, faces=work.faces, angle_face_threshold=math.radians(35), angle_shape_threshold=math.radians(70)
+        work,
+        faces=work.faces,
+        cmp_materials=True,
+        angle_face_threshold=math.radians(35),
+        angle_shape_threshold=math.radians(70),
     )
     layer = work.faces.layers.int.get(_SCREE)
     places = np.array([tuple(vertex.co) for vertex in work.verts])
     work.verts.index_update()
     polygons = [[vertex.index for vertex in face.verts] for face in work.faces]
     is_scree = np.array([bool(face[layer]) if layer is not None else False for face in work.faces])
+    sharp = [[vertex.index for vertex in edge.verts] for edge in work.edges if _is_sharp(edge)]
     work.free()
     step = 2.0 ** math.floor(math.log2(np.ptp(places, axis=0).max() / 20_000.0))
     cells = np.floor((places - places.min(axis=0)) / (np.ptp(places, axis=0).max() / 1023.0)).astype(np.int64)
@@ -163,22 +192,37 @@ def compact(mesh, name):
     number[order] = np.arange(len(order))
     polygons = [number[polygon].tolist() for polygon in polygons]
     by_place = sorted(range(len(polygons)), key=lambda n: min(polygons[n]))
-    made = _sorted_mesh(name, np.round(places[order] / step) * step, [polygons[n] for n in by_place])
+    made, edges = _sorted_mesh(name, np.round(places[order] / step) * step, [polygons[n] for n in by_place])
+    if is_smooth:
+        made.polygons.foreach_set("use_smooth", np.ones(len(polygons), bool))
+        keys = _keys(number[np.array(sharp, np.int64).reshape(-1, 2)])
+        made.edges.foreach_set("use_edge_sharp", np.isin(_keys(edges), keys))
+        made.use_auto_smooth, made.auto_smooth_angle = True, math.pi  # edges that are sharp, and no others
     if layer is not None:
         values = made.attributes.new(strata_modifier.SCREE, "BOOLEAN", "FACE")
         values.data.foreach_set("value", is_scree[by_place])
     return made
 
 
+def _is_sharp(edge):
+    return len(edge.link_faces) != 2 or edge.calc_face_angle() > _SHARP
+
+
+def _keys(pairs):
+    """(E,) int64 a number of each pair of vertices (E, 2), in any order."""
+    pairs = np.sort(np.asarray(pairs, np.int64), axis=1)
+    return pairs[:, 0] << 32 | pairs[:, 1]
+
+
 def _sorted_mesh(name, vertices, polygons):
-    """A mesh whose edges are in the order of their vertices: it compresses to less than Blender's order."""
+    """A mesh whose edges are in the order of their vertices, which compresses to less than Blender's order;
+    and its edges (E, 2)."""
     corners = np.concatenate(polygons).astype(np.int32)
     sizes = np.array([len(polygon) for polygon in polygons])
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
     after = np.arange(len(corners)) + 1
     after[starts + sizes - 1] = starts
-    pairs = np.sort(np.stack([corners, corners[after]], 1), axis=1).astype(np.int64)
-    keys, of_corners = np.unique(pairs[:, 0] << 32 | pairs[:, 1], return_inverse=True)
+    keys, of_corners = np.unique(_keys(np.stack([corners, corners[after]], 1)), return_inverse=True)
     edges = np.stack([keys >> 32, keys & 0xFFFFFFFF], 1).astype(np.int32)
     made = bpy.data.meshes.new(name)
     made.vertices.add(len(vertices))
@@ -192,7 +236,7 @@ def _sorted_mesh(name, vertices, polygons):
     made.polygons.foreach_set("loop_start", starts.astype(np.int32))
     made.polygons.foreach_set("loop_total", sizes.astype(np.int32))
     made.update()
-    return made
+    return made, edges
 
 
 def _morton(cells):

@@ -56,7 +56,7 @@ def canyon(scene):
         "CANYON",
         values,
         {"faces": 320_000, "strength": 0.75, "joints": 1.2, "roughness": 0.9, "scree": 0.18, "stones": 0.0},
-        60_000,
+        41_000,
         [eye],
     )
     _weathered(walls, "#8f6248", 14.0, streaks=0.55, ledge=0.72, cover=0.8, tint="#7d3b26")
@@ -74,7 +74,7 @@ def canyon(scene):
         "CANYON",
         {"beds": 12, "variation": 0.8, "dip": 0.0, "seed": 2},
         {"faces": 130_000, "strength": 0.5, "joints": 1.3, "roughness": 0.7, "scree": 0.0, "stones": 0.0},
-        26_000,
+        24_000,
         [eye],
     )
     _weathered(rim, "#a8714e", 1.6, streaks=0.3, ledge=0.8, cover=0.6, tint="#8a4a33")
@@ -336,7 +336,7 @@ def arch(scene):
         "CANYON",
         {"beds": 22, "variation": 0.8, "dip": math.radians(1.5), "seed": 11},
         {"faces": 340_000, "strength": 0.27, "joints": 0.6, "roughness": 1.0, "scree": 0.0, "stones": 0.0},
-        84_000,
+        112_000,
         [eye, (-6.0, 0.0, 9.0)],
     )
     red = {1: "#b8623a", 2: "#c4784a", 3: "#8f4630", 4: "#cf9a6c", 5: "#bd6e43"}

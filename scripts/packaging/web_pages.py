@@ -21,8 +21,9 @@ PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 # What the guide and the reference refer to beside themselves.
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
 LARGE, WIDTH = 8_000, 736  # bytes of a picture that is made smaller; pixels, as wide as a page
-MOVING, SHORT = 480, 70  # pixels, the width of a moving one; milliseconds of a frame that it does without
-QUALITY = 46  # of a picture as WebP, which takes half of what JPEG does
+MOVING, SHORT = 400, 70  # pixels, the width of a moving one; milliseconds of a frame that it does without
+QUALITY = 42  # of a picture as WebP, which takes half of what JPEG does
+QUALITY_MOVING = 26  # of its frames, of which each is seen for a moment
 _SOURCE = re.compile(r'<img[^>]* src="([^"]+)"')
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
@@ -94,7 +95,7 @@ def _save_moving(image, to):
         append_images=frames[1:],
         duration=durations,
         loop=0,
-        quality=QUALITY,
+        quality=QUALITY_MOVING,
         method=6,
     )
 
