@@ -140,7 +140,9 @@ class REALMODEL_OT_file_choose(Reporting, bpy.types.Operator, ImportHelper):
         path = "" if self.none else self.filepath
         if path:
             require_file(project_settings.absolute(path))
-            path = bpy.path.relpath(path) if before.startswith("//") else path
+            if before.startswith("//"):
+                with contextlib.suppress(ValueError):  # on another drive of Windows
+                    path = bpy.path.relpath(path)
         setattr(context.scene.path_resolve(self.row), self.key, path)
 
 
