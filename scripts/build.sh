@@ -4,12 +4,19 @@
 # interpreter in addon/realmodel, beside those for others: PYTHONPATH=addon finds it. The packages that
 # travel with the add-on come into addon/realmodel/vendor.
 #
-#   scripts/build.sh [PYTHON]      PYTHON: an interpreter, 3.11 or newer (default: python3)
+#   scripts/build.sh [--cuda] [PYTHON]      PYTHON: an interpreter, 3.11 or newer (default: python3)
+#
+# --cuda: the optional module for NVIDIA's GPUs, too, which needs nvcc (docs/dev/gpu.md).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
+cuda=false
+if [[ ${1-} == --cuda ]]; then
+    cuda=true
+    shift
+fi
 if (($# > 1)); then
-    echo "usage: build.sh [PYTHON]" >&2
+    echo "usage: build.sh [--cuda] [PYTHON]" >&2
     exit 2
 fi
 "$root/scripts/install_dependencies.sh" build
@@ -40,6 +47,17 @@ fi
 (cd "$root" && cmake --preset release -U 'Python*' -U '_Python*' -U 'pybind11*' \
     "-DPython_EXECUTABLE=$python" --log-level=WARNING)
 cmake --build "$root/build/release" --target _native -j "$("$root/scripts/build_jobs.sh")"
+
+if $cuda; then
+    if ! command -v nvcc >/dev/null; then
+        echo "build.sh: --cuda needs nvcc of the CUDA toolkit, which is not on PATH" >&2
+        exit 1
+    fi
+    (cd "$root" && cmake --preset cuda -U 'Python*' -U '_Python*' -U 'pybind11*' \
+        "-DPython_EXECUTABLE=$python" --log-level=WARNING)
+    cmake --build "$root/build/cuda" --target _native_cuda -j "$("$root/scripts/build_jobs.sh")"
+    cp "$root"/build/cuda/cuda/_native_cuda* "$root/addon/realmodel/"
+fi
 
 if ! PYTHONPATH="$root/addon" "$python" -c 'import realmodel._native'; then
     echo "build.sh: the module was built but $python cannot load it (reason above)" >&2

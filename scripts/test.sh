@@ -9,7 +9,8 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff types shellcheck sizes site native core blender gui (a window under Xvfb) walk (random
+#                   format ruff types shellcheck sizes site native cuda (compiled
+#                   where nvcc is) core blender gui (a window under Xvfb) walk (random
 #                   steps in it, random_walk.sh) bpy package asan builds; and three that are not run unless asked
 #                   for: tidy tsan odr (check_odr.sh). Asked for
 #                   alone, builds compares clang++'s optimised code too
@@ -19,15 +20,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff types shellcheck sizes site native core blender gui walk bpy package asan builds)
+all_steps=(format ruff types shellcheck sizes site native cuda core blender gui walk bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff types shellcheck sizes site native core blender gui walk bpy package) ;;
+        --quick) steps=(format ruff types shellcheck sizes site native cuda core blender gui walk bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | types | shellcheck | sizes | site | native | core | blender | gui | walk | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
+                format | ruff | types | shellcheck | sizes | site | native | cuda | core | blender | gui | walk | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan odr" >&2
                     exit 2
@@ -190,6 +191,17 @@ test_native() { # PRESET: it is configured
 
 test_sanitized() { cmake --preset "$1" --log-level=WARNING && test_native "$1"; }
 
+check_cuda() { # compiled for two architectures: there is no GPU here to run it on
+    local objects=build/cuda/native/cuda/CMakeFiles log=$logs/kernels.log
+    cmake --preset cuda "-DPython_EXECUTABLE=$python" --log-level=WARNING || return
+    rm -f "$objects"/realmodel_cuda.dir/device.cu.o # so that the compiler says again what each kernel takes
+    cmake --build build/cuda --target realmodel_cuda realmodel_ptx _native_cuda -j 2 >"$log" 2>&1 || {
+        cat "$log"
+        return 1
+    }
+    "$python" scripts/check_kernels.py "$log" "$objects"/realmodel_ptx.dir/device.ptx
+}
+
 test_asan() { test_sanitized asan; }
 
 check_tidy() {
@@ -226,7 +238,7 @@ test_package() { # zip and wheels of the modules that can be made here, and the 
 step install install
 ((ended[install] == 0)) || finish
 needed=()
-wants native core blender gui walk bpy && needed+=(build build)
+wants native cuda core blender gui walk bpy && needed+=(build build)
 needed+=(install-more install_more environment install_environment)
 if wants bpy; then
     if "$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
@@ -246,6 +258,13 @@ wants blender && alone+=(blender test_blender)
 wants gui && alone+=(gui test_gui)
 wants walk && alone+=(walk test_walk)
 wants package && alone+=(package test_package)
+if wants cuda; then
+    if command -v nvcc >/dev/null; then
+        alone+=(cuda check_cuda)
+    else
+        skip cuda "there is no nvcc here, and the tests do not install it"
+    fi
+fi
 wants types && alone+=(types check_types)
 wants site && alone+=(site check_site)
 wants ruff && alone+=(ruff check_ruff)

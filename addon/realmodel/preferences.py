@@ -19,6 +19,10 @@ DISPLAYS = (
     ("POLYHEDRA", "Cells", "The polyhedral cells of the blocks"),
     ("BLOCKS", "Blocks", "The blocks as solids"),
 )
+_DEVICES = (
+    ("CPU", "CPU", "Threads of the processor"),
+    ("CUDA", "CUDA", "An NVIDIA GPU helps with kriging and joined parts; needs the module _native_cuda"),
+)
 _GIGABYTE = 1 << 30
 
 
@@ -32,6 +36,13 @@ class RealModelPreferences(bpy.types.AddonPreferences):
         description="Threads of a build. 0: all processors, but one while you keep working in the window",
         min=0,
         max=1024,
+    )
+    device: EnumProperty(
+        name="Device",
+        description="What computes a build; the model is the same. Where a device cannot be used, a "
+        "warning of the build says why",
+        items=_DEVICES,
+        default="CPU",
     )
     memory_limit: FloatProperty(
         name="Memory Limit",
@@ -66,7 +77,7 @@ class RealModelPreferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         for heading, names in (
-            ("Build", ("threads", "memory_limit", "live_pause")),
+            ("Build", ("threads", "device", "memory_limit", "live_pause")),
             ("New Models", ("display", "cells")),
         ):
             column = layout.column(heading=heading)
@@ -103,6 +114,11 @@ def current():
 def build_memory():
     """Memory that a build may use, in bytes; None: the free memory."""
     return round(current().memory_limit * _GIGABYTE) or None
+
+
+def build_device():
+    """The device of a build, as `build` calls it."""
+    return current().device.lower()
 
 
 def register():

@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "execution.hpp"
+#include "realmodel/base/device.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/base/memory.hpp"
@@ -53,6 +54,17 @@ void translate(std::exception_ptr thrown) {
     }
 }
 
+/// @throws pybind11::value_error  where they are of another version of this library
+const Device* functions_of(const py::object& device) {
+    if (device.is_none()) return nullptr;
+    const py::object capsule = device.attr("functions");
+    const auto* const functions =
+        static_cast<const Device*>(PyCapsule_GetPointer(capsule.ptr(), "realmodel.Device"));
+    if (functions == nullptr) throw py::error_already_set();
+    if (functions->layout == Device::kLayout) return functions;
+    throw py::value_error("_native_cuda is of another version of RealModel: build it again");
+}
+
 }  // namespace
 
 void bind_base(py::module_& module) {
@@ -74,11 +86,12 @@ void bind_base(py::module_& module) {
     py::class_<WatchedExecution>(module, "Execution",
                                  "How a long call is run, watched from another thread and stopped. "
                                  "threads: 0 for as many as "
-                                 "there are; no result depends on it.")
-        .def(py::init([](int threads) {
-                 return new WatchedExecution{threads, {}};
+                                 "there are; device: a Device of _native_cuda, or None. No "
+                                 "result depends on either.")
+        .def(py::init([](int threads, const py::object& device) {
+                 return new WatchedExecution{threads, device, functions_of(device), {}};
              }),
-             py::arg("threads") = 0)
+             py::arg("threads") = 0, py::arg("device") = py::none())
         .def_property_readonly(
             "fraction", [](const WatchedExecution& of) { return of.progress.fraction(); },
             "Share of the work done, 0 to 1.")

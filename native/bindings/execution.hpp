@@ -8,16 +8,20 @@
 
 namespace realmodel::bindings {
 
-/// What Python knows as Execution: a call's number of threads, and its progress, which another
-/// thread of Python watches.
+/// What Python knows as Execution: a call's number of threads, its device, and its progress, which
+/// another thread of Python watches.
 struct WatchedExecution {
     int threads = 0;
+    pybind11::object device;  ///< what `functions` belong to, or None
+    const Device* functions = nullptr;
     Progress progress;
 };
 
 /// How a call is run; null: on all threads, and nobody watches.
 inline Execution run(WatchedExecution* execution) {
-    return execution == nullptr ? Execution{} : Execution{execution->threads, &execution->progress};
+    return execution == nullptr
+               ? Execution{}
+               : Execution{execution->threads, &execution->progress, execution->functions};
 }
 
 /// When the work is done, refused or cancelled, what it had is the system's again.

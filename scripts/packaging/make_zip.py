@@ -61,7 +61,7 @@ def contents(platform, modules, wheels):
     files = {
         f"{TOP}/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
         for path in files_below(ADDON)
-        if not path.name.startswith("_native.")
+        if not path.name.startswith(("_native.", "_native_cuda."))
     }
     for path in files_below(ROOT / "blend_samples"):
         if path.suffix == ".blend":  # of up to 3 MB, while the zip has a limit

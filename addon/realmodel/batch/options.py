@@ -162,7 +162,8 @@ class Option(NamedTuple):
 _OF_DASK = ("ensemble", "tiles")
 _MESH = ("mesh",)
 _LINES = ("section", "fence", "borehole")
-_OF_BUILDS = (*_OF_DASK, "cells", "memory", "estimate", "surfaces-only")  # a built model has them no more
+# A built model has them no more.
+_OF_BUILDS = (*_OF_DASK, "cells", "device", "memory", "estimate", "surfaces-only")
 MODEL_ENDING = ".npz"
 OPTIONS = (
     Option("blend", "F", "write the scene to F.blend (in Blender)", Path, ending=".blend", in_blender=True),
@@ -383,6 +384,12 @@ OPTIONS = (
     ),
     Option("threads", "N", "number of threads; 0 (default): all", _whole, 0),
     Option(
+        "device",
+        ("cpu", "cuda"),
+        "what helps the build: nothing (default), or a GPU, by the module _native_cuda; the same bytes",
+        default="cpu",
+    ),
+    Option(
         "memory",
         "GB",
         "memory limit of the build (default: the free memory); a build that needs more is refused",
@@ -401,7 +408,7 @@ OPTIONS = (
         "surfaces-only",
         "",
         "stop after the interpolation: --export writes the surfaces with elevation, variance and distance",
-        beside=("export", "report", "stage", "cells", "threads", "cell-size", "contour-interval"),
+        beside=("export", "report", "stage", "cells", "threads", "device", "cell-size", "contour-interval"),
     ),
     Option(
         "eroded",

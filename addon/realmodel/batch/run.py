@@ -80,7 +80,9 @@ def run(options: argparse.Namespace) -> None:
         try:
             for request in requests:
                 request.read()
-            model = source.model(options.cells, options.threads, progress, options.stage, options.memory)
+            model = source.model(
+                options.cells, options.threads, options.device, progress, options.stage, options.memory
+            )
             _require_fields(options, model.project)
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
@@ -146,7 +148,11 @@ def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
     with Outputs() as outputs, Interruptible(outputs):
         try:
             surfaces = build_surfaces(
-                project, threads=options.threads, progress=progress, stage=options.stage
+                project,
+                threads=options.threads,
+                device=options.device,
+                progress=progress,
+                stage=options.stage,
             )
             for path in options.export:
                 progress(1.0, f"writing {path.name}")

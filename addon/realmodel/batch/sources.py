@@ -34,12 +34,21 @@ class OpenedFile:
         self,
         cells: str,
         threads: int = 0,
+        device: str = "cpu",
         progress: Callable[[float, str], None] | None = None,
         stage: int | None = None,
         memory: int | None = None,
     ) -> Model:
         """The model: built, with the arguments of `build`, or loaded as it is. Raises RealModelError."""
         if self.project is not None:
-            return build(self.project, cells, threads=threads, progress=progress, stage=stage, memory=memory)
+            return build(
+                self.project,
+                cells,
+                threads=threads,
+                device=device,
+                progress=progress,
+                stage=stage,
+                memory=memory,
+            )
         model = Model.load(self.file, threads=threads, progress=progress)
         return model if stage is None else model.stage(stage, progress=progress)

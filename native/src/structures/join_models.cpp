@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include "base/algorithms.hpp"
 #include "base/floating_point.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
-#include "base/parallel_sort.hpp"
 #include "cutting/assembly.hpp"
 #include "cutting/cell_parts.hpp"
 #include "cutting/near_model.hpp"
@@ -19,6 +17,7 @@
 #include "exact/space_points.hpp"
 #include "strata/cells/volumes.hpp"
 #include "structures/joined_rounding.hpp"
+#include "structures/merge_vertices.hpp"
 #include "structures/wanted_parts.hpp"
 
 namespace realmodel::structures {
@@ -185,23 +184,10 @@ void MergedModels::share_vertices(const Execution& execution) {
         for (auto i = index(face_offsets[f]); i < index(face_offsets[f + 1]); ++i)
             is_shared[index(face_vertices[i])] = 1;
     }
-    std::vector<std::pair<Position, std::int32_t>> order;
-    std::vector<std::int32_t> number(vertices.size()), shared;
-    std::iota(number.begin(), number.end(), 0);
-    for (const std::int32_t v : number) {
-        if (is_shared[index(v)] == 0) continue;
-        order.push_back({vertices[index(v)], v});
-        shared.push_back(v);
-    }
-    parallel_sort(order, std::less<>(), execution);
-    auto next = shared.begin();
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i > 0 && order[i].first != order[i - 1].first) ++next;
-        vertices[index(*next)] = order[i].first;
-        number[index(order[i].second)] = *next;
-    }
-    for (std::int32_t& v : face_vertices)
-        v = number[index(v)];
+    if (vertices.empty()) return;
+    merge_vertices({vertices[0].data(), vertices.size(), is_shared.data(), face_vertices.data(),
+                    face_vertices.size()},
+                   execution);
 }
 
 /// The faces of what is left of the cells.

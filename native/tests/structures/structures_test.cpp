@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "../../cuda/offload.hpp"
 #include "../strata/complex_checks.hpp"
 #include "cutting/pieces.hpp"
 #include "realmodel/base/errors.hpp"
@@ -72,10 +73,14 @@ Joined joined(std::span<const CompartmentModel> models, std::span<const Structur
               std::span<const std::uint8_t> acts) {
     Joined one = join_models(models, structures, acts, {1, nullptr});
     strata::expect_valid(one.complex, false);
-    const Joined two = join_models(models, structures, acts, {3, nullptr});
-    EXPECT_TRUE(std::ranges::equal(one.complex.vertices, two.complex.vertices));
-    EXPECT_TRUE(std::ranges::equal(one.complex.face_vertices, two.complex.face_vertices));
-    EXPECT_TRUE(std::ranges::equal(one.complex.face_cells, two.complex.face_cells));
+    cuda::Offload<cuda::CpuBackend> device("", std::make_unique<cuda::CpuBackend>());
+    for (const Execution& execution : {Execution{3}, Execution{1, nullptr, &device.device()}}) {
+        const Joined two = join_models(models, structures, acts, execution);
+        EXPECT_TRUE(std::ranges::equal(one.complex.vertices, two.complex.vertices));
+        EXPECT_TRUE(std::ranges::equal(one.complex.face_vertices, two.complex.face_vertices));
+        EXPECT_TRUE(std::ranges::equal(one.complex.face_cells, two.complex.face_cells));
+    }
+    EXPECT_TRUE(device.take_messages().empty());
     return one;
 }
 

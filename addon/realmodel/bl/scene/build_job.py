@@ -49,6 +49,7 @@ class BuildJob(ThreadJob):
             self.composed.project,
             cells=self.cells,
             threads=threads(is_short=True),
+            device=preferences.build_device(),
             memory=preferences.build_memory(),
             progress=progress,
         )
@@ -56,11 +57,17 @@ class BuildJob(ThreadJob):
 
     def start(self, is_short=False):
         """Builds in a thread. is_short: it is expected to take less than half a second."""
-        self._memory = preferences.build_memory()
+        self._memory, self._device = preferences.build_memory(), preferences.build_device()
         super().start(is_short)
 
     def _work(self, _):
-        model = build(self.composed.project, cells=self.cells, threads=self._threads, memory=self._memory)
+        model = build(
+            self.composed.project,
+            cells=self.cells,
+            threads=self._threads,
+            device=self._device,
+            memory=self._memory,
+        )
         for ask in self._ahead:
             with suppress(RealModelError):  # what shows it asks again, and tells
                 ask(model)

@@ -24,6 +24,7 @@ from .packages import extra
 
 if TYPE_CHECKING:
     from ..._native import Native
+    from .device import OpenDevice
 
 Reporter = Callable[[float, str], None]  # of the share that is done, and what is being done
 Progress = Reporter | Literal[True]  # True: a bar
@@ -53,11 +54,12 @@ def on_threads(threads: int) -> Native.Execution:
 
 
 class Work:
-    """What a working thread runs on: its progress, the request to cancel it, and how many threads native
-    calls may take (0: as many as there are)."""
+    """What a working thread runs on: its progress, the request to cancel it, and how many threads (0: as many
+    as there are) and which device native calls may take."""
 
-    def __init__(self, threads: int = 0):
+    def __init__(self, threads: int = 0, device: OpenDevice | None = None):
         self.threads = threads
+        self.device = device
         self._lock = threading.Lock()
         self._execution: Native.Execution | None = None
         self._works: list[Work] = []  # of the items of `each`, while it runs
@@ -125,7 +127,7 @@ class Work:
     ) -> Result:
         """Calls a native function that takes an `execution`, as the present phase."""
         native, call = native_module(), cast(Callable[..., Result], function)
-        execution = native.Execution(self.threads)
+        execution = native.Execution(self.threads, self.device)
         with self._lock:
             self._execution = execution
         try:
@@ -157,7 +159,7 @@ class Work:
         if at_once > 1:
             # twice as many threads as there are: while one item keeps one thread busy, another uses the rest
             threads = -(-2 * all_threads // at_once)
-        works = [Work(threads) for _ in items]
+        works = [Work(threads, self.device) for _ in items]
 
         def done(number: int) -> Result:
             before = getattr(_current, "work", None)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.algebra import ascending
+from ..base.device import check_device, on_device
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.named import keyword_only
@@ -30,6 +31,7 @@ def interpolate(
     neighbours: int | None = None,
     *,
     threads: int = 0,
+    device: str = "cpu",
     dips: Dips | None = None,
     bounds: Bounds | None = None,
     true_thickness: bool = False,
@@ -44,6 +46,7 @@ def interpolate(
     triangles: (T, 3) of the nodes' mesh, where the method works on it.
     neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
     16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.
+    device: as of `build`, for ordinary kriging from at most 96 neighbors; a warning is in `warnings`.
     dips, bounds: slopes of the surface, and heights that it lies above or below, for methods that use them.
     true_thickness: the thickness of "parallel" is measured perpendicular to the other surface.
 
@@ -64,6 +67,7 @@ def interpolate(
         data = np.empty((0, 3))
     nodes = checked_nodes(nodes)
     threads = check_threads(threads)
+    check_device(device)
     triangles = checked_triangles(triangles, len(nodes))
     dips = None if dips is None else dips.checked()
 
@@ -75,9 +79,10 @@ def interpolate(
         )
 
     def task(work: Work) -> Interpolation:
-        with work.phase(0.0, 1.0, "interpolating"):
+        with work.phase(0.0, 1.0, "interpolating"), on_device(work, device) as warnings:
             whole = Task(work, data, nodes, settings, triangles, dips=dips, bounds=bounds)
-            return heights(method, replace(whole, true_thickness=true_thickness))
+            made = heights(method, replace(whole, true_thickness=true_thickness))
+        return replace(made, warnings=(*made.warnings, *map(str, warnings)))
 
     return run(task, progress, cancel, threads=threads)
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.device import check_device, on_device
 from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.assembly import assemble, intersect
@@ -35,6 +36,7 @@ def build(
     cells: str = "columns",
     *,
     threads: int = 0,
+    device: str = "cpu",
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     stage: int | None = None,
@@ -43,11 +45,12 @@ def build(
     """Builds the model of a project.
 
     cells: "columns", each under one facet of the surface above it, or "blocks", one for each connected
-    component of a block. threads: 0 for all; the result is the same for any number. stage: build only up to
-    this surface (from 0) of each rock mass. memory: limit of the build in bytes; None: the free memory. A
-    build that is expected to need more (estimate) is refused before it begins. progress(fraction, text) and
-    cancel() are called from this thread every 40 ms while another works; the fraction never falls. cancel()
-    returning True ends it with Cancelled.
+    component of a block. threads: 0 for all; the result is the same for any number. device: "cpu", or "cuda"
+    for a GPU (docs/dev/gpu.md), with the same result; where it cannot be used, a warning says why. stage:
+    build only up to this surface (from 0) of each rock mass. memory: limit of the build in bytes; None: the
+    free memory. A build that is expected to need more (estimate) is refused before it begins.
+    progress(fraction, text) and cancel() are called from this thread every 40 ms while another works; the
+    fraction never falls. cancel() returning True ends it with Cancelled.
 
     Raises InputRefused (what, where, what to do), NotEnoughMemory, BuildFailed, UsageError, Cancelled.
 
@@ -61,11 +64,19 @@ def build(
     check_cells(cells)
     check_memory(memory)
     threads = check_threads(threads)
+    check_device(device)
     project = check_project(project)
     if stage is not None:
         check_stage(project, stage)
     native_module()
-    return run(lambda work: _build(work, project, cells, stage, memory), progress, cancel, threads=threads)
+
+    def task(work: Work) -> Model:
+        with on_device(work, device) as warnings:
+            model = _build(work, project, cells, stage, memory)
+        model.warnings.extend(warnings)
+        return model
+
+    return run(task, progress, cancel, threads=threads)
 
 
 def _build(work: Work, project: Project, cells: str, stage: int | None, memory: int | None) -> Model:

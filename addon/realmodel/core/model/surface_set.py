@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.device import check_device, on_device
 from ..base.errors import BuildWarning, UsageError
 from ..base.named import NamedList, keyword_only, number_of
 from ..base.triangles import Triangulation
@@ -92,6 +93,7 @@ def build_surfaces(
     project: Project,
     *,
     threads: int = 0,
+    device: str = "cpu",
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     stage: int | None = None,
@@ -102,13 +104,21 @@ def build_surfaces(
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
+    check_device(device)
     project = check_project(project)
     if stage is not None:
         check_stage(project, stage)
     if not any(rock.surfaces for rock in project.rocks):
         raise UsageError("the project has no surfaces")
     native_module()
-    return run(lambda work: _build(work, project, stage), progress, cancel, threads=threads)
+
+    def task(work: Work) -> SurfaceSet:
+        with on_device(work, device) as warnings:
+            surfaces = _build(work, project, stage)
+        surfaces.warnings.extend(warnings)
+        return surfaces
+
+    return run(task, progress, cancel, threads=threads)
 
 
 def _build(work: Work, project: Project, stage: int | None) -> SurfaceSet:

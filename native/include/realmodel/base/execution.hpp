@@ -5,10 +5,14 @@
 
 namespace realmodel {
 
-/// How a computation runs: on how many threads, and who watches and may cancel it.
+struct Device;
+
+/// How a computation runs: on how many threads, who watches and may cancel it, and whether a device
+/// helps.
 struct Execution {
-    int threads = 0;               ///< 0: as many as there are; no result depends on it
-    Progress* progress = nullptr;  ///< null: nobody watches
+    int threads = 0;                 ///< 0: as many as there are; no result depends on it
+    Progress* progress = nullptr;    ///< null: nobody watches
+    const Device* device = nullptr;  ///< null: none; no result depends on it
 };
 
 /// Has the threads of GNU's OpenMP library sleep soon while they have nothing to do, in a process

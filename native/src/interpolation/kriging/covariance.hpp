@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
+#include "base/host_device.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/kriging/decay.hpp"
 #include "realmodel/interpolation/sheets.hpp"
@@ -26,8 +28,8 @@ struct CovarianceStructure {
 /// @tparam Bits  as of decay()
 /// @param root   the square root of a Number
 template <class Bits = std::uint64_t, class Number, class Root>
-__attribute__((always_inline)) inline Number covariance_of(const CovarianceStructure& structure,
-                                                           Number dx, Number dy, const Root& root) {
+REALMODEL_HOST_DEVICE __attribute__((always_inline)) inline Number covariance_of(
+    const CovarianceStructure& structure, Number dx, Number dy, const Root& root) {
     const Number along = structure.xx * dx + structure.xy * dy;
     const Number across = structure.yx * dx + structure.yy * dy;
     const Number square = along * along + across * across;
@@ -55,6 +57,18 @@ __attribute__((always_inline)) inline Number covariance_of(const CovarianceStruc
             return structure.share * ((1 + s * (1 + s * kThird)) * decay<Bits>(s));
         }
     }
+}
+
+/// The covariance of positions that differ by (dx, dy), of all structures.
+REALMODEL_HOST_DEVICE inline double covariance_of(const CovarianceStructure* structures,
+                                                  std::size_t count, double dx, double dy) {
+    struct Root {
+        REALMODEL_HOST_DEVICE double operator()(double v) const { return std::sqrt(v); }
+    };
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        sum += covariance_of(structures[i], dx, dy, Root{});
+    return sum;
 }
 
 /// 1 - gamma(h) / sill: kriging with it gives the same weights as with gamma, and the matrix of the
@@ -93,12 +107,7 @@ public:
 private:
     static double sum_of(const std::vector<CovarianceStructure>& structures, const PlanPosition& a,
                          const PlanPosition& b) {
-        const auto root = [](double v) { return std::sqrt(v); };
-        const double dx = a[0] - b[0], dy = a[1] - b[1];
-        double sum = 0;
-        for (const CovarianceStructure& structure : structures)
-            sum += covariance_of(structure, dx, dy, root);
-        return sum;
+        return covariance_of(structures.data(), structures.size(), a[0] - b[0], a[1] - b[1]);
     }
 
     std::vector<CovarianceStructure> structures_, thickness_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/host_device.hpp"
+
 namespace realmodel::interpolation {
 
 /// What kriging gives for a node.
@@ -27,7 +29,8 @@ inline constexpr double kRedundantVariance = 1e-10;
 /// as scalar products (Chiles and Delfiner 2012, section 3.4.1, the Lagrange multiplier
 /// eliminated).
 template <class Number>
-inline EstimateOf<Number> ordinary_kriging(Number uu, Number us, Number ut, Number ss, Number st) {
+REALMODEL_HOST_DEVICE inline EstimateOf<Number> ordinary_kriging(Number uu, Number us, Number ut,
+                                                                 Number ss, Number st) {
     const Number excess = us - 1;
     const Number variance = 1 - uu + excess * excess / ss;
     return {ut - excess / ss * st, variance > 0.0 ? variance : Number{}};

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/algorithms.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/kriging/estimate.hpp"
@@ -16,14 +17,16 @@
 #include "interpolation/kriging/tiled_cholesky.hpp"
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
+#include "realmodel/base/device.hpp"
 #include "spatial/plan_tiles.hpp"
 
 namespace realmodel::interpolation {
 
 namespace {
 
-constexpr Eigen::Index kNodesAtOnce = 64;        // right sides: matrix products are fast
-constexpr std::size_t kNodesInOrder = 1U << 22;  // put in order at a time: some tens of ms
+constexpr Eigen::Index kNodesAtOnce = 64;             // right sides: matrix products are fast
+constexpr std::size_t kNodesInOrder = 1U << 22;       // put in order at a time: some tens of ms
+constexpr std::size_t kNeighborsOnDevice = 1U << 24;  // found for a device at a time: 64 MB
 constexpr int kMostOthers = 200;  // from which a point is estimated that the factor cannot estimate
 
 /// What all ways of kriging need: the data, the nodes and room for the estimates.
@@ -250,6 +253,61 @@ std::size_t nodes_in_chunk(std::size_t neighbors) {
     return neighbors <= 64 ? 512 : neighbors <= 128 ? 128 : 64;
 }
 
+/// Of nodes that follow one another along a curve: of each its nearest points, all but itself where
+/// it is left out.
+std::vector<std::int32_t> nearest_points(const KrigingTask& task, std::size_t neighbors,
+                                         std::span<const PlanPosition> nodes,
+                                         std::span<const std::int32_t> left_out) {
+    std::vector<std::int32_t> nearest(nodes.size() * neighbors);
+    NodeLoop{nodes.size(), 512, task.execution}.over_chunks(
+        [&] { return spatial::BlockNeighbors(task.tree, neighbors + (task.leaves_out ? 1 : 0)); },
+        [&](spatial::BlockNeighbors& block, std::size_t i, std::size_t end) {
+            constexpr std::size_t kMostInBlock = 64;
+            for (std::size_t count = kMostInBlock; i < end; count *= 2) {
+                count = std::min({count, kMostInBlock, end - i});
+                while (!block.prepare(nodes.subspan(i, count)))
+                    count /= 2;
+                for (const std::size_t last = i + count; i < last; ++i) {
+                    auto found = block.nearest(nodes[i]).begin();
+                    for (std::size_t k = 0; k < neighbors; ++found) {
+                        const std::int32_t point = block.candidates()[*found];
+                        if (point != left_out[i]) nearest[i * neighbors + k++] = point;
+                    }
+                }
+            }
+        });
+    return nearest;
+}
+
+/// Has a device solve the systems of the nodes from `first` on, whose positions are given; whether
+/// it did.
+/// @param order  of the positions, along a curve
+bool krige_on_device(const KrigingTask& task, std::size_t neighbors, std::size_t first,
+                     std::span<const PlanPosition> positions,
+                     std::span<const std::uint32_t> order) {
+    const Device& device = *task.execution.device;
+    const DataPoints& points = task.data.points();
+    const auto& structures = task.covariance.structures();
+    const std::size_t at_once = kNeighborsOnDevice / neighbors;
+    for (std::size_t begin = 0; begin < order.size(); begin += at_once) {
+        const auto numbers = order.subspan(begin, std::min(at_once, order.size() - begin));
+        const auto nodes =
+            transformed(numbers, [&](std::uint32_t number) { return positions[number]; });
+        const auto left_out = transformed(
+            numbers, [&](std::uint32_t number) { return task.left_out(first + number); });
+        const std::vector<std::int32_t> nearest = nearest_points(task, neighbors, nodes, left_out);
+        std::vector<Estimate> estimates(nodes.size());
+        if (!device.krige(device.state,
+                          {points.local[0].data(), points.values.data(), points.local.size(),
+                           structures.data(), structures.size(), nodes[0].data(), nodes.size(),
+                           nearest.data(), neighbors, !task.leaves_out, &estimates[0].value}))
+            return false;
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+            task.set(first + numbers[i], estimates[i]);
+    }
+    return true;
+}
+
 /// The nearest of all directions and distances, few enough: several systems at once. Those that are
 /// not well posed - points in one line and a drift across it - one by one.
 void krige_in_lanes(const KrigingTask& task) {
@@ -271,6 +329,8 @@ void krige_in_lanes(const KrigingTask& task) {
                            DataSearch(task.data, task.tree, task.options.neighborhood),
                            {}};
     };
+    bool on_device = task.execution.device != nullptr && task.options.drift == Drift::kConstant &&
+                     task.data.dips_at_node() == 0 && neighbors <= Device::kMostNeighbors;
     std::vector<PlanPosition> positions;
     for (std::size_t first = 0; first < count; first += kNodesInOrder) {
         const std::size_t here = std::min(kNodesInOrder, count - first);
@@ -281,6 +341,9 @@ void krige_in_lanes(const KrigingTask& task) {
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(count);
         };
+        begin_phase(task.execution.progress, share(first), share(first + here), "kriging");
+        on_device = on_device && krige_on_device(task, neighbors, first, positions, order);
+        if (on_device) continue;
         NodeLoop{here,           nodes_in_chunk(neighbors + 2 * task.data.dips_at_node()),
                  task.execution, "kriging",
                  share(first),   share(first + here)}

@@ -7,11 +7,13 @@
 #include <random>
 #include <vector>
 
+#include "../../../cuda/offload.hpp"
 #include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
 #include "../variogram_models.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/neighbors/neighbor_search.hpp"
+#include "realmodel/interpolation/kriging.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -75,6 +77,31 @@ std::vector<Estimate> one_by_one(const LinearData& data, const Covariance& covar
     return out;
 }
 
+/// What a device computes, all at once or in tiles, and what is left to the lanes.
+void expect_same_bytes_of_devices(const Points& points, const Nodes& nodes,
+                                  const Variogram& variogram, int neighbors, bool leave_out) {
+    const KrigingOptions options{{neighbors, 0, 0}};
+    const auto kriged = [&](const Device* device) {
+        const Execution execution{1, nullptr, device};
+        return leave_out ? krige_left_out(points, variogram, options, execution)
+                         : krige(points, nodes, variogram, options, execution);
+    };
+    const Kriged expected = kriged(nullptr);
+    for (const std::size_t memory : {std::size_t{100}, std::size_t{30'000}, SIZE_MAX}) {
+        SCOPED_TRACE(memory);
+        cuda::Offload<cuda::CpuBackend> device("", std::make_unique<cuda::CpuBackend>(memory), 2);
+        const Kriged found = kriged(&device.device());
+        const auto messages = device.take_messages();
+        if (memory != 30'000) EXPECT_EQ(messages.empty(), memory == SIZE_MAX);
+        ASSERT_EQ(found.z.size(), expected.z.size());
+        for (const auto part : {&Kriged::z, &Kriged::variance}) {
+            EXPECT_EQ(std::memcmp((found.*part).data(), (expected.*part).data(),
+                                  expected.z.size() * sizeof(double)),
+                      0);
+        }
+    }
+}
+
 void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram& variogram,
                        int neighbors, bool leave_out, const Dips& dips = {}) {
     const DataPoints distinct = prepare_points(points);
@@ -103,6 +130,8 @@ void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram
                 << found[i].variance << " " << expected[i].variance;
         }
     }
+    if (dips.positions.empty() && static_cast<std::size_t>(neighbors) <= Device::kMostNeighbors)
+        expect_same_bytes_of_devices(points, nodes, variogram, neighbors, leave_out);
 }
 
 TEST(LaneKriging, TheBytesOfOneSystemAtATime) {
