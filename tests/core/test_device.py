@@ -131,7 +131,7 @@ def test_devices_help_with_surfaces_and_points_too(play):
     helped = interpolate(points, [[1, 2], [3, 4]], neighbours=8, device="cuda")
     alone = interpolate(points, [[1, 2], [3, 4]], neighbours=8)
     assert helped.z.tobytes() == alone.z.tobytes()
-    assert helped.warnings == [*alone.warnings, *of_device(helped.warnings)]
+    assert helped.warnings == (*alone.warnings, *of_device(helped.warnings))
     assert len(of_device(helped.warnings)) == 1
 
 

@@ -151,7 +151,7 @@ void parallel_tasks(
         progress.emplace_back(execution.progress, share / static_cast<double>(count));
     const auto run = [&](std::size_t task) {
         try {
-            work(task, {threads, &progress[task]});
+            work(task, {threads, &progress[task], execution.device});
             progress[task].report(1.0, nullptr);
         } catch (...) {
             for (std::size_t later = task + 1; later < count; ++later)

@@ -262,12 +262,13 @@ CellComplex model_of_compartment(const StructuredInput& input, const Compartment
     for (const LevelCompartment& between : compartment.between) {
         Progress building(execution.progress,
                           kStacks / static_cast<double>(compartment.between.size()));
-        built.push_back(
-            model_of_stacks(input, compartment, between.rocks, {execution.threads, &building}));
+        built.push_back(model_of_stacks(input, compartment, between.rocks,
+                                        {execution.threads, &building, execution.device}));
         building.report(1.0, nullptr);
     }
     Progress joining(execution.progress, 1 - kStacks);
-    CellComplex joined = join_between(input, compartment, built, {execution.threads, &joining});
+    CellComplex joined =
+        join_between(input, compartment, built, {execution.threads, &joining, execution.device});
     joining.report(1.0, nullptr);
     return joined;
 }
@@ -309,7 +310,8 @@ Joined build_compartments(const StructuredInput& input, const Execution& executi
     Progress joining(execution.progress, 1 - kBuilt);
     const CompartmentModels models(input, built,
                                    [&](std::size_t p) { return input.compartments[p].sides; });
-    Joined joined = join_compartments(input, models, {execution.threads, &joining});
+    Joined joined =
+        join_compartments(input, models, {execution.threads, &joining, execution.device});
     joining.report(1.0, nullptr);
     return joined;
 }
