@@ -39,7 +39,7 @@ def failures(log, limits):
     """What is wrong, line by line."""
     measured = set()
     for name, architecture, taken in kernels(log):
-        ours = [key for key in limits if re.search(rf"\d{key}(?![a-z])", name)]
+        ours = [key for key in limits if re.search(rf"(?<!\d){len(key)}{key}", name)]
         if "realmodel" in name and "3cub" not in name and len(ours) != 1:
             yield f"{name} ({architecture}): no limits in {LIMITS.name}"
             continue

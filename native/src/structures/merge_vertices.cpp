@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "structures/merge_vertices.hpp"
 
-#include <array>
+#include <algorithm>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "base/index.hpp"
 #include "base/parallel_sort.hpp"
+#include "base/vectors.hpp"
 
 namespace realmodel::structures {
 
@@ -16,7 +17,7 @@ void merge_vertices(const VertexMerging& task, const Execution& execution) {
         device != nullptr && device->merge(device->state, task))
         return;
     const auto at = [&](std::int32_t v) { return task.vertices + 3 * index(v); };
-    std::vector<std::pair<std::array<double, 3>, std::int32_t>> order;  // by position
+    std::vector<std::pair<Vec3, std::int32_t>> order;
     std::vector<std::int32_t> number(task.vertex_count), shared;
     std::iota(number.begin(), number.end(), 0);
     for (const std::int32_t v : number) {
