@@ -70,7 +70,7 @@ class PlayedDevice:
 
     def _krige(self, _state, _systems):
         self.calls.append("krige")
-        self.said.append("kriging: the device has too little memory; the CPU does it, with the same result")
+        self.said = ["kriging: the device has too little memory; the CPU does it, with the same result"]
         return False
 
 
