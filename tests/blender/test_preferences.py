@@ -49,6 +49,27 @@ class Preferences(PanelCase):
 
         self.assertEqual(built_models.current(self.scene).threads, 3)
 
+    def test_device(self):
+        stack(0.0, 10.0)
+        self.chosen.device = "CUDA"
+        import sys
+
+        before = sys.modules.get("realmodel._native_cuda", False)
+        sys.modules["realmodel._native_cuda"] = None  # as where it is not built
+        try:
+            ops.build()
+        finally:
+            self.chosen.device = "CPU"
+            del sys.modules["realmodel._native_cuda"]
+            if before:
+                sys.modules["realmodel._native_cuda"] = before
+        from realmodel.bl.objects import built_models
+
+        warnings = [str(warning) for warning in built_models.current(self.scene).warnings]
+        self.assertEqual(len([text for text in warnings if text.startswith("device 'cuda'")]), 1)
+        ops.build()
+        self.assertEqual(built_models.current(self.scene).warnings, [])
+
     def test_memory_limit(self):
         stack(0.0, 10.0)
         self.chosen.memory_limit = 1e-6

@@ -8,23 +8,13 @@ import importlib
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Protocol
 
 from .errors import BuildWarning, UsageError
-from .work import Work, native_module
+from .work import OpenDevice, Work, native_module
 
 # The modules of devices, by the names that a user chooses.
 DEVICES = {"cpu": None, "cuda": "_native_cuda"}
 _PACKAGE = __package__.removesuffix(".core.base")
-
-
-class OpenDevice(Protocol):
-    """A Device of the module: functions, for an Execution, and what it has to say since the last call: what
-    it left to the CPU or did in parts."""
-
-    functions: Any
-
-    def messages(self) -> list[str]: ...
 
 
 _opened: dict[str, OpenDevice] = {}  # opening one takes part of a second

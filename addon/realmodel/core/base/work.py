@@ -24,7 +24,6 @@ from .packages import extra
 
 if TYPE_CHECKING:
     from ..._native import Native
-    from .device import OpenDevice
 
 Reporter = Callable[[float, str], None]  # of the share that is done, and what is being done
 Progress = Reporter | Literal[True]  # True: a bar
@@ -46,6 +45,15 @@ class NativeError(Protocol):
     surface: int
     items: list[int]
     place: tuple[float, float, float] | None
+
+
+class OpenDevice(Protocol):
+    """A Device of `_native_cuda`: functions, for an Execution, and what it has to say since the last call: it
+    left something to the CPU, or did it in parts."""
+
+    functions: Any
+
+    def messages(self) -> list[str]: ...
 
 
 def on_threads(threads: int) -> Native.Execution:
