@@ -2,11 +2,13 @@
 """Each preference has its effect."""
 
 import os
+import sys
 
 import bpy
 from panel_case import PanelCase, sheet, stack
 from realmodel import preferences
 from realmodel.bl.host.threads import threads
+from realmodel.bl.objects import built_models
 from realmodel.bl.scene import live
 from realmodel.core.base import work
 
@@ -52,19 +54,10 @@ class Preferences(PanelCase):
     def test_device(self):
         stack(0.0, 10.0)
         self.chosen.device = "CUDA"
-        import sys
-
-        before = sys.modules.get("realmodel._native_cuda", False)
         sys.modules["realmodel._native_cuda"] = None  # as where it is not built
-        try:
-            ops.build()
-        finally:
-            self.chosen.device = "CPU"
-            del sys.modules["realmodel._native_cuda"]
-            if before:
-                sys.modules["realmodel._native_cuda"] = before
-        from realmodel.bl.objects import built_models
-
+        self.addCleanup(sys.modules.pop, "realmodel._native_cuda")
+        ops.build()
+        self.chosen.device = "CPU"
         warnings = [str(warning) for warning in built_models.current(self.scene).warnings]
         self.assertEqual(len([text for text in warnings if text.startswith("device 'cuda'")]), 1)
         ops.build()

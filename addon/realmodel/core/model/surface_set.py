@@ -100,7 +100,7 @@ def build_surfaces(
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
-    Arguments as `build`, also device; stage: only the surfaces up to this one (from 0) of each rock mass.
+    Arguments as `build` (device, too); stage: only the surfaces up to this one (from 0) of each rock mass.
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
