@@ -89,7 +89,7 @@ class Menus(PanelCase):
         """Each has its own menus, and they are read together."""
         path = self.workbook()
         self.assertEqual(field_tables.hole_sheets(path), {"Holes": "collars", "Logs": "intervals"})
-        shown = list(previews(SimpleNamespace(of=OF_HOLES, filepath=str(path), files=[], directory="")))
+        shown = list(previews(SimpleNamespace(filepath=str(path), files=[], directory=""), OF_HOLES))
         self.assertEqual([preview.title for preview in shown], ["site.xlsx[Holes]", "site.xlsx[Logs]"])
         self.assertEqual(field_tables.columns_of(shown[1])["block"], "Code")
         said = shown_kind(path, "")

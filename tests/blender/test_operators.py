@@ -15,6 +15,7 @@ ALWAYS = {  # operators that can be used in every scene of one's own, and why
     "set_origin": "its action is known only when it is used",
     "capture": "any viewport can be captured, in background mode the scene",
     "documentation": "has a poll of its own",
+    "file_choose": "of whatever setting has a file",
     "install_looks": "writes an asset library, of no scene",
     "profiles_import": "profiles are of the user, of no scene",
 }

@@ -192,7 +192,7 @@ def test_read_or_refused(folder, name):
     outcomes = {"read": 0, "refused": 0}
 
     @settings(
-        max_examples=120,
+        max_examples=200,
         deadline=None,
         derandomize=True,
         database=None,

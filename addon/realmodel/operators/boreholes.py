@@ -98,7 +98,7 @@ class REALMODEL_OT_boreholes_read(Reporting, ChosenTables, bpy.types.Operator):
         if not self.paths():
             self._browses = True
             return ImportHelper.invoke(self, context, event)
-        reading = self.begin_tables(list(previews(self)))
+        reading = self.begin_tables(list(previews(self, self.of)))
         self.units = reading.get("units", self.units)
         if not self.properties.is_property_set("propose"):
             self.propose = not settings.has_rows(context.scene) and self._may_propose(context)

@@ -96,10 +96,11 @@ class FilesImportHelper(ImportHelper):
     paths = chosen_files
 
 
-def previews(properties):
-    """Previews of the tables among the chosen files, and of the sheets of workbooks with boreholes."""
+def previews(properties, of=OF_POINTS):
+    """Previews of the tables among the chosen files, and with OF_HOLES of the sheets of workbooks with
+    boreholes."""
     for path in chosen_files(properties):
-        sheets = field_tables.hole_sheets(path) if properties.of == OF_HOLES and os.path.isfile(path) else ()
+        sheets = field_tables.hole_sheets(path) if of == OF_HOLES and os.path.isfile(path) else ()
         yield from (preview_table(path, sheet=sheet) for sheet in sheets)
         if sheets:
             continue
