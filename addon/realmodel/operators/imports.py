@@ -131,7 +131,7 @@ class REALMODEL_OT_file_choose(Reporting, bpy.types.Operator, ImportHelper):
         return f"{_of_setting(context, properties)}\nClick to choose another file"
 
     def invoke(self, context, event):
-        if self.none:
+        if self.none or not self.row:  # without a row it is refused
             return self.execute(context)
         self.filepath = str(project_settings.absolute(_of_setting(context, self)))
         return ImportHelper.invoke(self, context, event)
