@@ -16,16 +16,14 @@ from .work import OpenDevice, Work, native_module
 DEVICES = {"cpu": None, "cuda": "_native_cuda"}
 _PACKAGE = __package__.removesuffix(".core.base")
 
-
 _opened: dict[str, OpenDevice] = {}  # opening one takes part of a second
 _opening = threading.Lock()
 
 
-def check_device(device: str) -> str:
-    """The name of a device. Raises UsageError."""
+def check_device(device: str) -> None:
+    """Raises UsageError where there is no device of this name."""
     if device not in DEVICES:
         raise UsageError(f"device must be one of {', '.join(DEVICES)}, not {device!r}")
-    return device
 
 
 @contextmanager

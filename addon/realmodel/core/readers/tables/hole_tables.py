@@ -338,7 +338,7 @@ def rows(
     table = _opened(given, file, known, needed, sheet)
     layout = table.layout
     header = _header(given, file, layout, known)
-    if sheet is not None:  # lines of several sheets are told apart
+    if sheet is not None:  # so that messages name the sheet of a line
         header = replace(header, file=file.with_name(f"{file.name}[{sheet}]"))
     _require(given, header, needed)
     separator = layout.separator
