@@ -100,10 +100,11 @@ def rms(write):
     assert len(read_points(GRIDS / "irap_binary.gri").xyz) == 11
 
 
-def charisma_and_geosoft(write):
+def charisma_geosoft_and_gslib(write):
     for text in (
         "INLINE :  100 XLINE :  7   1.0  2.0  3.5\nINLINE :  101 XLINE :  8   4.0  5.0  6.5\n",
         "/ X Y Z\nLine 10\n 1.0 2.0 3.5\nTie 20\n 4.0 5.0 6.5\n",
+        "Top of the sand\n3\nX\nY\nElevation\n 1.0 2.0 3.5\n 4.0 5.0 6.5\n",
     ):
         assert read_points(write("h.txt", text)).xyz.tolist() == [[1, 2, 3.5], [4, 5, 6.5]]
 
@@ -277,7 +278,7 @@ PROGRAMS = {
     "Leapfrog": leapfrog,
     "Petrel": petrel,
     "RMS": rms,
-    "Charisma, Geosoft": charisma_and_geosoft,
+    "Charisma, Geosoft, GSLIB": charisma_geosoft_and_gslib,
     "OpenWorks": openworks,
     "GOCAD, SKUA": gocad,
     "Surpac": surpac,

@@ -23,9 +23,9 @@ DRIVERS = {
 RING = np.array([[10.0, 20.0], [11.0, 20.0], [11.0, 22.0], [10.0, 22.0]])
 
 
-def write_raster(path, driver, crs="EPSG:25832", heights=HEIGHTS, **options):
+def write_raster(path, driver, crs="EPSG:25832", heights=HEIGHTS, place=(1000.0, 2000.0), **options):
     rows, columns = heights.shape[-2:]
-    where = rasterio.Affine(10.0, 0.0, 1000.0, 0.0, -5.0, 2000.0)
+    where = rasterio.Affine(10.0, 0.0, place[0], 0.0, -5.0, place[1])
     profile = {"height": rows, "width": columns, "count": 1 if heights.ndim == 2 else len(heights)}
     profile |= {"dtype": heights.dtype, "crs": crs, "transform": where, "nodata": -9999.0}
     with rasterio.open(path, "w", driver=driver, **profile, **options) as dataset:
@@ -116,9 +116,10 @@ def test_degrees_are_refused(tmp_path):
 
 
 def test_degrees_of_a_raster_are_said(tmp_path):
-    write_raster(tmp_path / "a.img", "HFA", crs="EPSG:4326")
-    _, warnings = read_point_file(PointFile(tmp_path / "a.img", nodata=-9999))
-    assert any("degrees" in text for text in warnings)
+    for name, place, is_said in (("a.img", (8.0, 47.0), True), ("b.img", (1000.0, 2000.0), False)):
+        write_raster(tmp_path / name, "HFA", crs="EPSG:4326", place=place)
+        _, warnings = read_point_file(PointFile(tmp_path / name, nodata=-9999))
+        assert any("degrees" in text for text in warnings) == is_said
 
 
 def test_several_bands_are_refused(tmp_path):

@@ -63,7 +63,7 @@ def test_too_many_values_name_no_surfaces(table):
 def test_a_missing_column_is_said_and_can_be_chosen(table):
     path = table("x,thickness,north\n1,2,3\n4,5,6\n")
     found = preview_table(path)
-    assert found.problem == "the header has no column z"
+    assert found.problem == "the header has no column z; it has x, thickness, north"
     assert found.axes == {"x": "x", "y": "north"}
     assert list(preview_table(path, ["x", "north", "thickness"]).axes.values()) == ["x", "north", "thickness"]
 

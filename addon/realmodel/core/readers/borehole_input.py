@@ -38,6 +38,8 @@ def read_picks(
     tables = read_repaired(given, model_unit, step, units)
     if tables.picks is None and tables.intervals is None and not given.logs:
         advice = "give a table of them: picks = ... or intervals = ..."
+        if tables.without_blocks:
+            advice = f"name the column of units: {tables.without_blocks}"
         what = "it has neither picks nor intervals of blocks"
         raise InputRefused(what, file=given.files[-1], advice=advice)
     logs = read_logs(tables, Holes(tables), model_unit)  # adds warnings

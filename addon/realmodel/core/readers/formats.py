@@ -96,6 +96,7 @@ FORMATS = (
     FileFormat("geoh5", (".geoh5",), OBJECTS, begins_as_geoh5, open_geoh5),
     FileFormat("GeoPackage", (".gpkg",), SHAPES, is_geopackage, read_geopackage, layers=geopackage_layers),
     FileFormat("shapefile", (".shp",), SHAPES, is_shapefile, read_shapefile),
+    FileFormat("glTF", (".glb", ".gltf"), OBJECTS, begins_as_gltf, as_a_whole(read_gltf), by_ending=True),
     FileFormat(
         "GeoJSON",
         (".geojson", ".json", ".geojsonl", ".geojsons"),
@@ -121,7 +122,6 @@ FORMATS = (
     ),
     FileFormat("VTK", (".vtk",), OBJECTS, begins_as_vtk, as_a_whole(read_vtk), by_ending=True),
     FileFormat("VTK multiblock", (".vtm",), OBJECTS, begins_as_vtm, as_a_whole(read_vtm)),
-    FileFormat("glTF", (".glb", ".gltf"), OBJECTS, begins_as_gltf, as_a_whole(read_gltf), by_ending=True),
     FileFormat("Surpac DTM", (".dtm",), OBJECTS, begins_as_dtm, as_a_whole(read_dtm), by_ending=True),
     FileFormat("Surpac strings", (".str",), OBJECTS, begins_as_str, as_a_whole(read_str), by_ending=True),
     FileFormat("Datamine", (".dm",), OBJECTS, begins_as_datamine, as_a_whole(read_datamine), by_ending=True),
@@ -179,6 +179,11 @@ _NOT_READ = (
     (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
     (rb"# \.PCD v", "a cloud of points of PCL (PCD)", "save it as PLY or text: CloudCompare can"),
     (rb"\{\\rtf", "a text with formatting (RTF)", "save its table as CSV"),
+    (
+        rb"PK\x03\x04.{26,3900}3D/[\w -]+\.model",
+        "a 3MF",
+        "save it as STL, and set its unit: 3MF is mostly in millimeters",
+    ),
     (rb"%PDF-", "a PDF", "save its table as CSV"),
     (rb"\x1f\x8b|BZh\d|\xfd7zXZ", "compressed by gzip, bzip2 or xz", "unpack it"),
     (rb"Rar!\x1a|7z\xbc\xaf", "an archive (RAR or 7z)", "unpack it"),

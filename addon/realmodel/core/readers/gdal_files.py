@@ -80,14 +80,13 @@ def read_gdal_raster(
         advice = "save it as GeoTIFF with its coordinates"
         raise InputRefused("it does not say where it is", file=file, advice=advice)
     warnings = []
-    if crs is not None and crs.is_geographic:
-        warnings.append("its coordinates are degrees of longitude and latitude: project it (to UTM, say)")
     if unit:
         text = f"its elevations are in '{unit}', as the file states"
         warnings.append(f"{text}: if that is another unit, set units = {{ z = ... }}")
     across, down = (place.a, place.d), (place.b, place.e)
     origin = (place.c + (place.a + place.b) / 2, place.f + (place.d + place.e) / 2)
-    return Raster(z, origin, across, down, warnings)
+    raster = Raster(z, origin, across, down, warnings)
+    return raster.warned_of_degrees() if crs is not None and crs.is_geographic else raster
 
 
 def _require_one_band(file: Path, dataset: Any) -> None:
@@ -167,4 +166,6 @@ def read_gdal_shapes(layer: MapLayer, step: Step = no_step, heights: Heights | N
 def _plain(value: Any) -> Any:
     """A number or text of Python; None where there is none."""
     value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, np.ndarray):  # a list in one field
+        return ", ".join(map(str, value.tolist()))
     return None if value != value else value

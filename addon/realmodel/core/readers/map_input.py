@@ -11,7 +11,7 @@ import numpy as np
 from ..base.errors import InputRefused
 from ..base.text import Step, no_step, read_bytes
 from ..base.units import MODEL_UNIT, factor
-from ..settings.crs import is_in_degrees
+from ..settings.crs import MOST_DEGREES, is_in_degrees
 from ..settings.data_files import MapLayer
 from .formats import SHAPES, format_of
 from .maps.geopackage import open_changes, system_of
@@ -21,7 +21,6 @@ from .maps.wkt import read_wkt
 
 _CRS = re.compile(rb'"crs"\s*:\s*\{[^}]*?"name"\s*:\s*"([^"]*)"')
 _FIRST = 1 << 16  # bytes in which it says so
-_MOST_DEGREES = 360.0
 _BESIDE_SHAPEFILE = (".shx", ".dbf", ".prj", ".cpg", ".sbn", ".sbx", ".qix")
 
 
@@ -41,8 +40,7 @@ def _refuse_degrees(layer: MapLayer, shapes: Shapes) -> None:
     rings = [ring for polygon in shapes.polygons for ring in polygon.rings]
     places = [*rings, *(line for _, line in shapes.lines), *(place for _, place in shapes.points)]
     if any(
-        np.abs(np.asarray(corners, np.float64)[..., :2]).max(initial=0.0) > _MOST_DEGREES
-        for corners in places
+        np.abs(np.asarray(corners, np.float64)[..., :2]).max(initial=0.0) > MOST_DEGREES for corners in places
     ):
         return
     if is_in_degrees(shapes.system or system_of_map(layer)):

@@ -20,7 +20,19 @@ from .tables.attitudes import COMBINED, is_combined
 from .tables.dialects.workbook import is_workbook, sheet_names
 from .tables.dips import DIPS, NAMED
 from .tables.hole_data import MEANINGS
-from .tables.hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, Row, columns_in, rows
+from .tables.hole_tables import (
+    COLLARS,
+    DIRECTIONS,
+    INTERVALS,
+    OBSERVED,
+    PICKS,
+    PLACE_NAMES,
+    SURVEY,
+    Row,
+    column_key,
+    columns_in,
+    rows,
+)
 
 _KNOWN = {
     "collars": COLLARS,
@@ -32,6 +44,12 @@ _KNOWN = {
     "dips": {**DIPS, **NAMED},
 }
 TABLE_KINDS = tuple(_KNOWN)
+# Of structures that are measured in holes.
+_STRUCTURES = {
+    "structure": ("structure", "structure_type", "struct", "defect", "defect_type", "discontinuity", "joint"),
+    "kind": ("fracture", "feature", "feature_type", "plane", "foliation", "bedding", "vein"),
+    "alpha": ("alpha", "alpha_angle"),
+}
 _LOOKED_AT = 2000  # rows whose codes are listed
 
 
@@ -58,6 +76,9 @@ def table_kind(
         columns_in(reading, file, meanings, sheet)
         for meanings in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
     )
+    if _are_places(reading, file, sheet, hole):
+        for columns_of in (hole, logged, seen):
+            columns_of.pop("hole", None)
     are_picks = {"hole", "surface"} <= hole.keys() and not {"depth", "elevation", "z"}.isdisjoint(hole)
     are_seen = {"x", "y", "z", "block"} <= seen.keys()
     named = {meaning for meaning, called in reading.columns.items() if called is not False}
@@ -76,8 +97,17 @@ def table_kind(
     if are_seen:
         return "observations"
     if of_hole:
+        if _repeats(reading, file, sheet):
+            what = f"its '{hole['hole']}' has many rows with other places, so they are no collars"
+            advice = (
+                "if it names units, write block = ...; if these are points of surfaces, read them as points"
+            )
+            raise InputRefused(what, file=file, advice=advice)
         return "collars"
     if {"hole", "depth"} <= survey.keys() and not DIRECTIONS.keys().isdisjoint(survey):
+        if "depth" not in named and columns_in(reading, file, _STRUCTURES, sheet):
+            what = "its rows are structures seen in holes, no survey"
+            raise InputRefused(what, file=file, advice="give dips with their places: x, y and z")
         return "survey"
     if {"hole", "from", "to"} <= logged.keys():
         return "assays"
@@ -88,6 +118,23 @@ def table_kind(
         file=file,
         advice="name its columns, as in hole = BHID; depth = FROM",
     )
+
+
+def _are_places(reading: Boreholes, file: Path, sheet: str | None, columns: Mapping[str, str]) -> bool:
+    """Whether what may name holes, a name or an id, rather numbers or names what is at many places."""
+    if "hole" in reading.columns or not {"hole", "x", "y"} <= columns.keys():
+        return False
+    is_name = column_key(columns["hole"]) in map(column_key, PLACE_NAMES)
+    return is_name and _repeats(reading, file, sheet)
+
+
+def _repeats(reading: Boreholes, file: Path, sheet: str | None) -> bool:
+    """Whether holes have more than two places in plan each, one with another."""
+    places: dict[str, set[tuple[str, str]]] = {}
+    for row in islice(rows(reading, file, COLLARS, (), no_step, sheet), _LOOKED_AT):
+        if row.has("hole") and row.has("x") and row.has("y"):
+            places.setdefault(row.text("hole"), set()).add((row.text("x"), row.text("y")))
+    return sum(map(len, places.values())) > 2 * len(places)
 
 
 def sheet_kinds(

@@ -13,6 +13,7 @@ _CODE = re.compile(r"([A-Za-z][A-Za-z0-9_.-]*):([A-Za-z0-9_.-]+)")
 _NAMED = re.compile(
     r'(?:EPSG[:/](?:[\d.]*[:/])?|(?:AUTHORITY|ID)\["EPSG",\s*"?|^)(\d{4,6})"?[\]\s]*$', re.IGNORECASE
 )
+MOST_DEGREES = 360.0  # of coordinates that may be degrees
 _GEOGRAPHIC = (4258, 4267, 4269, 4326, 4490, 4979)  # those in degrees that are taken for projected ones most
 
 

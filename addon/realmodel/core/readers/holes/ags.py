@@ -18,16 +18,16 @@ from ...base.text import BOM, read_text
 from ..tables.hole_tables import RawTable
 
 _KINDS = {"collars": ("LOCA", "HOLE"), "intervals": ("GEOL",), "survey": ("HORN", "HDPH")}
-# Where a column has no value in any row, the other one is meant.
+# Where a column has no value in any row, the first of these that has is meant.
 _INSTEAD = {
-    "LOCA_NATE": "LOCA_LOCX",
-    "LOCA_NATN": "LOCA_LOCY",
-    "LOCA_GL": "LOCA_LOCZ",
-    "HOLE_NATE": "HOLE_LOCX",
-    "HOLE_NATN": "HOLE_LOCY",
-    "HOLE_GL": "HOLE_LOCZ",
-    "GEOL_GEOL": "GEOL_LEG",
-    "HORN_ORNT": "HDPH_ORNT",
+    "LOCA_NATE": ("LOCA_LOCX",),
+    "LOCA_NATN": ("LOCA_LOCY",),
+    "LOCA_GL": ("LOCA_LOCZ",),
+    "HOLE_NATE": ("HOLE_LOCX",),
+    "HOLE_NATN": ("HOLE_LOCY",),
+    "HOLE_GL": ("HOLE_LOCZ",),
+    "GEOL_GEOL": ("GEOL_LEG", "GEOL_GEO2"),
+    "HORN_ORNT": ("HDPH_ORNT",),
 }
 
 # Grids by the abbreviations of AGS and of common use, as EPSG numbers them.
@@ -149,14 +149,16 @@ def _continue(file: Path, line: int, group: _Group, entries: list[str]) -> None:
 
 def _sheet(group: _Group) -> RawTable:
     names = list(group.names)
-    for name, other in _INSTEAD.items():
-        if (
-            name in names
-            and other in names
-            and not any(_entry(row, names.index(name)) for _, row in group.rows)
-        ):
-            names[names.index(name)], names[names.index(other)] = "", name
+    for name, others in _INSTEAD.items():
+        known = [other for other in others if _is_filled(group, names, other)]
+        if name in names and known and not _is_filled(group, names, name):
+            names[names.index(name)], names[names.index(known[0])] = "", name
     return RawTable(names, group.rows, group.line, group.units, _choice(names, group.rows))
+
+
+def _is_filled(group: _Group, names: list[str], name: str) -> bool:
+    """Whether there is a column of this name with a value."""
+    return name in names and any(_entry(row, names.index(name)) for _, row in group.rows)
 
 
 def _choice(names: list[str], rows: list[tuple[int, list[str]]]) -> tuple[str, str] | None:

@@ -22,6 +22,7 @@ from ..tables.hole_tables import RawTable
 from ..tables.table_layout import is_number
 
 _ITEM = re.compile(r"\s*([^.]*?)\s*\.([^\s:]*)\s*(.*)$")
+_WITHOUT_POINT = re.compile(r"\s*([^.:\s]+)()\s+(:.*)$")  # which some programs leave out
 _FEET = {"F": "ft", "FT.": "ft"}  # as LAS files write it beside the usual spellings
 _RUN_ON = re.compile(r"(?<=\d)-(?=\d*\.)")  # 1.25-999.25: columns without a blank between them
 _DEPTHS = ("DEPT", "DEPTH", "MD", "DPTH", "TDEP", "BDEP")
@@ -102,7 +103,7 @@ def _sections(file: Path) -> list[_Section]:
             sections[-1].rows.append((line, stripped))
     for section in sections:
         for _, text in section.rows if not _is_data(section) else ():
-            match = _ITEM.match(text)
+            match = _WITHOUT_POINT.match(text) or _ITEM.match(text)
             if match:
                 value, sign, description = match[3].rpartition(":")
                 value, description = (value, description) if sign else (match[3], "")
@@ -165,7 +166,7 @@ def _curves(file: Path, sections: list[_Section], hole: str) -> RawTable | None:
     ]
     length = _FEET.get(unit.upper(), unit)
     units = ["", length, length, *(unit for _, unit, *_ in definition.items[1:])]
-    return RawTable(["hole", "from", "to", *names[1:]], entries, definition.line, units)
+    return RawTable(["hole", "from", "to", *names[1:]], entries, definition.line, units, is_log=True)
 
 
 def _known(values: list[str], null: str) -> list[str]:

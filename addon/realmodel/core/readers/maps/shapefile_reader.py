@@ -19,6 +19,7 @@ from ...base.text import Step, no_step
 from ...settings.data_files import MapLayer
 from .shapes import Heights, Selection, Shapes
 
+_MULTIPATCH = 31
 _MAGIC = b"\0\0\x27\x0a"
 _POINTS, _LINES, _POLYGONS, _MULTIPOINTS = (1, 11, 21), (3, 13, 23), (5, 15, 25), (8, 18, 28)
 _WITH_Z = (11, 13, 15, 18)
@@ -66,6 +67,8 @@ def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | Non
                 attributes = next(records).as_dict() if records is not None else {}
                 if selection.takes(attributes):
                     feature, before = f"feature {number}", shapes.counts()
+                    if shape.shapeType == _MULTIPATCH:
+                        raise _multipatch(file)
                     _add(shape, feature, shapes)
                     if shapes.attributes is not None:
                         shapes.attributes[feature] = attributes
@@ -130,3 +133,8 @@ def _add(shape: Any, feature: str, shapes: Shapes) -> None:
         shapes.add_polygon(feature, parts, has_roles=False)
     else:
         raise ValueError(f"{feature} is of kind {shape.shapeTypeName}, which is not read")
+
+
+def _multipatch(file: Path) -> InputRefused:
+    advice = "save the surface as LandXML or as a raster, or its corners as points with heights"
+    return InputRefused("its shapes are multipatches, which are not read", file=file, advice=advice)

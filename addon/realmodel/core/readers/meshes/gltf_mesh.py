@@ -35,9 +35,10 @@ _TURNED = ("its y axis is up, as in all of its format: it is turned to z",)
 
 def begins_as_gltf(head: bytes, _size: int = 0) -> bool:
     """Whether a file that begins so is one."""
-    return head.startswith(_MAGIC) or (
-        head.lstrip()[:1] == b"{" and b'"asset"' in head and b'"version"' in head
-    )
+    has_marks = b'"asset"' in head and b'"version"' in head
+    has_marks |= any(mark in head for mark in (b'"accessors"', b'"bufferViews"', b'"bufferView"'))
+    is_map = b'"Feature' in head  # GeoJSON
+    return head.startswith(_MAGIC) or (head.lstrip()[:1] == b"{" and has_marks and not is_map)
 
 
 def read_gltf(file: str | Path, step: Step = no_step) -> list[ObjectName]:

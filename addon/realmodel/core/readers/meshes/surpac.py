@@ -5,6 +5,7 @@ and triangles of them (.dtm), which name the points of the string file beside it
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,6 +18,8 @@ from .triangle_mesh import surface_object
 
 _FIRST = 2  # records of the header
 _MARK = "TRISOLATION"
+_DATED = re.compile(rb"[^,]*,\s*\d{1,4}[-/. ](?:[A-Za-z]{3}|\d{1,2})[-/. ]\d{2,4}\s*,")
+_NUMBER = re.compile(rb"\s*[+-]?\d+(?:\.\d*)?\s*")
 
 
 def begins_as_dtm(head: bytes, _size: int = 0) -> bool:
@@ -57,9 +60,12 @@ def read_dtm(file: str | Path, _step: Step = no_step) -> list[ObjectName]:
 
 
 def begins_as_str(head: bytes, _size: int = 0) -> bool:
-    """Whether a file that begins so has strings: its first record names their styles. Others look like
-    tables, so they are recognized by their extension only."""
-    return b"ssi_styles:" in head.partition(b"\n")[0].lower()
+    """Whether a file that begins so has strings: its first record has a name and a date, or names their
+    styles; the second is 0 and an axis, two places, or only zeros."""
+    first, _, second = head.partition(b"\n")
+    axis = second.partition(b"\n")[0].strip().rstrip(b",").split(b",")
+    is_axis = len(axis) == 7 and axis[0].strip() == b"0" and all(map(_NUMBER.fullmatch, axis))
+    return b"ssi_styles:" in first.lower() or (is_axis and _DATED.match(first) is not None)
 
 
 def read_str(file: str | Path, _step: Step = no_step) -> list[ObjectName]:

@@ -32,6 +32,7 @@ _TYPES = {
 _BEGINNING = re.compile(
     rb'\s*(?:<\?xml[^>]*>\s*)?(?:<!--.*?-->\s*)*<VTKFile\s[^>]*type="(PolyData|UnstructuredGrid)"', re.DOTALL
 )
+_VERTEX, _POLY_VERTEX = 1, 2
 _TRIANGLE, _STRIP, _POLYGON, _PIXEL, _QUAD = 5, 6, 7, 8, 9
 _QUADRATIC = {22: 3, 23: 4, 28: 4, 34: 3}  # by their corners, which come first
 _APPENDED = re.compile(rb'<AppendedData\s+encoding="(raw|base64)"\s*>\s*_')
@@ -81,12 +82,18 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> list[ObjectName]:
     ) as error:
         raise InputRefused(f"not a VTK file that can be read: {error}", file=file) from error
     if not sum(map(len, faces)):
-        if root.get("type") == "PolyData" and first:
+        if first and (root.get("type") == "PolyData" or _has_vertices_alone(arrays, root)):
             return [point_object(file.stem, np.concatenate(vertices))]
         advice = "save the surface, not the solid (Extract Surface)"
         raise InputRefused("it has no triangles or polygons", file=file, advice=advice)
     listed = faces[0] if len(faces) == 1 else [face for some in faces for face in some]
     return [surface_object(file, file.stem, np.concatenate(vertices), listed)]
+
+
+def _has_vertices_alone(arrays: _Arrays, root: ElementTree.Element) -> bool:
+    """Whether all cells of an unstructured grid are single points."""
+    kinds = [arrays.named(cells, "types") for cells in root.iter("Cells")]
+    return all(np.isin(some, (_VERTEX, _POLY_VERTEX)).all() for some in kinds)
 
 
 _Faces = np.ndarray | list  # corners of faces, (F, K) or of any number

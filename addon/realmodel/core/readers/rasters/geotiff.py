@@ -84,7 +84,8 @@ def read_geotiff(
     keys = _geo_keys(tags.get(_GEO_KEYS, ()))
     origin, across, down = _place(file, tags, keys)
     units = (_unit(keys.get(_PLAN_UNIT)), _unit(keys.get(_HEIGHT_UNIT)))
-    return Raster(z, origin, across, down, _warnings(keys), units)
+    raster = Raster(z, origin, across, down, units=units)
+    return raster.warned_of_degrees() if keys.get(_MODEL_TYPE) == _GEOGRAPHIC else raster
 
 
 def geotiff_system(file: str | Path) -> int | None:
@@ -297,15 +298,6 @@ def _world(file: Path) -> tuple[float, ...]:
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file) from error
     return a, b, c, d, e, f
-
-
-def _warnings(keys: dict) -> list[str]:
-    if keys.get(_MODEL_TYPE) == _GEOGRAPHIC:
-        return [
-            "its plan coordinates are degrees of longitude and latitude, its elevations are not: "
-            "project it (to UTM, say) in a GIS"
-        ]
-    return []
 
 
 def _unit(number: int | None) -> str:

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
+from ...settings.crs import MOST_DEGREES
 
 _ON_CELL = 1e-9  # of a cell: a place so near to its middle is there
 
@@ -39,6 +40,19 @@ class Raster:
         if not len(points):
             raise InputRefused("no cell of the raster has an elevation", file=file)
         return points
+
+    def warned_of_degrees(self) -> Raster:
+        """The same with a warning about plan coordinates in degrees, as the file states, where they may be:
+        some programs write such a system for lengths."""
+        rows, columns = np.array(self.z.shape) - 1
+        corners = np.outer([0, columns, 0, columns], self.across) + np.outer([0, 0, rows, rows], self.down)
+        if np.abs(corners + self.origin).max() > MOST_DEGREES:
+            return self
+        text = (
+            "its plan coordinates are degrees of longitude and latitude, its elevations are not: "
+            "project it (to UTM, say) in a GIS"
+        )
+        return replace(self, warnings=[text, *self.warnings])
 
     def heights_at(self, plan: np.ndarray) -> np.ndarray:
         """(N,) heights at places in plan (N, 2): bilinear between the middles of four cells, up to half a

@@ -26,6 +26,7 @@ from .hole_tables import (
     sheet_rows,
     with_units_of_cells,
 )
+from .table_layout import names_shown
 
 MEANINGS: dict[str, Columns] = {
     "collars": COLLARS,
@@ -48,7 +49,8 @@ class HoleTables:
     say others. block_column: the one that was chosen among several, "" where there is no choice. system: the
     coordinate system that the file names, as of RawTable. problems: what was wrong with rows, as far as they
     are repaired. warnings: sentences. lines: of holes of objects, in the units of the tables: the places
-    (N, 3) of depths (N,); picks of objects are at their own places. None of tables."""
+    (N, 3) of depths (N,); picks of objects are at their own places. None of tables. without_blocks: what to
+    write where no column names the units of intervals, "" else."""
 
     boreholes: Boreholes
     collars: list[Row] | None = None
@@ -61,6 +63,7 @@ class HoleTables:
     problems: list[HoleProblem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     lines: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
+    without_blocks: str = ""
 
     def copy(self) -> HoleTables:
         """The same rows in other lists, which may be repaired."""
@@ -95,10 +98,15 @@ def read_hole_rows(
             continue
         table = sheets.get(kind)
         is_log = kind == "intervals" and Path(file) in boreholes.log_files
-        if is_log or (
-            isinstance(table, RawTable) and "block" in required[kind] and not _has_blocks(boreholes, table)
-        ):
-            continue  # curves of a log
+        if is_log:
+            continue
+        if isinstance(table, RawTable) and "block" in required[kind] and not _has_blocks(boreholes, table):
+            if not table.is_log:
+                listed = names_shown([name for name in table.names if name])
+                tables.without_blocks = f'columns = {{ block = "..." }}; it has {listed}'
+                what = "no column names the units of its intervals, which are not used"
+                tables.warnings.append(f"{file}:{table.line}: {what}: name it: {tables.without_blocks}")
+            continue
         slow = step if kind in ("picks", "intervals") else no_step
         if isinstance(table, RawTable):
             table_rows = sheet_rows(boreholes, Path(file), table, known, required[kind])

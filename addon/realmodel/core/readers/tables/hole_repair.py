@@ -214,6 +214,8 @@ def _complete_collars(tables: HoleTables, problems: ProblemList) -> tuple[list[R
         missing = [axis for axis in "xyz" if not row.has(axis)]
         if missing or not row.has("hole"):
             what = f"no {missing[0]}" if missing else "no name of a hole"
+            called = row.called(missing[0]) if missing and missing[0] in row.columns else ""
+            what += f" ({called.upper()} is empty)" if called not in ("", *missing) else ""
             if row.has("hole"):
                 lacking[row.text("hole")] = f"{row.place} of {row.file} has {what}"
             said = problems.taken(row, *missing) if missing else ""

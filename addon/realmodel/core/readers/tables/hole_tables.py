@@ -18,7 +18,16 @@ from ...base.no_value import NO_VALUE, OFTEN_NO_VALUE
 from ...base.text import Step
 from ...base.units import factor, stated_units, unit_of, unit_text_of_column
 from .points import AXES, TextTable, open_table
-from .table_layout import WITH_UNIT, Expected, TableLayout, column_number, fields, is_number, plain_name
+from .table_layout import (
+    WITH_UNIT,
+    Expected,
+    TableLayout,
+    column_number,
+    fields,
+    is_number,
+    names_shown,
+    plain_name,
+)
 
 # Names of columns of programs and surveys the world over, compared by column_key: English, German, French,
 # Spanish and Dutch, and those of Leapfrog, Surpac, Datamine, Micromine, Vulcan, gINT, AGS, GSWA, DINO and
@@ -33,8 +42,8 @@ _HOLE_NAMES = (
     *("id_bss", "code_bss", "Sondaggio", "nome sondaggio", "Furo", "Otwór", "nazwa otworu", "Borrhål"),
     *("Borehull", "dhid", "drill_hole", "drillhole_name", "collar_name", "hole_number_id"),
 )
-_PLACE_NAMES = ("location_id", "loca_id", "loc_id", "point_id", "site_id", "original_name", "name", "id")
-_HOLE = (*_HOLE_NAMES, *_PLACE_NAMES)
+PLACE_NAMES = ("location_id", "loca_id", "loc_id", "point_id", "site_id", "original_name", "name", "id")
+_HOLE = (*_HOLE_NAMES, *PLACE_NAMES)
 _HEIGHT = ("Höhe", "Hoehe", "Cota", "Cote", "Altitud", "Elevación", "Hoogte")
 _DEPTH = ("Tiefe", "Teufe", "Profondeur", "Prof", "Profundidad", "Diepte")
 PICKS = {
@@ -114,9 +123,20 @@ _BLOCK = (
     *("geology_code", "geol_leg", "legend_code", "code", "layer", "lithology_1", "Einheit", "Schicht"),
     *("Gestein", "Stratigraphie", "Lithologie", "Litología", "Unidad", "Formación", "Grondsoort"),
     *("Hoofdgrondsoort", "Eenheid", "Terrain", "Roche"),
-    *("Litologia", "Jordart", "Petro", "Petrographie", "geocod", "geocode", "geol_code", "lith1_code"),
+    *(
+        "Litologia",
+        "lito",
+        "Jordart",
+        "Petro",
+        "Petrographie",
+        "geocod",
+        "geocode",
+        "geol_code",
+        "lith1_code",
+    ),
     *("lith_1_code", "major_lith", "main_lith", "primary_lith", "rock_name", "strat_unit", "strat_code"),
     *("unit_code", "unit_name", "graphic", "material", "soil", "soil_type", "domain", "stratum", "hsu"),
+    *("geol_geo2", "lito"),
 )
 _THICKNESS = (
     "thickness",
@@ -233,7 +253,8 @@ class RawTable:
     """A table in a file that holds several: the names of its columns, the lines and entries of its rows, what
     units its columns have, as they are written, "" for none. choice: the column of blocks that was chosen
     among several, with a sentence about it. system: the coordinate system that the file names, by EPSG's code
-    where that is known, "" where it names none. row_name: what a row is called before its number."""
+    where that is known, "" where it names none. row_name: what a row is called before its number. is_log:
+    whether it has the curves of a log."""
 
     names: Sequence[str]
     rows: Sequence[tuple[int, list[str]]]
@@ -242,6 +263,7 @@ class RawTable:
     choice: tuple[str, str] | None = None
     system: str = ""
     row_name: str = LINE
+    is_log: bool = False
 
 
 @dataclass(frozen=True)
@@ -595,6 +617,7 @@ def _require(reading: Reading, header: TableHeader, needed: Sequence[str]) -> No
             called = reading.columns.get(column)
             what = f"the header has no column {called or column}"
             advice = f'name it: columns = {{ {column} = "..." }}'
+            advice += f"; it has {names_shown(header.names)}" if header.names else ""
             if column in ("x", "y") and _named(header.names, _GEOGRAPHIC) is not None:
                 what = "places are longitude and latitude"
                 advice = "give x and y in a projected system, in meters or feet"

@@ -22,7 +22,7 @@ from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import JoinPieces, in_memory, in_pieces
 from ...base.no_value import NO_VALUE
 from ...base.text import BOM, Content, FileBytes, Step, encoding_of, no_step, pieces_of, text_content
-from ...base.units import unit_text_of_column
+from ...base.units import unit_of, unit_text_of_column
 from ...base.work import NativeError, native_module, on_threads
 from ...settings.data_files import PointFile, list_of
 from ..objects.geo_object import STICK
@@ -33,6 +33,7 @@ from .table_layout import (
     TableLayout,
     column_number,
     decimal_comma,
+    is_any_number,
     is_number,
     names_shown,
     plain_name,
@@ -73,7 +74,8 @@ _BESIDE = (
     *("utm", "mga", "lv95", "gk", "map", "grid", "coord", "coordinate", "rd", "coordinates", "coords"),
     *("point", "pos", "position", "koordinate", "koord", "coordonnée", "coordonnee", "coordenada"),
     *("coordinaat", "world", "local", "projected", "nat_grid", "value", "utme", "utmn", "nap", "nn"),
-    *("nhn", "asl", "amsl", "msl", "wert", "l93"),
+    *("nhn", "asl", "amsl", "msl", "wert", "l93", "loc", "location", "pt", "c", "cen", "center", "centre"),
+    *("centroid", "mid"),
 )
 _DEPTHS = (
     *("depth", "tvdss", "tvd", "sstvd", "z_depth", "depth_z", "tiefe", "teufe", "diepte", "profondeur"),
@@ -98,6 +100,37 @@ def _names_of(axis: str) -> tuple[str, ...]:
 
 
 AXES = {axis: _names_of(axis) for axis in _WORDS}
+# Columns that are no coordinates, whose places in a table say nothing: numbers of rows and cells, depths and
+# directions of holes.
+_NO_COORDINATES = frozenset(
+    (
+        *(
+            "",
+            "id",
+            "no",
+            "nr",
+            "index",
+            "i",
+            "j",
+            "k",
+            "ijk",
+            "ix",
+            "iy",
+            "iz",
+            "row",
+            "column",
+            "md",
+            "dept",
+        ),
+        *("measured_depth", "inc", "incl", "inclination", "azi", "azim", "azimuth", "dip", "from", "to"),
+    )
+)
+# Columns with the elevations of one surface each.
+_OF_SURFACE = re.compile(
+    r"(?i:top|base|bottom|btm|bot|roof|floor|surface|surf|horizon|elev|elevation|z|dach|toit|techo|tetto)"
+    r"(?:[\s_.-]|(?=[A-Z\d]))|.*[\s_.-](?i:top|base|bottom|btm|bot|roof|floor|elev|elevation|z)$"
+)
+_MOST_UNNAMED = 30  # columns of a table of points without a header
 # As GDAL writes a table of shapes.
 _WKT_FIRST = re.compile(rb'(?:\xef\xbb\xbf)?"?WKT"?\s*[,;\t\r\n]', re.IGNORECASE)
 # Taken where no column has one of those names, with a warning.
@@ -155,8 +188,10 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
         return replace(rows, columns=named, units=units, doubts=doubts)
     if rows.filtered:
         raise _nothing_matches(table, given.where)
-    what = "none of its points has a value" if rows.missing else "there are no points in it"
-    raise InputRefused(what, file=table.file)
+    if rows.missing:
+        raise InputRefused("none of its points has a value", file=table.file)
+    advice = "a row of points has three numbers at least, x, y and z"
+    raise InputRefused("there are no points in it", file=table.file, advice=advice)
 
 
 def table_of(given: PointFile, *wanted: str | int, step: Step = no_step) -> TextTable:
@@ -243,12 +278,24 @@ def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> lis
         count = names.count(alias) if alias else 0
         if count != 1:
             said = f"{count} columns named {alias}" if count else f"no column {axis}"
-            advice = 'name the columns x, y and z, or set columns = ["X", "Y", "Z"]'
-            raise InputRefused(
-                f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
-            )
+            written = table.layout.names or ()
+            x, y, _ = (written[names.index(name)] if name else None for name in headings.values())
+            raise _without_axis(table, f"the header has {said}", x or "X", y or "Y")
     _require_names_of_entries(table)
     return [names.index(alias) for alias in headings.values() if alias]
+
+
+def _without_axis(table: TextTable, what: str, x: str = "X", y: str = "Y") -> InputRefused:
+    """The error that a header does not name x, y and z. x, y: the columns of the advice."""
+    names = table.layout.names or ()
+    of_surfaces = [name for name in names if _OF_SURFACE.match(name)] if {x, y} <= set(names) else []
+    columns = ", ".join(f'"{name}"' for name in (x, y, *(of_surfaces or ["Z"])[:1]))
+    advice = f"name the columns x, y and z, or set columns = [{columns}]"
+    if len(of_surfaces) > 1:
+        advice = f"each column of elevations is a surface of its own: set columns = [{columns}], "
+        advice += f"and so on with {names_shown(of_surfaces[1:])}"
+    what += f"; it has {names_shown(names)}" if names else ""
+    return InputRefused(what, file=table.file, line=table.layout.name_line, advice=advice)
 
 
 def _require_names_of_entries(table: TextTable) -> None:
@@ -271,9 +318,18 @@ def _count_rows(entries: list[str]) -> bool:
 def _require_xyz_first(table: TextTable) -> None:
     """Refuses a table whose header names no coordinates and whose first columns count rows, or are as likely
     indices of a grid."""
+    names, first = table.layout.names or (), next(iter(head_rows(table, 9)), [])
+    if names and not all(map(is_any_number, first[:3])):
+        raise _without_axis(table, "no column is named x, y or z")
+    if any(name in _NO_COORDINATES or unit_of(name) for name in map(plain_name, names[:3])):
+        raise _without_axis(table, "no column is named x, y or z, and the first three are no coordinates")
     rows = [row for row in head_rows(table, 1000) if all(map(is_number, row[:3]))]
     if len(rows) < 2 or min(map(len, rows)) < 4:
         return
+    if not names and min(map(len, rows)) > _MOST_UNNAMED:
+        what = f"no header names its {len(rows[0])} columns, as many as a grid of values has"
+        advice = "save the grid with its place, as an ESRI ASCII grid or x, y, z; or set columns = [1, 2, 3]"
+        raise InputRefused(what, file=table.file, advice=advice)
     whole = all(float(entry) % 1 == 0 for row in rows for entry in row[:2])
     what = ""
     if _count_rows([row[0] for row in rows]):
@@ -358,6 +414,9 @@ def _read_rows(
         try:
             return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
+            if error.kind == "not_a_number" and error.items[1] == 2 and not _entry(table, error):
+                missing[1].append(b"")  # a surface that is not there has no entry
+                continue
             plain = _without_thousands(table, columns, point_file.decimal)
             if error.kind == "not_a_number" and plain is not None:
                 table, mark = plain
@@ -420,6 +479,7 @@ def other_columns(given: PointFile, rows: PointRows) -> dict[str, np.ndarray]:
     ):
         return {}
     filters, missing = _filters(table, given)
+    missing[1].append(b"")  # as _read_rows does where it is needed
     separator = table.layout.separator
     lines = table.raw[table.layout.body :].split(b"\n")
     # which rows are points: each gets its number before it, as one that is no value in any file

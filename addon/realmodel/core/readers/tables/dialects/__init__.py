@@ -9,6 +9,7 @@ from .cps3_lines import NOT_ROWS as OF_CPS3
 from .cps3_lines import begins_as_cps3_lines, cps3_lines_header
 from .dialect import Dialect
 from .earthvision import begins_as_earthvision, earthvision_header
+from .geo_eas import begins_as_geo_eas, geo_eas_header
 from .geosoft import NOT_ROWS as OF_GEOSOFT
 from .geosoft import begins_as_geosoft, geosoft_header
 from .openworks import NOT_ROWS as OF_OPENWORKS
@@ -25,6 +26,7 @@ DIALECTS = (
     Dialect("ZMAP+ points", (".zmap", ".dat"), begins_as_zmap_points, zmap_points_header),
     Dialect("CPS-3 lines", (".cps3", ".cps"), begins_as_cps3_lines, cps3_lines_header, OF_CPS3),
     Dialect("Charisma horizons", (".charisma", ".txt"), begins_as_charisma, charisma_header),
+    Dialect("Geo-EAS", (".dat", ".gslib", ".eas"), begins_as_geo_eas, geo_eas_header),
     Dialect("Geosoft XYZ", (".xyz",), begins_as_geosoft, geosoft_header, OF_GEOSOFT),
 )
 
