@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import MakeRows, Rows
-from ..base.text import Step, no_step
+from ..base.text import FileBytes, Step, no_step
+from ..base.units import unit_of
 from ..settings.data_files import MeshFile
 from .formats import MESH, OBJECTS, format_of, labels
 from .meshes.triangle_mesh import TriangleMesh
 from .object_input import objects_in, read_object
 from .objects.geo_object import SURFACE
+from .tables.dialects.dialect import comment_units
 
 # Formats whose layout is not public, or that hold solids of curved faces, and the programs that write them.
 _CLOSED = {
@@ -25,6 +28,10 @@ _CLOSED = {
     ".stp": "the program that wrote it",
     ".step": "the program that wrote it",
 }
+# Of formats that have no place for a unit, and what begins their comments.
+_WITHOUT_UNIT = (".stl", ".obj", ".ply", ".off")
+_COMMENTS = ("#", "comment", "obj_info")
+_HEAD = 4096
 
 
 def is_mesh_file(file: str | Path) -> bool:
@@ -40,6 +47,26 @@ def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows 
     """Reads a mesh in any format that is known. A MeshFile may name the object in a file of several. rows:
     where it is kept, if its format is read in pieces; else it is in memory. Raises InputRefused naming file
     and line."""
+    mesh = _read_mesh(file, step, rows)
+    path = Path(file.file if isinstance(file, MeshFile) else file)
+    if mesh.unit is None and mesh.said_unit is None and path.suffix.lower() in _WITHOUT_UNIT:
+        return replace(mesh, said_unit=_unit_in_comments(path))
+    return mesh
+
+
+def _unit_in_comments(file: Path) -> str | None:
+    """The unit that a comment, or the header of STL, names as "units: mm": not all programs mean it."""
+    head = FileBytes(file)[:_HEAD].decode("latin-1")
+    lines = [
+        head[:80].partition("\n")[0].rstrip("\0 "),
+        *(line for line in head.split("\n") if line.startswith(_COMMENTS)),
+    ]
+    plan, _ = comment_units(line.strip("# \0\r") for line in lines)
+    return unit_of(plan)
+
+
+def _read_mesh(file: str | Path | MeshFile, step: Step, rows: MakeRows) -> TriangleMesh:
+    """As read_mesh, without units in comments."""
     layer = file.layer if isinstance(file, MeshFile) else None
     file = Path(file.file if isinstance(file, MeshFile) else file)
     file_format = format_of(file, OBJECTS, MESH)

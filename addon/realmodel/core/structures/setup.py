@@ -16,6 +16,7 @@ from ..base.work import Work, native_module
 from ..project.project import Project
 from ..project.structure_entries import Fault
 from ..surfaces.field_data import apply_observations, left_out_warnings, observed_on_mesh
+from ..surfaces.likely_unit import shape_unit_warnings
 from ..surfaces.observed.derived import PlaceContext
 from ..surfaces.prepare import (
     interpolate_rock,
@@ -45,6 +46,8 @@ def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tup
     surfaces are read. Raises InputRefused."""
     inputs = read_rocks(work, project, reader)
     faults, bodies, warnings = read_structures(work, project, inputs)
+    given = [*project.faults, *project.bodies]
+    warnings += shape_unit_warnings(given, [*faults, *bodies], inputs, project.units)
     if warnings:
         inputs[0].warnings += warnings
     return inputs, replace(project, faults=faults, bodies=bodies)

@@ -16,10 +16,11 @@ from ..base.units import length_text, number_text
 from ..base.work import Work, native_module
 from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
-from ..project.project import surface_item
+from ..project.project import Rock, surface_item
 from ..readers.tables.observations import Origin
 from ..settings.methods import METHODS, SURFACE_OPTIONS
 from ..settings.rules import RULES, Rule
+from .likely_unit import surface_unit, unit_advice
 from .rock_input import RockInput
 from .wrong_sides import heights_at
 
@@ -283,19 +284,19 @@ _FARTHEST = 3.0  # times the extent of points and region
 _TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
 
 
-def require_points_near(entry: RockInput, unit: str) -> None:
+def require_points_near(entry: RockInput, given: Rock, unit: str) -> None:
     """Refuses a surface whose points are all far away from the region of its rock mass, or whose mesh lies
     beside it.
 
     Points do if the gap between their bounding box and that of the region, in plan, is more than three times
-    the diagonals of both; meshes, which say nothing beyond their borders, where there is any. Raises
-    InputRefused with the distance.
+    the diagonals of both; meshes, which say nothing beyond their borders, where there is any. given: as of
+    surface_unit. Raises InputRefused with the distance.
     """
     rock = entry.rock
     if rock.region is None:
         return
     low, high = _box(np.concatenate(rock.rings()))
-    for surface, data in zip(rock.surfaces, entry.data, strict=True):
+    for number, (surface, data) in enumerate(zip(rock.surfaces, entry.data, strict=True)):
         is_interpolated = rock.is_interpolated(surface)
         points = data.points if is_interpolated else surface.vertices
         if points is None or not len(points):
@@ -307,11 +308,14 @@ def require_points_near(entry: RockInput, unit: str) -> None:
         if away > most * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
             towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
             what = "its points lie" if is_interpolated else "its mesh lies"
+            advice = "check the coordinates and units of both; the region must lie where the surface is"
+            if (other := surface_unit(entry, given, number, unit)) is not None:
+                advice = unit_advice(other)
             raise InputRefused(
                 f"{what} {length_text(away, unit)} {towards} of the region",
                 item=surface_item(rock, surface),
                 file=surface.shape_file,
-                advice="check the coordinates and units of both; the region must lie where the surface is",
+                advice=advice,
             )
 
 

@@ -29,6 +29,7 @@ from ..settings.meshers import AUTO
 from ..settings.series_kinds import SHEETS
 from .doubtful_heights import doubtful_heights, require_points_near
 from .field_data import FieldData, apply_observations, bodies_of, left_out_warnings, read_field_data
+from .likely_unit import surface_unit_warnings
 from .observed.conformable import proposals, with_least_thickness
 from .observed.kept_contacts import kept_bounds
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
@@ -107,7 +108,8 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         apply_dips(work, entry, field.ground, field.mapped)
         if not (project.faults or project.bodies):  # else once it is known where these are
             entry.warnings += left_out_warnings(entry)
-        require_points_near(entry, project.units)
+        entry.warnings += surface_unit_warnings(entry, project_rock, project.units)
+        require_points_near(entry, project_rock, project.units)
         inputs.append(entry)
     return inputs
 
