@@ -75,6 +75,9 @@ def test_names_of_points_are_no_holes(put):
     wells = "".join(f"{n % 3},{n},{-n},W{n % 3}\n" for n in range(20))
     with pytest.raises(InputRefused, match="'well' has many rows with other places, so they are no collars"):
         table_kind(put("wells.csv", "X,Y,Z,Well\n" + wells))
+    vertical = "".join(f"{n % 3},7,{-n},W{n % 3}\n" for n in range(20))
+    with pytest.raises(InputRefused, match="so they are no collars"):
+        table_kind(put("vertical.csv", "X,Y,Z,Well\n" + vertical))
 
 
 def test_structures_in_holes_are_no_survey(put):

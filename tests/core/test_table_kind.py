@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What tables of field data are, by their columns."""
 
+import random
+
 import pytest
 from realmodel.core import InputRefused
 from realmodel.core.readers import table_contents, table_kind
@@ -74,3 +76,66 @@ def test_named_columns_decide(tmp_path, header, columns, kind):
 def test_a_table_that_is_none_of_them_is_refused(tmp_path):
     with pytest.raises(InputRefused, match="do not say whether it has collars, survey, picks"):
         table_kind(written(tmp_path, "sample,gold"))
+
+
+NAMES = [
+    ("BHID", "FROM", "TO"),
+    ("hole_id", "depth_from", "depth_to"),
+    ("Foro", "Da", "A"),
+    ("Sondaggio", "Da", "A"),
+    ("Bohrung", "Von", "Bis"),
+    ("HoleId", "FromDepth", "ToDepth"),
+]
+# Columns of assays that may be taken for names of units, with values.
+DOUBTFUL = {
+    "unit": ("ppm", "%", "g/t"),
+    "Material": ("RC chips", "Half core", "pulp"),
+    "material": ("core",),
+    "soil": ("5.5", "6.25", "7.1"),
+    "code": ("standard", "blank", "original"),
+    "Domain": ("0.75", "1.5"),
+    "graphic": ("", ""),
+}
+ELEMENTS = ("Au_ppm", "Cu", "As_ppm", "Fe2O3", "S_pct", "A", "RQD", "SampleID", "Lab_Batch", "Ag")
+LITHOLOGIES = {
+    "lithology": ("CLY", "SND"),
+    "soil": ("clay", "sand"),
+    "Domain": ("1", "2"),
+    "unit": ("Jo", "Tr"),
+}
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_assays_are_no_intervals_of_units(tmp_path, seed):
+    """In any order of columns, with columns whose names may mean units; the same with a log are intervals."""
+    chance = random.Random(seed)
+    hole, begin, end = chance.choice(NAMES[:2] + NAMES[3:])
+    elements = [name for name in chance.sample(ELEMENTS, chance.randint(1, 5)) if name != end]
+    doubtful = chance.sample(sorted(DOUBTFUL), chance.randint(0, 2))
+    log = chance.choice(sorted(LITHOLOGIES))
+    values = {name: lambda n: f"{n % 7 + 0.25 * (n % 3):g}" for name in elements}
+    values |= {name: lambda n, name=name: DOUBTFUL[name][n % len(DOUBTFUL[name])] for name in doubtful}
+    values |= {hole: lambda n: f"B{n // 4}", begin: lambda n: f"{n % 4}", end: lambda n: f"{n % 4 + 1}"}
+
+    def kind(columns):
+        order = chance.sample(list(columns), len(columns))
+        rows = [",".join(columns[name](n) for name in order) for n in range(12)]
+        path = tmp_path / "t.csv"
+        path.write_text("\n".join([",".join(order), *rows]) + "\n")
+        return table_kind(path), table_contents(path)
+
+    found, (columns, codes) = kind(values)
+    assert found == "assays"
+    assert columns["to"] == end.lower()
+    logged = {name: of for name, of in values.items() if name not in doubtful}
+    found, (columns, codes) = kind(logged | {log: lambda n: LITHOLOGIES[log][n % 2]})
+    assert found == "intervals"
+    assert codes == sorted(LITHOLOGIES[log])
+
+
+def test_a_column_a_is_no_end_of_intervals(tmp_path):
+    with pytest.raises(InputRefused, match="do not say"):
+        table_kind(written(tmp_path, "hole,B,A,Au"))
+    assert table_kind(written(tmp_path, "hole,from,A,lithology")) == "intervals"
+    assert "to" not in table_contents(written(tmp_path, "hole,from,A,lithology"))[0]
+    assert table_contents(written(tmp_path, "Foro;Da;A;Litologia"), {"hole": "foro"})[0]["to"] == "a"

@@ -28,11 +28,13 @@ from .tables.hole_tables import (
     PICKS,
     PLACE_NAMES,
     SURVEY,
+    Columns,
     Row,
     column_key,
     columns_in,
     rows,
 )
+from .tables.table_layout import is_number
 
 _KNOWN = {
     "collars": COLLARS,
@@ -50,6 +52,15 @@ _STRUCTURES = {
     "kind": ("fracture", "feature", "feature_type", "plane", "foliation", "bedding", "vein"),
     "alpha": ("alpha", "alpha_angle"),
 }
+# Of columns such as unit and material in tables of assays.
+_NO_UNITS = frozenset(
+    (
+        *("ppm", "ppb", "ppt", "%", "pct", "wt%", "g/t", "gpt", "oz/t", "mg/kg", "mg/l", "core", "half core"),
+        *("quarter core", "whole core", "dd", "ddh", "diamond", "rc", "rab", "chips", "chip", "rc chips"),
+        *("pulp", "pulps", "reject", "cuttings", "composite", "grab", "channel", "sample", "blank"),
+        *("standard", "duplicate", "original", "assay", "trench"),
+    )
+)
 _LOOKED_AT = 2000  # rows whose codes are listed
 
 
@@ -79,6 +90,11 @@ def table_kind(
     if _are_places(reading, file, sheet, hole):
         for columns_of in (hole, logged, seen):
             columns_of.pop("hole", None)
+    for meaning, known in (("block", INTERVALS), ("surface", COLLARS)):
+        those = [columns_of for columns_of in (hole, logged, seen) if meaning in columns_of]
+        if those and meaning not in reading.columns and not _are_units(reading, file, sheet, known, meaning):
+            for columns_of in those:
+                del columns_of[meaning]
     are_picks = {"hole", "surface"} <= hole.keys() and not {"depth", "elevation", "z"}.isdisjoint(hole)
     are_seen = {"x", "y", "z", "block"} <= seen.keys()
     named = {meaning for meaning, called in reading.columns.items() if called is not False}
@@ -97,11 +113,9 @@ def table_kind(
     if are_seen:
         return "observations"
     if of_hole:
-        if _repeats(reading, file, sheet):
+        if _repeats(reading, file, sheet, "xyz"):
             what = f"its '{hole['hole']}' has many rows with other places, so they are no collars"
-            advice = (
-                "if it names units, write block = ...; if these are points of surfaces, read them as points"
-            )
+            advice = "if it names units, write block = ...; points of surfaces are read as points"
             raise InputRefused(what, file=file, advice=advice)
         return "collars"
     if {"hole", "depth"} <= survey.keys() and not DIRECTIONS.keys().isdisjoint(survey):
@@ -125,15 +139,25 @@ def _are_places(reading: Boreholes, file: Path, sheet: str | None, columns: Mapp
     if "hole" in reading.columns or not {"hole", "x", "y"} <= columns.keys():
         return False
     is_name = column_key(columns["hole"]) in map(column_key, PLACE_NAMES)
-    return is_name and _repeats(reading, file, sheet)
+    return is_name and _repeats(reading, file, sheet, "xy")
 
 
-def _repeats(reading: Boreholes, file: Path, sheet: str | None) -> bool:
-    """Whether holes have more than two places in plan each, one with another."""
-    places: dict[str, set[tuple[str, str]]] = {}
+def _are_units(reading: Boreholes, file: Path, sheet: str | None, known: Columns, meaning: str) -> bool:
+    """Whether the column that may name units does, and has no measured numbers, units of measure or kinds of
+    samples instead, or nothing."""
+    every = islice(rows(reading, file, known, (), no_step, sheet), _LOOKED_AT)
+    texts = {(row.text(meaning).lower(), row.decimal) for row in every if row.has(meaning)}
+    if all(is_number(text, decimal) for text, decimal in texts):
+        return bool(texts) and all(float(text.replace(",", ".")).is_integer() for text, _ in texts)
+    return not all(text in _NO_UNITS for text, _ in texts)
+
+
+def _repeats(reading: Boreholes, file: Path, sheet: str | None, axes: str) -> bool:
+    """Whether holes have more than two places each, one with another, by these axes."""
+    places: dict[str, set[tuple[str, ...]]] = {}
     for row in islice(rows(reading, file, COLLARS, (), no_step, sheet), _LOOKED_AT):
-        if row.has("hole") and row.has("x") and row.has("y"):
-            places.setdefault(row.text("hole"), set()).add((row.text("x"), row.text("y")))
+        if all(map(row.has, ("hole", *axes))):
+            places.setdefault(row.text("hole"), set()).add(tuple(map(row.text, axes)))
     return sum(map(len, places.values())) > 2 * len(places)
 
 

@@ -199,6 +199,7 @@ OBSERVED = {
     "error": ("height_error",),
     "thickness": ("thickness", "true_thickness"),
 }
+_BESIDE = {"a": "da"}
 _OTHER_END = {"from": "to", "to": "from"}  # of an interval: one follows from the others of its hole
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
@@ -606,9 +607,16 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
         if column in columns or called is False or (called is not None and meanings is not SURVEY):
             continue
         at = _named(names, aliases)
-        if at is not None and at not in columns.values():
+        if at is not None and at not in columns.values() and _is_beside(names[at], columns, names):
             columns[column] = at
     return columns
+
+
+def _is_beside(name: str, columns: Mapping[str, int], names: Sequence[str]) -> bool:
+    """Whether a name that means something only in its language stands beside the other one there: A, beside
+    Da."""
+    other = _BESIDE.get(name.strip().lower())
+    return other is None or any(names[at].strip().lower() == other for at in columns.values())
 
 
 def _require(reading: Reading, header: TableHeader, needed: Sequence[str]) -> None:
