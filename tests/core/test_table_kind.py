@@ -30,6 +30,8 @@ HEADERS = {
     "id,x,y,z,dip,strike,unit": "dips",
     "X,Y,Z,azimuth,dip,polarity,formation": "dips",
     "x,y,slope_x,slope_y": "dips",
+    "X,Y,Z,G_x,G_y,G_z,id,formation": "dips",
+    "x,y,z,normal_x,normal_y,normal_z": "dips",
 }
 
 

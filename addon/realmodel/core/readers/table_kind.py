@@ -14,6 +14,7 @@ from ..base.errors import InputRefused
 from ..base.text import no_step
 from ..base.units import MODEL_UNIT
 from ..settings.data_files import Boreholes
+from ..settings.dips import NORMAL
 from .formats import HOLES, format_of
 from .hole_files import read_hole_files
 from .tables.attitudes import COMBINED, is_combined
@@ -211,6 +212,7 @@ def _are_dips(columns: Mapping[str, str]) -> bool:
     meanings = columns.keys()
     has_angles = "dip" in meanings and not {"dip_direction", "strike"}.isdisjoint(meanings)
     has_angles = has_angles or any(is_combined(columns.get(name, "")) for name in COMBINED)
+    has_angles = has_angles or set(NORMAL) <= meanings
     return {"x", "y"} <= meanings and ({"slope_x", "slope_y"} <= meanings or has_angles)
 
 

@@ -44,7 +44,7 @@ DIPS = {
     "slope_x": ("slope_x", "dz_dx"),
     "slope_y": ("slope_y", "dz_dy"),
     "use": ("use",),
-    **{name: (name,) for name in NORMAL},
+    **{name: (name, f"g_{name[-1]}") for name in NORMAL},  # of GemPy
 }
 # "formation" and "unit" are blocks where there are dips, which are measured within the beds
 NAMED = {"surface": ("surface", "horizon", "top", "marker", "pick"), "block": OBSERVED["block"]}
