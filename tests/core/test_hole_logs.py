@@ -189,7 +189,7 @@ def test_sections_have_curves_beside_the_holes(model, tmp_path):
     texts = [item.text for item in drawing.items if isinstance(item, Text)]
     assert "GR (GAPI)" in texts and {"10.0", "120.0"} <= set(texts)
     for ending in ("svg", "dxf", "png"):
-        section.save(tmp_path / f"s.{ending}", hole_width=1.0, hole_column="GR (GAPI)")
+        section.save(tmp_path / f"s.{ending}", hole_width=1.0, hole_column="gr (gapi)")
     assert "GR (GAPI)" in (tmp_path / "s.svg").read_text()
     fence = model.fence([[10, 50], [50, 50], [90, 50]])
     drawing = draw_section(fence, hole_width=1.0, hole_column="RHOB")

@@ -61,6 +61,8 @@ def test_a_column_for_each_surface(put):
     read = read_points(path, columns=["x", "y", "top_B"])
     assert read.xyz.tolist() == [[0, 0, 5], [0, 10, 7]]
     assert any("left out: 1 point without a value" in text for text in read.warnings)
+    with pytest.raises(InputRefused, match="z is not a number: ''"):  # a blank that native code does not know
+        read_points(put("z.csv", "x,y,z\n1,2,3\n1,2,\u2003\n"))
     with pytest.raises(InputRefused, match="y is not a number: ''"):
         read_points(put("y.csv", "x,y,z\n1,2,3\n1,,3\n"))
 

@@ -414,8 +414,10 @@ def _read_rows(
         try:
             return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
-            if error.kind == "not_a_number" and error.items[1] == 2 and not _entry(table, error):
-                missing[1].append(b"")  # a surface that is not there has no entry
+            is_no_number = error.kind == "not_a_number"
+            # a surface that is not there has no entry
+            if is_no_number and error.items[1] == 2 and b"" not in missing[1] and not _entry(table, error):
+                missing[1].append(b"")
                 continue
             plain = _without_thousands(table, columns, point_file.decimal)
             if error.kind == "not_a_number" and plain is not None:

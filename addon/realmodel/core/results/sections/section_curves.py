@@ -132,7 +132,8 @@ def _column_of(values: IntervalValues | None, column: str) -> str:
     names = [] if values is None else [n for n, array in values.columns.items() if array.dtype.kind == "f"]
     if column in names:
         return column
-    alike = [name for name in names if name.rpartition(" (")[0] == column]
+    wanted = column.casefold()
+    alike = [name for name in names if wanted in (name.casefold(), name.rpartition(" (")[0].casefold())]
     if len(alike) != 1:
         choices = number_list(names) if names else "there are none; give logs = ... in boreholes"
         raise UsageError(f"there is no column '{column}' of numbers along the boreholes: {choices}")
