@@ -174,3 +174,15 @@ def test_a_curve_of_las_without_a_point(put):
     collars = put("c.csv", "hole,x,y,z\nA,0,0,0\n")
     logs = read_boreholes(collars=collars, logs=put("a.las", text)).logs
     assert np.array_equal(logs["GR (API)"], [5, 6, 7])
+
+
+def test_the_end_of_a_hole_is_no_surface(put):
+    collars = put("c.csv", "hole,x,y,z\nA,0,0,100\nB,100,0,100\nC,0,100,100\n")
+    rows = "".join(f"{hole},Sand,10\n{hole},Clay,30\n{hole},TD,50\n" for hole in "ABC")
+    picks = put("p.csv", "hole,surface,depth\n" + rows)
+    read = read_boreholes(collars=collars, picks=picks)
+    assert set(read.picks["surface"].tolist()) == {"Sand", "Clay"}
+    assert [problem.line for problem in read.problems] == [4, 7, 10]
+    assert all("'TD' is the end of the hole" in problem.text for problem in read.problems)
+    found = propose_project(boreholes={"collars": collars, "picks": picks}).proposal.order
+    assert "TD" not in found

@@ -358,6 +358,10 @@ def _deepest(tables: HoleTables) -> dict[str, float]:
     return deepest
 
 
+# What programs write among picks, which is no surface.
+_ENDS = frozenset(("td", "t.d.", "total depth", "total_depth", "eoh", "end of hole", "bottom of hole"))
+
+
 def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList) -> list[Row]:
     """Picks with a surface and a depth or an elevation, each once."""
     rows, usable, seen = tables.picks or [], list[Row](), dict[tuple, Row]()
@@ -373,6 +377,9 @@ def _repaired_picks(tables: HoleTables, units: UnitNames, problems: ProblemList)
             problems.note("no_row", LEFT_OUT, row, "the surface has no name", depth_of(row))
             continue
         code = row.text("surface")
+        if code.strip().lower() in _ENDS and units.meaning(code) == code and code not in units.surfaces:
+            problems.note("no_row", LEFT_OUT, row, f"'{code}' is the end of the hole", depth_of(row), code)
+            continue
         if not row.has(column):
             if what := problems.taken(row, column):
                 problems.note("no_depth", LEFT_OUT, row, what, None, code)
