@@ -204,6 +204,8 @@ public:
 
     /// Where a point lies, as closely as is cheap to say; for several heights above it.
     NearPoint approximate(PointId point) const;
+    /// The same of the crossing of two lines that need not be a point.
+    NearPoint approximate_crossing(LineId a, LineId b) const { return approximate(Point{a, b}); }
     /// The double nearest to the height of a plane above a point.
     double rounded_height(PlaneId plane, PointId point);
     /// The same of a plane whose height there is known by a name.

@@ -582,8 +582,9 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
                                     const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
                                     const Array<std::uint8_t>* cell_is_thick,
-                                    const Execution& execution) {
-    const CollinearLines lines = join_lines(geometry, faces, execution);
+                                    const Execution& execution,
+                                    const std::vector<std::uint8_t>* left_out) {
+    const CollinearLines lines = join_lines(geometry, faces, execution, left_out);
     std::vector<std::pair<std::int32_t, PlanVertexId>>
         extra_vertices;  // line and plan vertex, ascending
     for (const ExtraPoint& e : extra) {

@@ -66,6 +66,7 @@ CollinearEdges find_collinear_edges(const exact::PlanArrangement& geometry, cons
                                     const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
                                     const Array<std::uint8_t>* cell_is_thick,
-                                    const Execution& execution);
+                                    const Execution& execution,
+                                    const std::vector<std::uint8_t>* left_out = nullptr);
 
 }  // namespace realmodel::strata

@@ -260,11 +260,14 @@ std::uint64_t mixed(const std::array<double, 3>& key) {
 }
 
 Array<KeyedLine> lines_in_use(const PlanArrangement& geometry, const FaceList& faces,
-                              const Execution& execution) {
+                              const Execution& execution,
+                              const std::vector<std::uint8_t>* left_out) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
     const auto& of_edges = faces.polygons.lines;
-    parallel_for_each(of_edges.size(), execution,
-                      [&](std::size_t c) { atomic_set(used[index(of_edges[c].id())]); });
+    parallel_for_each(of_edges.size(), execution, [&](std::size_t c) {
+        const std::size_t line = index(of_edges[c].id());
+        if (left_out == nullptr || (*left_out)[line] == 0) atomic_set(used[line]);
+    });
     Array<KeyedLine> lines;
     number_in_order(
         used.size(), execution, [&](std::size_t l) { return used[l] != 0; },
@@ -325,8 +328,8 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
 }  // namespace
 
 CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces,
-                          const Execution& execution) {
-    Array<KeyedLine> lines = lines_in_use(geometry, faces, execution);
+                          const Execution& execution, const std::vector<std::uint8_t>* left_out) {
+    Array<KeyedLine> lines = lines_in_use(geometry, faces, execution, left_out);
     CollinearLines joined;
     joined.of_line = Array<std::int32_t>(geometry.line_count());
     std::fill(joined.of_line.begin(), joined.of_line.end(), -1);

@@ -52,7 +52,9 @@ struct CollinearLines {
     Array<std::int32_t> of_line;   ///< -1 for lines that no face edge is on
     Array<LineId> representative;  ///< the lowest of its lines
 };
+/// @param left_out  if given: of each line, 1 where its edges are looked at elsewhere
 CollinearLines join_lines(const exact::PlanArrangement& geometry, const FaceList& faces,
-                          const Execution& execution);
+                          const Execution& execution,
+                          const std::vector<std::uint8_t>* left_out = nullptr);
 
 }  // namespace realmodel::strata
