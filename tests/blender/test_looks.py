@@ -16,7 +16,7 @@ from realmodel.bl.shading import looks
 from realmodel.core.project.looks import LOOKS
 
 PIXELS = 64
-FOR_EEVEE = ("FLAT", "SHALE", "SANDSTONE", "GRAVEL")  # each with a texture takes seconds on a processor
+FOR_EEVEE = ("FLAT", "SHALE", "GRAVEL")  # each with a texture takes seconds on a processor
 
 
 class Looks(PanelCase):

@@ -110,7 +110,7 @@ class Nonsense(PanelCase):
         os.chdir(self.folder)
         self.opened()
         skipped = {"documentation", "quit", "render_picture"}
-        for cls in _classes(bpy.types.Operator):
+        for number, cls in enumerate(_classes(bpy.types.Operator)):
             name = cls.bl_idname.partition(".")[2]
             keys = [
                 key
@@ -119,6 +119,6 @@ class Nonsense(PanelCase):
             ]
             if name in skipped or not keys:
                 continue
-            for text in NONSENSE:
+            for text in (NONSENSE * 2)[number % len(NONSENSE) :][:3]:  # each meets many operators
                 text = text.replace("\0", "")
                 self.refused_or_done(getattr(ops, name), f"{name} {text!r}", **dict.fromkeys(keys, text))

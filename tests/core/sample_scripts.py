@@ -1,12 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scripts that write the samples' files."""
 
+import functools
 import importlib.util
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+from realmodel.core import build, load_project
+
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
+
+
+@functools.lru_cache(maxsize=6)
+def built_sample(name, cells="columns"):
+    """The model of a sample; all tests of a process share it."""
+    return build(load_project(SAMPLES / name / "project.toml"), cells=cells)
+
+
+def coarse_sample(name, factor):
+    """The project of a sample with edges of its plan meshes and lattices of its fields longer by a factor."""
+    project = load_project(SAMPLES / name / "project.toml")
+    rocks = [
+        replace(
+            rock,
+            edge_length=longer(rock.edge_length, factor),
+            series=[replace(each, resolution=longer(each.resolution, factor)) for each in rock.series],
+        )
+        for rock in project.rocks
+    ]
+    return replace(project, rocks=rocks)
+
+
+def longer(length, factor):
+    return factor * length if isinstance(length, (int, float)) else length
 
 
 def generator(name):

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import Body, Fault, Project, Rock, Surface, build, load_project
+from realmodel.core import Body, Fault, Project, Rock, Surface, build
 from realmodel.core.display import polygon_mesh
+from sample_scripts import built_sample
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 ORIGIN = np.zeros(3)
@@ -82,12 +83,13 @@ def values_by_place(shapes, polygons=None):
     return found
 
 
-@pytest.mark.parametrize("cells", ["columns", "blocks"])
-@pytest.mark.parametrize("sample", ["two_layers", "gravel_plain", "fault_blocks"])
+@pytest.mark.parametrize(
+    ("sample", "cells"), [("two_layers", "columns"), ("gravel_plain", "blocks"), ("fault_blocks", "columns")]
+)
 def test_lamination_goes_on_over_a_cut(sample, cells):
     """Both caps and the outside have one value where they meet; where a layer has no thickness the faces that
     meet there may differ."""
-    model = build(load_project(SAMPLES / sample / "project.toml"), cells=cells)
+    model = built_sample(sample, cells=cells)
     middle = (model.vertices.min(axis=0) + model.vertices.max(axis=0)) / 2
     size = np.ptp(model.vertices, axis=0).max()
     equal = (5e-5 if sample == "fault_blocks" else 1e-6) * size  # sheets drawn together at tips, and tied

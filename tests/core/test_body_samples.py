@@ -5,8 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from realmodel.core import build, load_project
-from sample_scripts import SAMPLES, generator, written_again
+from sample_scripts import built_sample, generator, written_again
 
 
 @pytest.mark.parametrize(("name", "count"), [("intrusion", 7), ("tunnel", 7)])
@@ -20,7 +19,7 @@ def volume(vertices, triangles):
 
 
 def test_the_rock_that_a_tunnel_takes():
-    made, model = generator("tunnel"), build(load_project(SAMPLES / "tunnel" / "project.toml"))
+    made, model = generator("tunnel"), built_sample("tunnel")
     assert model.warnings == [] and model.validate(6000).passed
     taken = model.eroded().taken
     names = [block.name for block in model.blocks]
@@ -43,7 +42,7 @@ def test_the_rock_that_a_tunnel_takes():
 
 
 def test_an_intrusion_that_erosion_has_laid_bare():
-    model = build(load_project(SAMPLES / "intrusion" / "project.toml"))
+    model = built_sample("intrusion")
     assert [str(warning) for warning in model.warnings if warning.kind != "joined"] == []
     assert model.validate(6000).passed
     blocks = {block.name: number for number, block in enumerate(model.blocks)}

@@ -388,8 +388,7 @@ def test_realizations_shift_what_they_draw():
             options={"variogram": variogram},
         ),
     ]
-    found = ensemble(project(surfaces, [fault("F", 500.0)], 100.0), 6, seed=3)
-    again = ensemble(project(surfaces, [fault("F", 500.0)], 100.0), 6, seed=3)
+    found, again = (ensemble(project(surfaces, [fault("F", 500.0)], 200.0), 4, seed=3) for _ in range(2))
     entry = found.model.rock_inputs[0]
     assert np.array_equal(found.volumes, again.volumes)
     deviation = found.surface_deviation[1]

@@ -22,6 +22,7 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.simulation import PolyhedralMesh
+from sample_scripts import built_sample
 from solvers import foam_program, run_foam
 from stacks.generate import random_stack
 from stacks.model_view import rocks_of
@@ -246,7 +247,7 @@ def test_a_half_is_cleaned():
 
 @pytest.fixture(scope="module")
 def castle_hill():
-    return build(load_project(SAMPLES / "castle_hill" / "project.toml"))
+    return built_sample("castle_hill")
 
 
 @foam_only

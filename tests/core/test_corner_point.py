@@ -7,10 +7,11 @@ import subprocess
 
 import numpy as np
 import pytest
-from conftest import ROOT, grid_surface
+from conftest import grid_surface
 from displaced_surfaces import Displacing, dome, leaning, mesh_of
-from realmodel.core import Library, Project, Property, Rock, Surface, UsageError, build, load_project
+from realmodel.core import Library, Project, Property, Rock, Surface, UsageError, build
 from sample_models import three_layers
+from sample_scripts import built_sample
 from structure_cases import SQUARE
 
 
@@ -238,7 +239,7 @@ def test_beds_go_on_from_column_to_column(seed):
 
 @pytest.mark.parametrize("sample", ["two_layers", "gravel_plain", "mapped_valley", "tunnel", "intrusion"])
 def test_samples_have_their_volumes_at_a_hundred_columns(sample):
-    grid = build(load_project(ROOT / "blend_samples" / sample / "project.toml")).corner_point_grid()
+    grid = built_sample(sample).corner_point_grid()
     assert max(grid.shape[:2]) == 100
     assert np.abs(grid.difference).max() < 0.01
     assert (np.diff(grid.zcorn, axis=0) >= 0).all()
@@ -280,7 +281,7 @@ def test_a_layer_ends_where_its_block_is_eroded():
 
 def test_a_block_that_a_column_has_twice_has_layers_for_each_time():
     """The tunnel of the sample is within a block, which is above it and below it."""
-    model = build(load_project(ROOT / "blend_samples" / "fault_blocks" / "project.toml"))
+    model = built_sample("fault_blocks")
     grid = model.corner_point_grid(20.0)
     assert np.abs(grid.difference).max() < 0.01
     kinds = {warning.kind for warning in grid.warnings}

@@ -15,12 +15,12 @@ from realmodel.core import (
     Surface,
     UsageError,
     build,
-    load_project,
 )
 from realmodel.core.exporters import save_mesh
 from realmodel.core.simulation.elements import ElementFaces
 from realmodel.core.simulation.patches import boundary_patches
 from realmodel.core.simulation.simulation_mesh import smallest_dihedral_angle
+from sample_scripts import built_sample
 from solver_meshes import block_volumes, check_solver_mesh, outside_volume
 from solvers import foam_program, run_foam
 
@@ -113,7 +113,7 @@ def test_names_of_boundaries(faulted):
 def test_outside_faces_have_the_patch_that_they_come_from(sample, edge, thickness):
     """No patch of a top or base has faces of walls or tunnels (a field was wrong by 19 of 30 K), and walls
     and the flat base are plane but for a few corners, where elements that fill a dent would be flat."""
-    model = build(load_project(SAMPLES / sample / "project.toml"))
+    model = built_sample(sample)
     mesh = filled(model, edge, thickness)
     names = {part.name for part in ElementFaces(mesh).sets() if part.group}
     assert names <= {patch.name for patch in exact_patches(model)}
@@ -163,7 +163,7 @@ def test_check_mesh(faulted, tmp_path):
 @pytest.mark.skipif(foam_program("checkMesh") is None, reason="OpenFOAM is absent")
 def test_check_mesh_of_the_sample(tmp_path):
     """How many depends on every coordinate (docs/dev/simulation.md); 8 were left before they were mended."""
-    model = build(load_project(SAMPLES / "fault_blocks" / "project.toml"))
+    model = built_sample("fault_blocks")
     check_mesh_finds_few_flat_elements(filled(model, 160.0, 32.0), tmp_path, 4)
 
 
@@ -233,7 +233,7 @@ def test_refused_lengths(faulted, size, message):
     ],
 )
 def test_samples(sample, edge, tolerance, within):
-    model = build(load_project(SAMPLES / sample / "project.toml"))
+    model = built_sample(sample)
     mesh = filled(model, edge, tolerance)
     assert mesh.volumes.sum() == pytest.approx(mesh.exact_volumes.sum(), rel=0.01)
     assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=within, abs=1.0)

@@ -18,7 +18,7 @@ def test_it_is_built_right(path):
     assert failures_of(load_case(path)) == []
 
 
-@pytest.mark.parametrize("seed", [14, 18, 20, 47])
+@pytest.mark.parametrize("seed", [14, 18, 47])
 def test_random_ones_are_built_right(seed):
     assert failures_of(random_case(seed)) == []
 

@@ -3,9 +3,9 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Model, build, load_project
+from realmodel.core import Model
 from realmodel.core.base.work import native_module
-from sample_scripts import SAMPLES, generator, written_again
+from sample_scripts import built_sample, generator, written_again
 
 
 def test_their_files_are_those_of_their_scripts(tmp_path):
@@ -30,7 +30,7 @@ def true_block(name, made, point):
     [("recumbent_fold", 0.99, (1000, 800, 40)), ("faulted_dome", 0.96, (1000, 1000, 0))],
 )
 def test_the_model_is_what_its_files_were_made_of(name, least, high, tmp_path):
-    model = build(load_project(SAMPLES / name / "project.toml"))
+    model = built_sample(name)
     report = model.validate()
     assert report.passed, report.failure()
     made = generator(name)

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import build, load_project
 from realmodel.core.readers import read_mesh, read_shapes
 from realmodel.core.results.samples import plan_grids
 from realmodel.core.settings.data_files import MapLayer
+from sample_scripts import built_sample
 
 WHY = "not installed: scripts/test.sh installs it"
 
 
 @pytest.fixture(scope="module")
 def model():
-    return build(load_project("blend_samples/two_layers/project.toml"))
+    return built_sample("two_layers")
 
 
 def of_ogs(program, *arguments):

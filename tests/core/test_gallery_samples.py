@@ -3,12 +3,11 @@
 
 import numpy as np
 import pytest
-from realmodel.core import build, load_project
-from sample_scripts import SAMPLES, generator, written_again
+from sample_scripts import SAMPLES, built_sample, generator, written_again
 
 
 def built(name):
-    model = build(load_project(SAMPLES / name / "project.toml"), cells="blocks")
+    model = built_sample(name, cells="blocks")
     assert model.validate(2000).passed
     return model, {block.name: block for block in model.blocks}
 

@@ -12,7 +12,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Model, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core import InputRefused, Model, Project, Rock, Surface, UsageError, build
 from realmodel.core.base.work import native_module
 from realmodel.core.cells.cell_complex import CellComplex
 from realmodel.core.readers import read_region, read_shapes
@@ -21,6 +21,7 @@ from realmodel.core.results.contours import checked_interval, contours
 from realmodel.core.results.geological_map import geological_map
 from realmodel.core.settings.data_files import MapLayer
 from realmodel.core.surfaces.surface_input import SurfaceArrays
+from sample_scripts import built_sample
 from stacks.generate import random_stack
 from stacks.model_view import built
 from stacks.rock_masses import random_rock_masses
@@ -35,12 +36,12 @@ SAMPLES = {  # what crops out: how many areas, rings of all, and the plan area
 
 @pytest.fixture(scope="module", params=SAMPLES)
 def sample(request):
-    return request.param, build(load_project(f"blend_samples/{request.param}/project.toml"))
+    return request.param, built_sample(request.param)
 
 
 @pytest.fixture(scope="module")
 def two_layers():
-    return build(load_project("blend_samples/two_layers/project.toml"))
+    return built_sample("two_layers")
 
 
 def shapes_of(areas):
@@ -213,7 +214,7 @@ def test_the_files_name_the_projects_system(two_layers, crs, found, tmp_path):
 @pytest.mark.parametrize("ending", [".gpkg", ".geojson"])
 @pytest.mark.parametrize("name", ["two_layers", "gravel_plain"])
 def test_gdal_reads_the_files(name, ending, tmp_path):
-    model = build(load_project(f"blend_samples/{name}/project.toml"))
+    model = built_sample(name)
     model.save(tmp_path / f"m{ending}", contour_interval=2.0)
     areas = geological_map(model)
     if ending == ".gpkg":

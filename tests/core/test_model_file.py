@@ -29,11 +29,11 @@ from realmodel.core.exporters.report import model_report
 from realmodel.core.readers import read_mesh
 from realmodel.core.results.sections.section_holes import hole_places
 from realmodel.core.results.surface_quality import residuals
+from sample_scripts import built_sample, coarse_sample
 from structure_cases import plane_fault
 
 ROOT = Path(__file__).resolve().parents[2]
 OLD = ROOT / "tests" / "data" / "models" / "0.1.npz"
-SAMPLES = ("two_layers", "gravel_plain", "fault_blocks", "tunnel")
 # of a run or of the folder, and so not in a file
 _OF_THE_RUN = {"timings", "threads", "seconds", "build_seconds", "peak_memory", "source", "path", "file"}
 
@@ -109,7 +109,7 @@ def sloping(model):
 
 
 def last_surface(model):
-    return int(np.flatnonzero(model.surface_kind == 0)[-1])
+    return max(len(rock.surfaces) for rock in model.project.rocks) - 1
 
 
 def left_out_holes(model):
@@ -160,10 +160,11 @@ MADE = {
 PUBLIC = sorted(name for name in dir(Model) if not name.startswith("_") and name != "load")
 
 
-@pytest.fixture(scope="module", params=SAMPLES)
+@pytest.fixture(scope="module", params=["two_layers", "tunnel", "faulted"])
 def both(request, tmp_path_factory):
     """A built model, and the one loaded from its file."""
-    model = build(load_project(ROOT / "blend_samples" / request.param / "project.toml"), threads=2)
+    made = {"faulted": old_project, "tunnel": lambda: coarse_sample("tunnel", 3)}
+    model = build(made.get(request.param, lambda: coarse_sample(request.param, 1))(), threads=2)
     file = tmp_path_factory.mktemp(request.param) / "m.npz"
     model.save(file)
     return model, Model.load(file, threads=2)
@@ -381,7 +382,7 @@ def test_arrays_that_do_not_fit_one_another_are_refused(small, tmp_path):
 def test_other_files_are_refused(content, words, small, tmp_path):
     file = tmp_path / "m.npz"
     if content == "section":
-        model = build(load_project(ROOT / "blend_samples" / "two_layers" / "project.toml"))
+        model = built_sample("two_layers")
         model.section(model.vertices.mean(axis=0), (1, 0, 0)).save(file)
     elif content == "pickle":
         np.savez(file, **{**small[1], "vertices": np.array([{}], object)})

@@ -25,6 +25,7 @@ from realmodel.core import (
 )
 from realmodel.core.model import notebook_view
 from sample_models import three_layers
+from sample_scripts import built_sample
 from structure_cases import ball, plane_fault
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
@@ -134,7 +135,7 @@ def test_names_are_escaped():
 
 
 def test_the_picture_of_a_large_model_is_small():
-    html = build(load_project(SAMPLES / "haut_barr" / "project.toml"), cells="blocks")._repr_html_()
+    html = built_sample("haut_barr", cells="blocks")._repr_html_()
     assert len(html) < 100_000
 
 
@@ -176,7 +177,7 @@ def test_the_table_of_blocks(model):
 
 
 def test_the_table_of_blocks_has_the_names_of_the_library():
-    model = build(load_project(SAMPLES / "two_layers" / "project.toml"))
+    model = built_sample("two_layers")
     table = model.block_table()
     library = model.project.library
     assert table["property_name"].tolist() == [library.get(block.property).name for block in model.blocks]

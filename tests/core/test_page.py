@@ -7,8 +7,8 @@ import re
 import numpy as np
 import pytest
 from browser import CHROMIUM, browse
-from realmodel.core import Project, Rock, Surface, build, load_project
-from sample_scripts import SAMPLES
+from realmodel.core import Project, Rock, Surface, build
+from sample_scripts import coarse_sample
 
 _NEEDS_BROWSER = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 SIZES = {"desktop": (1200, 800), "phone": (390, 844)}
@@ -121,7 +121,7 @@ def places_within(model, axis, share):
 @_NEEDS_BROWSER
 @pytest.mark.parametrize("sample", ["fault_blocks", "recumbent_fold", "tunnel"])
 def test_sections_are_filled_with_the_right_colors(tmp_path, sample):
-    model = build(load_project(SAMPLES / sample / "project.toml"))
+    model = build(coarse_sample(sample, 4 if sample == "recumbent_fold" else 1))
     page = model.to_html()
     data = data_of(page)
     share = 0.437

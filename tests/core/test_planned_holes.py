@@ -10,10 +10,11 @@ from conftest import grid_surface
 from folded_rocks import folded_project, given_field, recumbent
 from hypothesis import given
 from hypothesis import strategies as st
-from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, build
 from realmodel.core.ensembles import Realizer, ensemble
 from realmodel.core.results import model_holes
 from realmodel.core.results.layer_values import at_places
+from sample_scripts import built_sample
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 
@@ -178,7 +179,7 @@ def test_an_interval_between_two_looks_has_probabilities_too(tmp_path):
 
 
 def test_holes_of_a_faulted_model_are_in_its_compartments():
-    model = build(load_project(SAMPLES / "fault_blocks" / "project.toml"))
+    model = built_sample("fault_blocks")
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     collar = (*(low[:2] + 0.07 * (high - low)[:2]), high[2])
     hole = model.planned_hole(collar, azimuth=60, dip=25, length=1.2 * float(np.linalg.norm(high - low)))

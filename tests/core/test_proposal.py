@@ -347,8 +347,8 @@ def test_picks_alone_are_surfaces(tmp_path):
 
 def test_logs_without_order_make_a_project_all_the_same(tmp_path):
     draw = np.random.default_rng(5)
-    holes = [[(f"u{draw.integers(8)}", float(draw.uniform(1, 4))) for _ in range(12)] for _ in range(30)]
-    plan = [(100.0 * (n % 6), 100.0 * (n // 6)) for n in range(30)]
+    holes = [[(f"u{draw.integers(8)}", float(draw.uniform(1, 4))) for _ in range(8)] for _ in range(12)]
+    plan = [(100.0 * (n % 4), 100.0 * (n // 4)) for n in range(12)]
     project = proposed(tmp_path, holes, plan=plan)
     assert len(project.bodies) <= 30
     assert project.proposal.conflicts

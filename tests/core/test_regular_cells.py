@@ -17,19 +17,19 @@ from realmodel.core import (
     Surface,
     UsageError,
     build,
-    load_project,
 )
 from realmodel.core.base.packages import vendored
 from realmodel.core.exporters import MODEL
 from realmodel.core.readers import read_point_file
 from realmodel.core.results.samples import plan_grids, regular_cells
+from sample_scripts import built_sample
 
 WHY = "is not installed: scripts/test.sh installs it"
 
 
 @pytest.fixture(scope="module")
 def model():
-    return build(load_project("blend_samples/two_layers/project.toml"))
+    return built_sample("two_layers")
 
 
 def box(low, high):

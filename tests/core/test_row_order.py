@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import ROOT
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Dips, Observations, build, cross_validate, interpolate, load_project
 from realmodel.core.settings.method_options import OptionRefused
@@ -81,6 +81,7 @@ METHODS_OF_POINTS = [
 
 @pytest.mark.parametrize("method", METHODS_OF_POINTS)
 @given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=30)
 def test_shuffled_points_give_the_same_heights(method, seed):
     """Also where some lie at one place, at equal distances from nodes, or on one circle."""
     draw = np.random.default_rng(seed)

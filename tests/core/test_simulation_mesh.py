@@ -21,6 +21,7 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.simulation.elements import ElementFaces
+from sample_scripts import built_sample
 from solver_meshes import block_volumes, check_solver_mesh, least_angles, outside_volume
 from stacks import places, real_data
 from stacks.generate import random_stack
@@ -67,7 +68,7 @@ def thicknesses(mesh):
     ],
 )
 def test_samples(sample, edge, thickness, deviation, elements):
-    model = build(load_project(SAMPLES / sample / "project.toml"))
+    model = built_sample(sample)
     mesh = checked(model.simulation_mesh(edge, thickness, layers=2, elements=elements))
     assert (set(mesh.elements) == {"tetrahedron"}) == (elements == "tetrahedra")
     assert mesh.exact_volumes.tolist() == [block.volume for block in model.blocks]
@@ -377,7 +378,7 @@ def test_a_mesh_of_no_elements(elements):
 
 
 def test_the_same_for_any_number_of_threads():
-    model = build(load_project(SAMPLES / "gravel_plain" / "project.toml"))
+    model = built_sample("gravel_plain")
     one, two = (model.simulation_mesh(20.0, 0.5, threads=threads) for threads in (1, 2))
     assert one.points.tobytes() == two.points.tobytes()
     assert all(one.elements[kind].tobytes() == two.elements[kind].tobytes() for kind in one.elements)
@@ -385,7 +386,7 @@ def test_the_same_for_any_number_of_threads():
 
 
 def test_faces_name_their_surfaces():
-    model = build(load_project(SAMPLES / "two_layers" / "project.toml"))
+    model = built_sample("two_layers")
     mesh = model.simulation_mesh(5.0, 0.2)
     corners, surface = mesh.faces["triangle"], mesh.face_surface["triangle"]
     assert set(surface.tolist()) <= {-2, -1, *range(len(mesh.surface_names))}
@@ -502,6 +503,6 @@ def test_faces_on_a_fault_have_its_number(turn, elements):
 
 
 def test_cancelled():
-    model = build(load_project(SAMPLES / "two_layers" / "project.toml"))
+    model = built_sample("two_layers")
     with pytest.raises(Cancelled):
         model.simulation_mesh(0.2, 0.1, cancel=lambda: True)

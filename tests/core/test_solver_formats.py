@@ -10,11 +10,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mixed_meshes import SETS, VOLUMES, layered_mesh, mixed_mesh
-from realmodel.core import BuildFailed, UsageError, build, load_project
+from realmodel.core import BuildFailed, UsageError
 from realmodel.core.exporters import MESH, save_mesh
 from realmodel.core.exporters.solvers.modflow import element_volumes
 from realmodel.core.simulation import PolyhedralMesh, VolumeMesh
 from realmodel.core.simulation.elements import ElementFaces
+from sample_scripts import built_sample
 from solvers import run_modflow, write_modflow_simulation
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -254,7 +255,7 @@ def test_exodus_is_netcdf(mesh, tmp_path):
 
 def test_exodus_of_polyhedra(tmp_path):
     vtk = pytest.importorskip("vtk", reason=f"VTK is {WHY}")
-    model = build(load_project("blend_samples/two_layers/project.toml"))
+    model = built_sample("two_layers")
     model.save(tmp_path / "m.exo")
     reader = vtk.vtkExodusIIReader()
     reader.SetFileName(str(tmp_path / "m.exo"))
@@ -348,7 +349,7 @@ def test_modflow_disu_of_a_model(tmp_path):
     """What MODFLOW 6 refuses (Disu.f90, Connections.f90): cells without thickness, lower cells with lower
     numbers, and tops above the bottoms of upper cells beyond the tolerance; connections without a width make
     no matrix."""
-    model = build(load_project("blend_samples/two_layers/project.toml"))
+    model = built_sample("two_layers")
     model.save(tmp_path / "g.disu")
     grid = modflow(tmp_path, "DISU6", "g.disu")
     top, bottom = grid.top.array, grid.bot.array
@@ -372,7 +373,7 @@ def test_modflow_disu_of_a_model(tmp_path):
 
 def test_modflow_disu_of_cells_as_narrow_as_rounding(tmp_path):
     """Two cells had a negative volume over no area to speak of: their tops were 52 m below their bottoms."""
-    build(load_project("blend_samples/castle_hill/project.toml")).save(tmp_path / "g.disu")
+    built_sample("castle_hill").save(tmp_path / "g.disu")
     text = (tmp_path / "g.disu").read_text()
     parts = [text.split(f"  {name}\n    INTERNAL FACTOR 1\n")[1] for name in ("TOP", "BOT", "AREA")]
     top, bottom, area = (np.array(part[: re.search("[A-Z]", part).start()].split(), float) for part in parts)
@@ -387,7 +388,7 @@ def test_modflow_disu_of_cells_as_narrow_as_rounding(tmp_path):
 def test_modflow_computes_a_flow_through_the_exact_cells(tmp_path, name):
     """From the base to what lies highest: heads are between those that are held."""
     pytest.importorskip("flopy", reason=f"flopy is {WHY}")
-    model = build(load_project(f"blend_samples/{name}/project.toml"))
+    model = built_sample(name)
     model.save(tmp_path / "g.disu")
     grid = modflow(tmp_path, "DISU6", "g.disu")
     blocks = np.array((tmp_path / "g_disu_block.txt").read_text().split(), int)
@@ -403,14 +404,14 @@ def test_modflow_computes_a_flow_through_the_exact_cells(tmp_path, name):
 
 
 def test_modflow_disu_refuses_inclined_faults(tmp_path):
-    model = build(load_project("blend_samples/fault_blocks/project.toml"))
+    model = built_sample("fault_blocks")
     with pytest.raises(UsageError, match="MODFLOW 6 wants cells in an order from the top"):
         model.save(tmp_path / "g.disu")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_what_a_format_cannot_hold_is_refused(mesh, tmp_path):
-    model = build(load_project("blend_samples/two_layers/project.toml"))
+    model = built_sample("two_layers")
     for ending in (".msh", ".inp", ".cdb", ".f3grid", ".disv"):
         with pytest.raises(UsageError, match=r"no polyhedra; use one of \.vtu, \.foam, \.exo, \.disu"):
             save_mesh(PolyhedralMesh.of_model(model), tmp_path / f"m{ending}")

@@ -12,6 +12,7 @@ import pytest
 from realmodel.core import Project, Rock, Surface, build, load_project
 from realmodel.core.exporters import save_mesh
 from realmodel.core.simulation.elements import ElementFaces
+from sample_scripts import built_sample
 from solver_meshes import check_solver_mesh, least_angles
 from solvers import (
     foam_heat,
@@ -54,7 +55,7 @@ def model_of(name, folder):
         return build(
             load_project(project_files.points_project(folder, name, points, real_data.CLAUDIUS_REGION, 150.0))
         )
-    return build(load_project(SAMPLES / name / "project.toml"))
+    return built_sample(name)
 
 
 @foam_only
@@ -165,7 +166,7 @@ def test_faces_that_stay_skew_are_told(tmp_path, elements):
 
 @pytest.fixture(scope="module")
 def two_layers():
-    return build(load_project(SAMPLES / "two_layers" / "project.toml"))
+    return built_sample("two_layers")
 
 
 @pytest.fixture(scope="module")
@@ -217,7 +218,7 @@ def residuals(mesh, diffusion, values):
 def test_open_geo_sys_takes_tetrahedra_with_a_material_for_each_block(tmp_path):
     """Of a model without columns. Its solution solves our own equations with these materials, and no other:
     so it has read our elements, and for each the number of its block."""
-    model = build(load_project(SAMPLES / "fault_blocks" / "project.toml"))
+    model = built_sample("fault_blocks")
     mesh = model.simulation_mesh(166.7, 33.33, elements="tetrahedra")
     save_mesh(mesh, tmp_path / "mesh.vtu")
     media = 10.0 ** -np.arange(len(mesh.block_names))

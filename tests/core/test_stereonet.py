@@ -18,7 +18,7 @@ from realmodel.core.results.orientations.axes import (
     unprojected,
 )
 from realmodel.core.results.orientations.stereonet import StereonetData, draw_stereonet
-from sample_scripts import SAMPLES
+from sample_scripts import SAMPLES, coarse_sample
 from structure_cases import SQUARE
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
 
@@ -202,7 +202,7 @@ def test_dips_of_a_table_need_no_build(tmp_path):
 
 
 def test_the_report_has_the_numbers_of_all_dips_and_of_each_name():
-    model = build(load_project(SAMPLES / "recumbent_fold/project.toml"))
+    model = build(coarse_sample("recumbent_fold", 4))
     entries = model_report(model)["dips"]
     assert entries[0]["of"] is None and len(entries) > 1
     for entry in entries:

@@ -16,7 +16,7 @@ from realmodel.core.settings.methods import METHODS
 from realmodel.core.surfaces.observed.surface_data import SurfaceData
 from realmodel.core.surfaces.planar_mesh import crowded_places
 from realmodel.core.surfaces.rock_input import RockInput
-from sample_scripts import SAMPLES
+from sample_scripts import SAMPLES, built_sample
 
 SIZE = 100.0
 REGION = np.array([[0, 0], [SIZE, 0], [SIZE, SIZE], [0, SIZE]], float)
@@ -167,7 +167,7 @@ def test_bounds_hold_within_triangles():
 
 @pytest.mark.parametrize("name", ["fault_blocks", "rift_basin"])
 def test_sheets_beside_faults_pass_through_their_points(name):
-    model = build(load_project(SAMPLES / name / "project.toml"))
+    model = built_sample(name)
     for each in residuals(model):
         off = np.abs(each.values) / np.ptp(each.points[:, 2])
         assert off.max() <= 1e-9

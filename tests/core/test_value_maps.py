@@ -9,10 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from realmodel.core import Model, UsageError, build, load_project
+from realmodel.core import Model, UsageError, build
 from realmodel.core.exporters.map_styles import classes_style
 from realmodel.core.results.samples import plan_grids
 from realmodel.core.results.value_areas import value_maps
+from sample_scripts import built_sample
 
 HAS_QGIS = (
     shutil.which("/usr/bin/python3")
@@ -37,7 +38,7 @@ for name in sys.argv[2:]:
 
 @pytest.fixture(scope="module")
 def model():
-    return build(load_project("blend_samples/uncertain_valley/project.toml"))
+    return built_sample("uncertain_valley")
 
 
 @pytest.fixture(scope="module")

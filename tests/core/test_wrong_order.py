@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build, load_project
 from realmodel.core.settings.rules import RULES
+from sample_scripts import built_sample
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 SQUARE = [[0, 0], [100, 0], [100, 100], [0, 100]]
@@ -119,7 +120,7 @@ def test_each_contradiction_is_said_once(old_rule, rule):
 
 @pytest.mark.parametrize("sample", ["two_layers", "block_diagram", "gravel_plain", "quarry", "intrusion"])
 def test_samples_have_none(sample):
-    model = build(load_project(SAMPLES / sample / "project.toml"))
+    model = built_sample(sample)
     assert [w for w in model.warnings if "at the same place" in w.text] == []
 
 
