@@ -158,9 +158,8 @@ NumpyArray<double> heights_of_some(const interpolation::SplinesOfSome& splines,
     const auto to = rows<2>(nodes, "nodes");
     if (static_cast<std::size_t>(counts.size()) != splines.size())
         throw py::value_error("counts: one for each point");
-    const auto z = unlocked([&] {
-        return splines.heights(view(counts), to, smoothings, neighbors, run(execution));
-    });
+    const auto z = unlocked(
+        [&] { return splines.heights(view(counts), to, smoothings, neighbors, run(execution)); });
     NumpyArray<double> array({smoothings.size(), to.size()});
     std::ranges::copy(z, array.mutable_data());
     return array;

@@ -316,8 +316,9 @@ at on which it is). Raises InputError.)");
         .def(py::init(&prepared), py::arg("structures"),
              "structures: as of structure_parts, the one that is asked for, then the faults that "
              "it ends at. Raises InputError.")
-        .def("sides", &sides_of, py::arg("points"), py::arg("execution") = py::none(),
-             R"(The side that points (N, 3) are on: (N,) int8, 1 above or outside, -1 below or inside; of a
+        .def(
+            "sides", &sides_of, py::arg("points"), py::arg("execution") = py::none(),
+            R"(The side that points (N, 3) are on: (N,) int8, 1 above or outside, -1 below or inside; of a
 fault by its nearest triangle. Raises InputError and Cancelled.)");
     module.def("structure_beyond", &structure_beyond, py::arg("faults"), py::arg("low"),
                py::arg("high"), py::arg("triangles"), py::arg("execution") = py::none(),

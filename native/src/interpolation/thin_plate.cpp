@@ -210,9 +210,8 @@ struct SplinesOfSome::Index {
         for (std::size_t i = 0; i < points.size(); ++i)
             require_usable(points[i], "point", i);
         std::iota(order.begin(), order.end(), 0);
-        std::ranges::sort(order, {}, [&](std::int32_t i) {
-            return std::tuple(points[i][0], points[i][1], i);
-        });
+        std::ranges::sort(
+            order, {}, [&](std::int32_t i) { return std::tuple(points[i][0], points[i][1], i); });
         std::vector<std::array<double, 3>> level;
         for (const std::int32_t i : order) {
             level.push_back({points[i][0], points[i][1], 0});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numeric>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "cutting/nearest_side.hpp"
@@ -19,7 +21,7 @@ using spatial::Box;
 namespace {
 
 constexpr std::int8_t kOpen = 0;
-constexpr std::size_t kTogether = 16;  // points that mostly lie together, as nodes of a mesh do
+constexpr std::size_t kFew = 4;  // points that are asked about one by one
 
 /// A fault with what continues it.
 struct Continued {
@@ -27,22 +29,6 @@ struct Continued {
     StructureCutter cutter;
     NearestSide nearest;
 };
-
-/// A ball around some points.
-struct Ball {
-    Position center;
-    double radius;
-};
-
-Ball ball_around(std::span<const Position> points) {
-    const Box box = spatial::bounding_box(points);
-    const Position center = times(0.5, plus(box.low, box.high));
-    Box around;
-    around.include(minus(box.low, center));
-    around.include(minus(box.high, center));
-    around.include(minus(center, box.low));
-    return {center, length(around.high) * (1 + 0x1p-40)};
-}
 
 }  // namespace
 
@@ -59,63 +45,81 @@ public:
     std::vector<std::int8_t> sides(std::span<const Position> points,
                                    const Execution& execution) const {
         std::vector<std::int8_t> sides(points.size(), kOpen);
-        const auto decide = [&](const auto& side_of) {
-            parallel_ranges(sides.size(), 1 << 8, execution,
-                            [&](std::size_t begin, std::size_t end) {
-                                for (std::size_t i = begin; i < end; ++i) {
-                                    if (sides[i] == kOpen) sides[i] = side_of(points[i]);
-                                }
-                            });
-        };
-        if (structures_[0].is_body) {
-            decide([this](const Position& p) { return beside_.within(p); });
-            return sides;
-        }
-        const auto decide_together = [&](const auto& side_of) {
-            parallel_ranges(sides.size(), kTogether << 4, execution,
-                            [&](std::size_t i, std::size_t end) {
-                                for (std::size_t next = i; i < end; i = next) {
-                                    next = std::min(end, i + kTogether);
-                                    if (sides[i] != kOpen) continue;
-                                    const std::int8_t side =
-                                        side_of(ball_around(points.subspan(i, next - i)));
-                                    std::fill(&sides[i], &sides[i] + (next - i), side);
-                                }
-                            });
-        };
-        decide_together([this](const Ball& ball) {
-            bool at_border = false;
-            const auto side = beside_.of_ball(ball.center, ball.radius, at_border);
-            return at_border ? kOpen : side.value_or(kOpen);
-        });
-        // what is beside the fault itself is on its side, wherever its continuation goes
-        const auto side_beside = [this](const Position& p) {
-            bool at_border = false;
-            const std::int8_t side = beside_(p, &at_border);
-            return at_border ? kOpen : side;
-        };
-        std::size_t first = 0;  // that the border is nearest to
-        for (; first < sides.size(); ++first) {
-            if (sides[first] == kOpen) sides[first] = side_beside(points[first]);
-            if (sides[first] == kOpen) break;
-        }
-        if (first == sides.size()) return sides;
-        const NearestSide& continued = continued_for(spatial::bounding_box(points)).nearest;
-        decide_together([&](const Ball& ball) {
-            bool at_border = false;
-            const auto side = beside_.of_ball(ball.center, ball.radius, at_border);
-            if (!side) return kOpen;
-            const auto beyond = continued.of_ball(ball.center, ball.radius, at_border);
-            return beyond == side ? *side : kOpen;  // whether or not the border is nearest
-        });
-        decide([&](const Position& p) {
-            const std::int8_t side = side_beside(p);
-            return side == kOpen ? continued(p) : side;
+        const Box whole = spatial::bounding_box(points);
+        parallel_ranges(points.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::int32_t> some(end - begin);
+            std::iota(some.begin(), some.end(), static_cast<std::int32_t>(begin));
+            Asked asked{points, whole, sides, nullptr};
+            decide(asked, some);
         });
         return sides;
     }
 
 private:
+    /// What points are asked about, and what continues the fault, once one of them needs it.
+    struct Asked {
+        std::span<const Position> points;
+        const Box& whole;  ///< around all
+        std::vector<std::int8_t>& sides;
+        const NearestSide* continued;
+    };
+
+    /// Decides some of the points: all together where a ball around them is on one side, else each
+    /// half of them.
+    void decide(Asked& asked, std::span<std::int32_t> some) const {
+        if (structures_[0].is_body || some.size() <= kFew) {
+            for (const std::int32_t i : some)
+                asked.sides[index(i)] = side_of(asked, asked.points[index(i)]);
+            return;
+        }
+        const auto at = [&](std::int32_t i) -> const Position& { return asked.points[index(i)]; };
+        const Box box = spatial::bounding_box(some, at);
+        const Position extent = minus(box.high, box.low);
+        const Position center = times(0.5, plus(box.low, box.high));
+        // half of the diagonal, and what rounding may add to that
+        const double radius =
+            0.5 * length(extent) * (1 + 0x1p-40) + 0x1p-50 * (length(box.low) + length(box.high));
+        if (const auto side = side_of(asked, center, radius, at(some[0]))) {
+            for (const std::int32_t i : some)
+                asked.sides[index(i)] = *side;
+            return;
+        }
+        const auto axis = std::ranges::max_element(extent) - extent.begin();
+        const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+        std::ranges::nth_element(some, middle, {},
+                                 [&](std::int32_t i) { return std::pair(at(i)[index(axis)], i); });
+        decide(asked, {some.begin(), middle});
+        decide(asked, {middle, some.end()});
+    }
+
+    /// What is beside the fault itself is on its side, wherever its continuation goes: kOpen where
+    /// its border is nearest.
+    std::int8_t side_beside(const Position& p) const {
+        bool at_border = false;
+        const std::int8_t side = beside_(p, &at_border);
+        return at_border ? kOpen : side;
+    }
+    std::int8_t side_of(Asked& asked, const Position& p) const {
+        if (structures_[0].is_body) return beside_.within(p);
+        const std::int8_t side = side_beside(p);
+        return side == kOpen ? continued(asked)(p) : side;
+    }
+    /// Of a ball.
+    /// @param inside  a point in it
+    std::optional<std::int8_t> side_of(Asked& asked, const Position& center, double radius,
+                                       const Position& inside) const {
+        bool at_border = false;
+        const auto side = beside_.of_ball(center, radius, at_border);
+        if (!side || !at_border) return side;
+        if (asked.continued == nullptr && side_beside(inside) != kOpen) return std::nullopt;
+        // on the side of both it does not matter whether the border is nearest
+        const auto beyond = continued(asked).of_ball(center, radius, at_border);
+        return beyond == side ? side : std::nullopt;
+    }
+    const NearestSide& continued(Asked& asked) const {
+        if (asked.continued == nullptr) asked.continued = &continued_for(asked.whole).nearest;
+        return *asked.continued;
+    }
     /// The fault with what continues it for points in a box: one for each power of two that their
     /// extent does not reach, so that what is asked does not depend on what was asked before.
     const Continued& continued_for(const Box& box) const {
@@ -142,8 +146,8 @@ PreparedStructure::PreparedStructure(std::span<const Structure> structures)
 
 PreparedStructure::~PreparedStructure() = default;
 
-std::vector<std::int8_t> PreparedStructure::sides(
-    std::span<const std::array<double, 3>> points, const Execution& execution) const {
+std::vector<std::int8_t> PreparedStructure::sides(std::span<const std::array<double, 3>> points,
+                                                  const Execution& execution) const {
     return cutters_->sides(points, execution);
 }
 

@@ -540,8 +540,7 @@ StructureCutter structure_cutter(std::span<const Structure> structures,
 
 std::vector<ContinuedStructure> continued_structures(
     std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners) {
-    const StructureCutter cutter =
-        cutter_of(structures, spatial::bounding_box(corners), true);
+    const StructureCutter cutter = cutter_of(structures, spatial::bounding_box(corners), true);
     std::vector<ContinuedStructure> continued(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
