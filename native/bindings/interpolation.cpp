@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // krige, krige_left_out, fit_variogram, likely_variograms, fit_alike, fit_sheets, idw,
-// idw_left_out, spline, mean_spacing, nearest_distance, line_sums.
+// idw_left_out, spline, SplinesOfSome, mean_spacing, nearest_distance, line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -146,6 +148,21 @@ NumpyArray<double> spline(const NumpyArray<double>& points, const NumpyArray<dou
                                                   dips_of(dips)};
     return to_array(
         unlocked([&] { return interpolation::thin_plate(from, to, options, run(execution)); }));
+}
+
+NumpyArray<double> heights_of_some(const interpolation::SplinesOfSome& splines,
+                                   const NumpyArray<std::uint8_t>& counts,
+                                   const NumpyArray<double>& nodes,
+                                   const std::vector<double>& smoothings, std::size_t neighbors,
+                                   WatchedExecution* execution) {
+    const auto to = rows<2>(nodes, "nodes");
+    if (static_cast<std::size_t>(counts.size()) != splines.size())
+        throw py::value_error("counts: one for each point");
+    const auto z = unlocked(
+        [&] { return splines.heights(view(counts), to, smoothings, neighbors, run(execution)); });
+    NumpyArray<double> array({smoothings.size(), to.size()});
+    std::ranges::copy(z, array.mutable_data());
+    return array;
 }
 
 double mean_spacing(const NumpyArray<double>& points, bool are_apart) {
@@ -360,6 +377,20 @@ spacing       the unit of distances, mean_spacing of all points where these are 
 dips          as krige
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
+    py::class_<interpolation::SplinesOfSome>(
+        module, "SplinesOfSome",
+        "Thin plate splines through the nearest of some of many points, then of others.")
+        .def(py::init([](const NumpyArray<double>& points) {
+                 return std::make_unique<interpolation::SplinesOfSome>(rows<3>(points, "points"));
+             }),
+             arg("points"),
+             "points (P, 3) float64: x, y, z; several may be at one position. Raises InputError.")
+        .def("heights", &heights_of_some, arg("counts"), arg("nodes"), arg("smoothings"),
+             arg("neighbors"), arg("execution") = py::none(),
+             R"(What spline gives from the points that count, of each position their mean height.
+
+counts (P,) uint8. nodes (N, 2) float64. smoothings: S of them. Returns (S, N) float64. Raises InputError where none
+counts; Cancelled.)");
 }
 
 void bind_fits(py::module_& module) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// structure_parts, build_parts, merge_cells, continued_structures, structure_sides,
+// structure_parts, build_parts, merge_cells, continued_structures, PreparedStructure,
 // structure_beyond, structure_continuation.
 #include "realmodel/structures/structures.hpp"
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -18,6 +19,7 @@
 #include "realmodel/structures/build_compartments.hpp"
 #include "realmodel/structures/merge_cells.hpp"
 #include "rock_arrays.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -214,14 +216,17 @@ py::dict merge_cells(const py::dict& complex, const Indices& number, WatchedExec
     return complex_arrays(merged);
 }
 
-NumpyArray<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
-                                        const NumpyArray<double>& points,
-                                        WatchedExecution* execution) {
-    require_columns(points, 3, "points");
+std::unique_ptr<structures::PreparedStructure> prepared(
+    const std::vector<StructureArrays>& structures) {
     const auto views = views_of(structures);
     if (views.empty()) throw py::value_error("structures: none is given");
-    return to_array(
-        unlocked([&] { return structures::sides_of_points(views, view(points), run(execution)); }));
+    return std::make_unique<structures::PreparedStructure>(views);
+}
+
+NumpyArray<std::int8_t> sides_of(const structures::PreparedStructure& structure,
+                                 const NumpyArray<double>& points, WatchedExecution* execution) {
+    const auto at = rows<3>(points, "points");
+    return to_array(unlocked([&] { return structure.sides(at, run(execution)); }));
 }
 
 NumpyArray<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
@@ -305,14 +310,16 @@ faces and vertices keep their order. Returns the arrays of a complex. Raises Inp
 structures: as of structure_parts. box: two corners of a box around the rock. Returns of each
 (triangles (K, 3, 3) float64; is_continuation (K,) uint8; kept: the side of each fault that a fault ends
 at on which it is). Raises InputError.)");
-    module.def(
-        "structure_sides", &structure_sides, py::arg("structures"), py::arg("points"),
-        py::arg("execution") = py::none(),
-        R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
-below or inside; of a fault by its nearest triangle.
-
-structures: as of structure_parts, the one that is asked for, then the faults that it ends at. Raises
-InputError and Cancelled.)");
+    py::class_<structures::PreparedStructure>(
+        module, "PreparedStructure",
+        "A structure that is made ready once, and asked many times on which side points are.")
+        .def(py::init(&prepared), py::arg("structures"),
+             "structures: as of structure_parts, the one that is asked for, then the faults that "
+             "it ends at. Raises InputError.")
+        .def(
+            "sides", &sides_of, py::arg("points"), py::arg("execution") = py::none(),
+            R"(The side that points (N, 3) are on: (N,) int8, 1 above or outside, -1 below or inside; of a
+fault by its nearest triangle. Raises InputError and Cancelled.)");
     module.def("structure_beyond", &structure_beyond, py::arg("faults"), py::arg("low"),
                py::arg("high"), py::arg("triangles"), py::arg("execution") = py::none(),
                R"(Which triangles of a sheet a fault meets where it goes on beyond its border.

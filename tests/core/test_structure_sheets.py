@@ -244,7 +244,7 @@ def test_faults_that_die_out_are_asked_for_all_combinations_of_sides_at_once(mon
         project = overlapping(count)
         asked.clear()
         (entry,) = prepared(project)
-        found.append((len(entry.structure.distinct(0)), asked["structure_sides"], asked["structure_beyond"]))
+        found.append((len(entry.structure.distinct(0)), asked["sides"], asked["structure_beyond"]))
     (sheets, sides, beyond), (more_sheets, more_sides, more_beyond) = found
     assert more_sheets > 2 * sheets
     # finding where rows are, and drawing nearer, may take one turn more

@@ -135,7 +135,8 @@ std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
     return sides[exact::farthest_plane(p, triangles)];
 }
 
-std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double radius) const {
+std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double radius,
+                                                bool& at_border) const {
     constexpr double kRounding = 0x1p-40;  // of lengths and of products of these
     double least = HUGE_VAL;
     tree_.approach(
@@ -163,7 +164,7 @@ std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double r
             is_certain &= std::abs(distance) > least_distance &&
                           side.value_or(triangle_side) == triangle_side;
             side = triangle_side;
-            is_certain &= border_within(t, center, reach) == 0;
+            at_border = at_border || border_within(t, center, reach) != 0;
         });
     return is_certain ? side : std::nullopt;
 }

@@ -18,9 +18,10 @@ public:
     /// seen most squarely: whose plane is farthest. Exact; on its plane is above.
     /// @param at_border  set where a border edge is nearest, of triangles that share vertices
     std::int8_t operator()(const Position& p, bool* at_border = nullptr) const;
-    /// The same of all positions in a ball, where that needs no look at each and no border edge is
-    /// nearest to any.
-    std::optional<std::int8_t> of_ball(const Position& center, double radius) const;
+    /// The same of all positions in a ball, where that needs no look at each.
+    /// @param at_border  set where a border edge may be nearest to one
+    std::optional<std::int8_t> of_ball(const Position& center, double radius,
+                                       bool& at_border) const;
     /// Of a closed cutter: below if the point is inside, so that a ray from it crosses the cutter
     /// an odd number of times. Exact.
     std::int8_t within(const Position& p) const;

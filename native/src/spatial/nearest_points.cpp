@@ -64,6 +64,20 @@ private:
     std::size_t count_;
 };
 
+/// The same of points that count.
+class NearestThatCount : public NearestSoFar {
+public:
+    NearestThatCount(std::vector<Neighbor>& near, std::size_t count,
+                     std::span<const std::int32_t> counts)
+        : NearestSoFar(near, count), counts_(counts) {}
+    bool addPoint(double squared_distance, std::int32_t point) {
+        return counts_[index(point)] == 0 || NearestSoFar::addPoint(squared_distance, point);
+    }
+
+private:
+    std::span<const std::int32_t> counts_;
+};
+
 /// Keeps all that are near enough.
 class NearEnough {
 public:
@@ -123,6 +137,14 @@ const PlanPosition& NearestPoints::point(std::int32_t number) const {
 void NearestPoints::find(const PlanPosition& position, std::size_t count,
                          std::vector<Neighbor>& near) const {
     NearestSoFar nearest(near, std::min(count, size()));
+    if (count == 0 || size() == 0) return;
+    tree_->index.findNeighbors(nearest, position.data(), SearchParameters());
+}
+
+void NearestPoints::find_among(const PlanPosition& position, std::size_t count,
+                               std::span<const std::int32_t> counts,
+                               std::vector<Neighbor>& near) const {
+    NearestThatCount nearest(near, count, counts);
     if (count == 0 || size() == 0) return;
     tree_->index.findNeighbors(nearest, position.data(), SearchParameters());
 }

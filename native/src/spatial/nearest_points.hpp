@@ -37,6 +37,11 @@ public:
     /// are taken. Several threads may ask at once.
     void find(const PlanPosition& position, std::size_t count, std::vector<Neighbor>& near) const;
 
+    /// The same of the points that count: `counts` is not 0 there.
+    /// @param count  no more than there are
+    void find_among(const PlanPosition& position, std::size_t count,
+                    std::span<const std::int32_t> counts, std::vector<Neighbor>& near) const;
+
     /// The points no farther than this from a position, in any order, each once; a few a little
     /// farther may be among them. Whether these are all: with more than `most` it gives up.
     bool within(const PlanPosition& position, double distance, std::size_t most,

@@ -423,6 +423,12 @@ public:
         single.vertices.insert(single.vertices.end(), corners.begin(), corners.end());
         single.triangles.push_back({first, first + 1, first + 2});
     }
+    void add_fault(const Cutter& fault, std::span<const std::array<Position, 3>> continuation) {
+        for (std::size_t t = 0; t < fault.triangles.size(); ++t)
+            add(fault.corners(t), false);
+        for (const auto& t : continuation)
+            add(t, true);
+    }
     /// @param rock  what of the body is away from it cuts nothing; nullopt: all cuts
     void add_body(const Cutter& body, const std::optional<Box>& rock) {
         std::vector<NodeId> nodes(body.vertices.size(), -1);
@@ -457,44 +463,28 @@ private:
     KeyNumbers<Position> vertices_;
 };
 
-/// Which triangles of structures there are.
-struct CutterExtent {
-    bool continues_all = false;  ///< those are continued, too, that divide the rock by themselves
-    bool has_all_of_bodies = true;  ///< the cutter of all has what of bodies is beyond the rock
-};
-
-/// @param count  of structures, those that are taken
-StructureCutter cutter_of(std::span<const Structure> structures, std::size_t count, const Box& rock,
-                          const CutterExtent& extent_of) {
-    std::vector<Cutter> cutters;
-    Box whole = rock;
-    for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
-        cutters.push_back(checked_cutter(structures[index(s)], s));
-        whole.include(spatial::bounding_box(cutters.back().vertices));
-    }
-    const double size = length(minus(whole.high, whole.low));
+/// @param all_of_bodies  the cutter of all has what of bodies is beyond the rock
+StructureCutter cutter_of(std::span<const Structure> structures, const Box& rock,
+                          bool all_of_bodies) {
+    const std::vector<Cutter> cutters = checked_cutters(structures);
+    const double size = size_with(rock, cutters);
     Box near = rock;
     near.widen(kBesideRock * length(minus(rock.high, rock.low)));
     CutterOfTriangles all;
-    for (std::int32_t s = 0; index(s) < count; ++s) {
+    for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
         const Cutter& cutter = cutters[index(s)];
         all.begin(cutter.is_closed);
-        if (cutter.is_closed) {
-            all.add_body(cutter, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
-            continue;
-        }
-        for (std::size_t t = 0; t < cutter.triangles.size(); ++t)
-            all.add(cutter.corners(t), false);
-        if (extent_of.continues_all || !divides(cutter, rock)) {
-            for (const auto& t : continuation(structures, cutters, s, size))
-                all.add(t, true);
-        }
+        if (cutter.is_closed)
+            all.add_body(cutter, all_of_bodies ? std::nullopt : std::optional(near));
+        else if (divides(cutter, rock))
+            all.add_fault(cutter, {});
+        else
+            all.add_fault(cutter, continuation(structures, cutters, s, size));
     }
     return std::move(all).cutter();
 }
 
-}  // namespace
-
+/// One structure alone, checked and oriented.
 Cutter checked_cutter(const Structure& structure, std::int32_t number) {
     try {
         Cutter cutter = cutting::oriented_cutter(structure.surface, false);
@@ -513,8 +503,24 @@ Cutter checked_cutter(const Structure& structure, std::int32_t number) {
     }
 }
 
+}  // namespace
+
+std::vector<Cutter> checked_cutters(std::span<const Structure> structures) {
+    std::vector<Cutter> cutters;
+    for (std::int32_t s = 0; index(s) < structures.size(); ++s)
+        cutters.push_back(checked_cutter(structures[index(s)], s));
+    return cutters;
+}
+
+double size_with(const Box& rock, std::span<const Cutter> structures) {
+    Box whole = rock;
+    for (const Cutter& cutter : structures)
+        whole.include(spatial::bounding_box(cutter.vertices));
+    return length(minus(whole.high, whole.low));
+}
+
 StructureCutter structure_cutter(std::span<const Structure> structures, const Box& rock) {
-    return cutter_of(structures, structures.size(), rock, {.has_all_of_bodies = false});
+    return cutter_of(structures, rock, false);
 }
 
 StructureCutter structure_cutter(std::span<const Structure> structures,
@@ -534,8 +540,7 @@ StructureCutter structure_cutter(std::span<const Structure> structures,
 
 std::vector<ContinuedStructure> continued_structures(
     std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners) {
-    const StructureCutter cutter =
-        cutter_of(structures, structures.size(), spatial::bounding_box(corners), {});
+    const StructureCutter cutter = cutter_of(structures, spatial::bounding_box(corners), true);
     std::vector<ContinuedStructure> continued(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
@@ -551,7 +556,19 @@ std::vector<ContinuedStructure> continued_structures(
 }
 
 StructureCutter cutter_of_first(std::span<const Structure> structures, const Box& rock) {
-    return cutter_of(structures, 1, rock, {.continues_all = true});
+    const std::vector<Cutter> cutters = checked_cutters(structures);
+    return cutter_of_first(structures, cutters, size_with(rock, cutters));
+}
+
+StructureCutter cutter_of_first(std::span<const Structure> structures,
+                                std::span<const Cutter> cutters, double size) {
+    CutterOfTriangles all;
+    all.begin(cutters[0].is_closed);
+    if (cutters[0].is_closed)
+        all.add_body(cutters[0], std::nullopt);
+    else
+        all.add_fault(cutters[0], continuation(structures, cutters, 0, size));
+    return std::move(all).cutter();
 }
 
 }  // namespace realmodel::structures

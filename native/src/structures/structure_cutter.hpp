@@ -59,9 +59,16 @@ StructureCutter structure_cutter(std::span<const Structure> structures,
 /// The first of some structures alone, with what continues it; the others are the faults that it
 /// ends at.
 StructureCutter cutter_of_first(std::span<const Structure> structures, const spatial::Box& rock);
+/// The same.
+/// @param cutters  of the structures, as checked_cutters has them
+/// @param size  of the rock with all of them, as size_with has it: so far it is continued
+StructureCutter cutter_of_first(std::span<const Structure> structures,
+                                std::span<const cutting::Cutter> cutters, double size);
 
-/// One structure alone, checked and oriented.
-cutting::Cutter checked_cutter(const Structure& structure, std::int32_t number);
+/// Structures, each alone, checked and oriented.
+std::vector<cutting::Cutter> checked_cutters(std::span<const Structure> structures);
+/// Of a box around some rock and structures.
+double size_with(const spatial::Box& rock, std::span<const cutting::Cutter> structures);
 
 /// What continues a fault around its border, however ragged that is: triangles between the border
 /// and a rectangle in its mean plane, then that plane. So the continuation crosses neither itself

@@ -68,15 +68,23 @@ TEST(NearestSide, OneUnitInTheLastPlaceOffTheTriangleIsTold) {
     EXPECT_EQ(side({0.75, 0.75, 0.5}), kAbove);  // on it
 }
 
-TEST(NearestSide, OfABallWhereAllOfItIsOnOneSideAndNoBorderIsNear) {
+TEST(NearestSide, OfABallWhereAllOfItIsOnOneSide) {
     const NearestSide ridge(kRidge);
-    EXPECT_EQ(ridge.of_ball({0, 0, 1}, 0.25), kAbove);
-    EXPECT_EQ(ridge.of_ball({0.1, 0, -2.5}, 0.1), kBelow);
-    EXPECT_EQ(ridge.of_ball({0, 0, 1}, 1.25), std::nullopt);     // it meets the surface
-    EXPECT_EQ(ridge.of_ball({2, 0, -5.5}, 0.25), std::nullopt);  // some is below one slope alone
-    EXPECT_EQ(ridge.of_ball({-4, 0, -3}, 0.25), kAbove);
-    EXPECT_EQ(ridge.of_ball({0, 8.5, 1}, 0.25), std::nullopt);  // a border edge is as near
-    EXPECT_EQ(ridge.of_ball({0, 20, 1}, 0.25), std::nullopt);
+    bool at_border = false;
+    const auto of_ball = [&](const Position& center, double radius) {
+        return ridge.of_ball(center, radius, at_border);
+    };
+    EXPECT_EQ(of_ball({0, 0, 1}, 0.25), kAbove);
+    EXPECT_EQ(of_ball({0.1, 0, -2.5}, 0.1), kBelow);
+    EXPECT_EQ(of_ball({0, 0, 1}, 1.25), std::nullopt);     // it meets the surface
+    EXPECT_EQ(of_ball({2, 0, -5.5}, 0.25), std::nullopt);  // some is below one slope alone
+    EXPECT_EQ(of_ball({-4, 0, -3}, 0.25), kAbove);
+    EXPECT_FALSE(at_border);
+    of_ball({0, 8.5, 1}, 0.25);  // a border edge is as near
+    EXPECT_TRUE(at_border);
+    at_border = false;
+    of_ball({0, 20, 1}, 0.25);
+    EXPECT_TRUE(at_border);
 }
 
 TEST(NearestSide, WithinATetrahedron) {

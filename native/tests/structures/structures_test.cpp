@@ -58,6 +58,16 @@ Structure body(const OwnedSurface& s) {
     return {view(s), true, {}, false};
 }
 
+/// @param coordinates  of points, one after another
+std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
+                                         std::span<const double> coordinates,
+                                         const Execution& execution) {
+    std::vector<std::array<double, 3>> points;
+    for (std::size_t i = 0; i < coordinates.size(); i += 3)
+        points.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+    return PreparedStructure(structures).sides(points, execution);
+}
+
 std::vector<Sides> sides_of(const std::vector<Compartment>& parts) {
     std::vector<Sides> sides;
     for (const Compartment& part : parts)

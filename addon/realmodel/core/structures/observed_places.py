@@ -120,8 +120,8 @@ def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
     """(N,) bool: which places (N, 3) lie in a body."""
     if not len(places):
         return np.zeros(0, bool)
-    arguments: list[tuple] = [(*body.arrays, True, [], False)]
-    return work.native(native_module().structure_sides, arguments, np.ascontiguousarray(places)) < 0
+    prepared = native_module().PreparedStructure([(*body.arrays, True, [], False)])
+    return work.native(prepared.sides, np.ascontiguousarray(places)) < 0
 
 
 def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:

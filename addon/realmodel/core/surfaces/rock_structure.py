@@ -5,7 +5,8 @@ points lie."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +14,12 @@ from ..base.errors import BuildWarning
 from ..base.triangles import Sheet
 from ..base.work import Work, native_module
 
+if TYPE_CHECKING:
+    from ..._native import Native
 
-class FaultShape(NamedTuple):
+
+@dataclass(frozen=True, eq=False)
+class FaultShape:
     """vertices (V, 3) float64 and triangles (T, 3) int32 of a fault. dies_out, ends, the faults that it ends
     at: how it is continued beyond its border."""
 
@@ -30,6 +35,14 @@ class FaultShape(NamedTuple):
             arguments,
             *((other.vertices, other.triangles, False, [], other.dies_out) for other in self.ends),
         ]
+
+    @cached_property
+    def prepared(self) -> Native.PreparedStructure:
+        """What is asked for sides, made once."""
+        return native_module().PreparedStructure(self.native())
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in vars(self).items() if name != "prepared"}
 
 
 @dataclass(frozen=True)
@@ -82,7 +95,7 @@ def fault_sides(work: Work, points: np.ndarray, shape: FaultShape) -> np.ndarray
     points = np.ascontiguousarray(points, np.float64)
     if not len(points):
         return np.zeros(0, np.int8)
-    return work.native(native_module().structure_sides, shape.native(), points)
+    return work.native(shape.prepared.sides, points)
 
 
 def sides_of(

@@ -43,9 +43,8 @@ class BodyOfRock:
 
     def holds(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) bool: the points inside."""
-        vertices, triangles = self.shape
-        structures: list[tuple] = [(vertices, triangles, True, [], False)]
-        return work.native(native_module().structure_sides, structures, points) < 0
+        prepared = native_module().PreparedStructure([(*self.shape.arrays, True, [], False)])
+        return work.native(prepared.sides, points) < 0
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -42,5 +44,32 @@ double mean_spacing(std::span<const std::array<double, 3>> points, bool are_apar
 std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                                std::span<const std::array<double, 2>> nodes,
                                const ThinPlateOptions& options, const Execution& execution = {});
+
+/// Splines through the nearest of some of many points, then of others: one index serves all.
+class SplinesOfSome {
+public:
+    /// @param points  x, y, z; several may be at one position
+    /// @throws InputError kind "no_points", "not_finite", "too_large"
+    explicit SplinesOfSome(std::span<const std::array<double, 3>> points);
+    ~SplinesOfSome();
+
+    std::size_t size() const;
+
+    /// As thin_plate gives them from the points that count, those at one position as one with their
+    /// mean height.
+    /// @param counts  of each point, not 0 where it does
+    /// @param neighbors  at most, of each node
+    /// @return  z of each node with the first smoothing, then with each other one
+    /// @throws InputError kind "no_points", "not_finite"
+    /// @throws Cancelled
+    std::vector<double> heights(std::span<const std::uint8_t> counts,
+                                std::span<const std::array<double, 2>> nodes,
+                                std::span<const double> smoothings, std::size_t neighbors,
+                                const Execution& execution = {}) const;
+
+private:
+    struct Index;
+    std::unique_ptr<const Index> index_;
+};
 
 }  // namespace realmodel::interpolation

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -86,15 +87,24 @@ Joined join_models(std::span<const CompartmentModel> models, std::span<const Str
                    std::span<const std::uint8_t> acts, const Execution& execution,
                    std::span<const ContinuedStructure> continued = {}, double largest = 0);
 
-/// The side of a structure that points are on: of a fault that of the triangle nearest to each,
-/// of a body by the number of times that a ray from there leaves it. A point on it is above, or
-/// outside.
-/// @param structures  the structure, then the faults that it ends at
-/// @param points  3 P coordinates
-/// @throws InputError  as compartments_of does
-std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
-                                         std::span<const double> points,
-                                         const Execution& execution);
+/// A structure that is made ready once, and asked many times on which side points are.
+class PreparedStructure {
+public:
+    /// @param structures  the structure, then the faults that it ends at
+    /// @throws InputError  as compartments_of does
+    explicit PreparedStructure(std::span<const Structure> structures);
+    ~PreparedStructure();
+
+    /// The side that points are on: of a fault that of the triangle nearest to each, of a body by
+    /// the number of times that a ray from there leaves it. A point on it is above, or outside.
+    /// @throws InputError  as compartments_of does
+    std::vector<std::int8_t> sides(std::span<const std::array<double, 3>> points,
+                                   const Execution& execution) const;
+
+private:
+    class Cutters;
+    std::unique_ptr<const Cutters> cutters_;
+};
 
 /// Which triangles of a sheet a fault's continuation beyond its border may touch, 1, or pass, 2,
 /// wherever the sheet lies between two heights: none too few, perhaps some too many.

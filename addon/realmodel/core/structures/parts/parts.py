@@ -141,7 +141,7 @@ class Structures:
     def fault_shapes(self) -> list[FaultShape]:
         """The shape of each fault."""
         alone = {f.name: FaultShape(*f.triangulation(), f.dies_out) for f in self.faults}
-        return [alone[f.name]._replace(ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
+        return [replace(alone[f.name], ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
 
     def of_rock(self, rock: int) -> RockFaults:
         """The faults that act in a rock mass; those that end at others as the parts have it."""

@@ -274,7 +274,7 @@ def _parted(work: Work, entry: RockInput, number: int) -> tuple[np.ndarray, np.n
     families; None where these are one."""
     points, contacts = entry.data[number].points, entry.data[number].contacts
     structure = entry.divided()
-    sides, moved, _ = point_sides(work, points, entry, number)
+    sides, moved, *_ = point_sides(work, points, entry, number)
     rows = np.where(structure.faults.active(number), sides, 0)
     is_kept = ~(contradicting(points, rows, contacts) | moved.any(axis=1))
     keys = keys_of(structure, number, sides[is_kept])

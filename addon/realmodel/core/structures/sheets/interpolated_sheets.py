@@ -14,7 +14,7 @@ from ...base.errors import BuildWarning, number_list, place_text
 from ...base.triangles import Sheet
 from ...base.work import Work
 from ...heights import Interpolation
-from ...heights.mis_ties import mean_heights
+from ...heights.mis_ties import SortedPoints
 from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
 from ...project.project import Surface
@@ -63,6 +63,7 @@ class InterpolatedSurface:
         if warning is not None:
             structure.warnings.append((list(range(len(structure.compartments))), warning))
         self._leave_out_contradictions()
+        self._sorted = SortedPoints(self.points)
         self.steps = (structure.steps or {}).get(number)
         self._warn_of_no_throws()
         self.counts = self._usable_points()
@@ -263,10 +264,11 @@ class InterpolatedSurface:
         if not met:
             return dict.fromkeys(family.members.values(), common)
         met = family.with_ends(met, self.entry.divided().faults)
+        beside_trace = {number: traces[number].beside(self.points[:, :2]) for number in met}
         hidden = {
             (number, side): own_points
             & (self.placed.sides[:, family.dying[number]] == -side)
-            & traces[number].beside(self.points[:, :2])
+            & beside_trace[number]
             for number in met
             for side in (-1, 1)
         }
@@ -296,7 +298,7 @@ class InterpolatedSurface:
             ]
             data = self._constrained(family, beside)
             lips = [
-                Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
+                self._lip(family.dying[number], side, visible, beside_trace[number])
                 for number, side in zip(met, sides, strict=True)
                 if side
             ]
@@ -400,7 +402,7 @@ class InterpolatedSurface:
         as of _interpolated; None: without those beyond."""
         if self.steps is not None and chosen.all():
             return self._restored(family)
-        points = mean_heights(self.points[chosen]) if family.dying else self.points[chosen]
+        points = self._sorted.mean_heights(chosen) if family.dying else self.points[chosen]
         return points if lips is None else np.concatenate([points, self._beyond(family, chosen, lips)])
 
     def _restored(self, family: Family) -> np.ndarray:
@@ -487,11 +489,16 @@ class InterpolatedSurface:
 
     def _beyond(self, family: Family, chosen: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
         """(K, 3) points beyond the faults at which the sheet ends, for a method that needs them."""
-        points, shapes = self.points[chosen], self.entry.divided().faults.shapes
-        whole = np.ones(len(points), bool)
-        parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
+        parting = [self._lip(n, side, chosen) for n, side in enumerate(family.key) if side in (-1, 1)]
         lips, options = [*parting, *lips], self.surface.method_options()
-        return beyond_lips(self.work, points, lips, self.placed.reach, *options)
+        return beyond_lips(self.work, self.points[chosen], lips, self.placed.reach, *options)
+
+    def _lip(self, fault: int, side: int, chosen: np.ndarray, beside: np.ndarray | None = None) -> Lip:
+        """The lip at a fault of a sheet on a side of it. chosen: (P,) bool, the points that it is made of;
+        beside: those that may lie on its cutoff line."""
+        of_chosen = chosen if beside is None else beside
+        shape = self.entry.divided().faults.shapes[fault]
+        return Lip(shape, side, of_chosen[chosen], self.placed.nearest[chosen, fault])
 
     def _with_own_points(self, family: Family, other: int) -> SurfaceData:
         """The data of another surface with only its points and dips in the family's compartments."""

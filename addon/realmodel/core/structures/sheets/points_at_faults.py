@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from ...base.errors import BuildWarning, place_text
 from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import (
     LARGEST_SHARE,
-    SortedPoints,
     contradictions,
     first_at_each_place,
     heights_apart,
@@ -22,6 +22,9 @@ from ...settings.dips import Dips
 from ...surfaces.observed.surface_data import SurfaceData
 from ...surfaces.rock_input import RockInput
 from ...surfaces.rock_structure import FaultShape, sides_of
+
+if TYPE_CHECKING:
+    from ...._native import Native
 
 _NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
 _EXPECTED_BY = 16  # points: so many predict a height
@@ -35,15 +38,17 @@ _SHIFTS = np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
 
 class PointSides(NamedTuple):
     """Of points and faults: sides (P, F) int8, to which the points belong; moved (P, F) bool, where these are
-    not the sides on which they lie; reach: as distances gives it."""
+    not the sides on which they lie; reach: as distances gives it, and of points nearer than that to a fault
+    that displaces the surface its nearest triangle (P, F), else -1."""
 
     sides: np.ndarray
     moved: np.ndarray
     reach: float
+    nearest: np.ndarray
 
     def some(self, chosen: np.ndarray) -> PointSides:
         """Of some of the points, (P,) bool."""
-        return PointSides(self.sides[chosen], self.moved[chosen], self.reach)
+        return PointSides(self.sides[chosen], self.moved[chosen], self.reach, self.nearest[chosen])
 
 
 def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -> PointSides:
@@ -59,10 +64,11 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     faults = structure.faults
     sides = sides_of(work, points, faults)
     active = faults.active(number)
-    away = np.full(sides.shape, np.inf)
+    away, nearest = np.full(sides.shape, np.inf), np.full(sides.shape, -1, np.int32)
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
-    reach, away[:, active], _ = distances(points, entry.median_edge(), shapes)
+    reach, away[:, active], nearest[:, active] = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
+    nearest[~near] = -1
     near &= ~are_among(points, entry.data[number].contacts)[:, None]
     agreement = _Agreement(
         work=work,
@@ -76,7 +82,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     )
     agreement.place(near, beside)
     placed = np.where(active, agreement.rows, sides)
-    return PointSides(placed, placed != sides, reach)
+    return PointSides(placed, placed != sides, reach, nearest)
 
 
 class _Choice(NamedTuple):
@@ -108,8 +114,9 @@ class _Agreement:
     counts: np.ndarray
     reach: float
 
-    def __post_init__(self) -> None:
-        self._sorted = SortedPoints(self.points)
+    @cached_property
+    def _splines(self) -> Native.SplinesOfSome:
+        return native_module().SplinesOfSome(self.points)
 
     def place(self, near: np.ndarray, beside: np.ndarray) -> None:
         """Gives points near faults the sides that they agree with. Points beside faults keep theirs, but do
@@ -180,15 +187,15 @@ class _Agreement:
         off, tolerated = np.full(choice.possible.shape, np.inf), np.zeros(choice.possible.shape)
         least = _LEAST * float(np.ptp(self.points[:, 2]))
         asked = choice.possible & ~self.counts[choice.points, None]
+        shifts = choice.reach * _SHIFTS[: 3 if choice.reach else 1]
         for number in np.flatnonzero(asked.any(axis=0)).tolist():
-            group = self._sorted.mean_heights(self._points_on_sides(choice, number))
-            if len(group):
+            counts = self._points_on_sides(choice, number)
+            if counts.any():
                 some = asked[:, number]
                 plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
-                expected = expected_heights(self.work, group, plan)
-                around = (plan + choice.reach * _SHIFTS[: 3 if choice.reach else 1]).reshape(-1, 2)
-                planes = expected_heights(self.work, group, around, _PLANE)
-                planes = planes.reshape(-1, len(plan))
+                around = (plan + shifts).reshape(-1, 2)
+                heights = self.work.native(self._splines.heights, counts, around, (0.0, _PLANE), _EXPECTED_BY)
+                (expected, *_), planes = heights.reshape(2, -1, len(plan))
                 rise = np.abs(planes[1:] - planes[0]).sum(axis=0)
                 off[some, number] = np.abs(expected - z)
                 tolerated[some, number] = np.abs(expected - planes[0]) + rise + least
@@ -243,17 +250,11 @@ def placed_warning(
     return BuildWarning(text, "points", rock, surface)
 
 
-def expected_heights(work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0) -> np.ndarray:
+def expected_heights(work: Work, points: np.ndarray, plan: np.ndarray) -> np.ndarray:
     """(N,) the heights at plan points (N, 2) of splines through the nearest of points (P, 3), no two of which
     are at one place."""
-    spline, plan = native_module().spline, np.ascontiguousarray(plan)
-    return work.native(
-        spline,
-        points,
-        plan,
-        smoothing=smoothing,
-        neighborhood=(_EXPECTED_BY, 0, 0.0),
-    )
+    spline, near = native_module().spline, (_EXPECTED_BY, 0, 0.0)
+    return work.native(spline, points, np.ascontiguousarray(plan), neighborhood=near)
 
 
 def distances(
@@ -331,32 +332,44 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
     _, row = np.unique(rows, axis=0, return_inverse=True)
     row = row.ravel()
     tolerated = LARGEST_SHARE * np.ptp(points[:, 2])
-    tried = np.flatnonzero(several).tolist()
-    while tried:
+    tried = np.flatnonzero(several)
+    while len(tried):
         references = np.flatnonzero(~several & ~is_beyond)
         if not len(references):
             break
-        nearest, run = native_module().nearest_points, on_threads(1)
-        nearest_rows, _ = nearest(points[references, :2], points[tried, :2], _LOOKED_AT + 1, execution=run)
-        wrong, beside = [], set()
-        for number, numbers in zip(tried, nearest_rows, strict=True):
-            near = references[numbers[numbers >= 0]]
-            near = np.append(near[near != number], near[near == number])[:_LOOKED_AT]  # itself comes last
-            own_off, other = _off(points, row, near, number)
-            if own_off > (other if several[number] else max(tolerated, _BETTER * other)):
-                wrong.append(number)
-                beside.update(near.tolist())
-        is_beyond[wrong] = True
-        tried = sorted(number for number in beside if not is_beyond[number])
+        find = native_module().nearest_points
+        found, _ = find(points[references, :2], points[tried, :2], _LOOKED_AT + 1, execution=on_threads(1))
+        near = np.where(found >= 0, references[found], len(points))
+        last = 2 * (near == len(points)) + (near == tried[:, None])  # none, and before these the point itself
+        near = np.take_along_axis(near, np.argsort(last, axis=1, kind="stable"), axis=1)[:, :_LOOKED_AT]
+        own_off, other = _off(points, row, near, tried)
+        wrong = own_off > np.where(several[tried], other, np.maximum(tolerated, _BETTER * other))
+        is_beyond[tried[wrong]] = True
+        beside = np.unique(near[wrong])
+        beside = beside[beside < len(points)]
+        tried = beside[~is_beyond[beside]]
     return is_beyond
 
 
-def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> tuple[float, float]:
-    """The difference of a point's height from its neighbors on its own side, and from those on the other side
-    that fits best; 0 and infinite where there are none."""
-    off = {
-        int(side): abs(float(points[near[row[near] == side][:_COUNTED], 2].mean() - points[number, 2]))
-        for side in np.unique(row[near])
-    }
-    own_off = off.pop(int(row[number]), 0.0)
-    return own_off, min(off.values(), default=np.inf)
+def _off(
+    points: np.ndarray, row: np.ndarray, near: np.ndarray, tried: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) the differences of the heights of points, by number, from their neighbors on their own side, and
+    from those on the other side that fits best; 0 and infinite where there are none. near: (N, K) their
+    neighbors, nearest first; as many as there are points: none."""
+    z, side = np.append(points[:, 2], 0.0)[near], np.append(row, -1)[near]
+    own_off, other = np.zeros(len(tried)), np.full(len(tried), np.inf)
+    for its in np.unique(side[side >= 0]):
+        counted = side == its
+        counted &= counted.cumsum(axis=1) <= _COUNTED
+        some = counted.any(axis=1)
+        total = np.zeros(len(tried))
+        for heights, counts in zip(
+            z.T, counted.T, strict=True
+        ):  # one by one: the order says how it is rounded
+            total[counts] += heights[counts]
+        off = np.abs(total[some] / counted[some].sum(axis=1) - points[tried[some], 2])
+        is_own = row[tried[some]] == its
+        own_off[some] = np.where(is_own, off, own_off[some])
+        other[some] = np.where(is_own, other[some], np.minimum(off, other[some]))
+    return own_off, other

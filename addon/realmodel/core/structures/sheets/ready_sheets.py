@@ -271,7 +271,7 @@ class ReadyMesh:
         sides = side[corners]
         mask = np.where((sides < 0).any(axis=0), LEFT, 0) | np.where((sides > 0).any(axis=0), RIGHT, 0)
         clear = np.flatnonzero((sides != 0).all(axis=0) & (mask != (LEFT | RIGHT)) & may_meet)
-        crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
+        crossed = meet(self.vertices[self.triangles[clear]], shape.vertices[shape.triangles])
         mask[clear[crossed]] = LEFT | RIGHT
         along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault
         middles = self.vertices[self.triangles[along]].mean(axis=1)

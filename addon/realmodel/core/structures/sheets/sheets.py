@@ -16,7 +16,7 @@ from ...base.work import Work
 from ...project.project import Rock
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
 from ...surfaces.rock_input import RockInput
-from ...surfaces.rock_structure import RockStructure, sides_of
+from ...surfaces.rock_structure import RockStructure, fault_sides
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
 from .compartment_sheets import CompartmentSheets, make_borrowed
@@ -152,7 +152,11 @@ def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray)
         )
 
         def holds(places: np.ndarray, row: np.ndarray = row) -> np.ndarray:
-            return (sides_of(work, places, structure.faults) == row).all(axis=1)
+            held = np.ones(len(places), bool)
+            for fault in np.flatnonzero(row).tolist():  # where another is not, these sides say so
+                shape = structure.faults.shapes[fault]
+                held[held] = fault_sides(work, places[held], shape) == row[fault]
+            return held
 
         warnings = points_too_low(work, one, [number])
         if keep is unchanged:
