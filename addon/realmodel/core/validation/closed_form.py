@@ -43,7 +43,7 @@ class BodyOfRock:
 
     def holds(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) bool: the points inside."""
-        prepared = native_module().PreparedStructure([(*self.shape.arrays, True, [], False)])
+        prepared = native_module().PreparedStructure([(*self.shape, True, [], False)])
         return work.native(prepared.sides, points) < 0
 
 
