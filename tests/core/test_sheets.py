@@ -18,7 +18,7 @@ from structure_cases import (
 
 
 def side_of(shape, *points):
-    return run(lambda work: fault_sides(work, np.array(points, float), FaultShape(*shape[:2])))
+    return run(lambda work: fault_sides(work, np.array(points, float), shape))
 
 
 def points_of(height, seed=1, count=300):
@@ -42,13 +42,13 @@ def by_side(entry, surface, fault=0):
 @pytest.mark.parametrize("lean", [0.0, 0.5, -0.5])
 def test_points_count_in_their_compartment(lean):
     """Throw 2 at a plane that may be vertical, normal or reverse; each sheet is its own plane everywhere."""
-    shape = plane_fault(lean=lean)
-
+    fault = Fault("F", *plane_fault(lean=lean))
+    shape = FaultShape(*fault.triangulation())
     left = int(side_of(shape, [-9, 5, 0])[0])
     low, high = points_of(lambda x, y: 0.1 * x - 1.0), points_of(lambda x, y: 0.1 * x + 1.0, 2)
     points = np.concatenate([low[side_of(shape, *low) == left], high[side_of(shape, *high) != left]])
     surface = Surface("S", points=points, method="universal_kriging", property=1)
-    (entry,) = prepared(Project("p", [rock(surface)], faults=[Fault("F", *shape)]))
+    (entry,) = prepared(Project("p", [rock(surface)], faults=[fault]))
     sheets = by_side(entry, 0)
     left = int(side_of(entry.structure.faults.shapes[0], [-9, 5, 0])[0])
     for side, shift in ((left, -1.0), (-left, 1.0)):
