@@ -375,6 +375,9 @@ def test_nothing_to_propose_from_is_refused(tmp_path):
         propose_project()
     with pytest.raises(UsageError, match="there is no key 'log'"):
         propose_project(boreholes={"log": "x.csv"})
+    tables = write_tables(tmp_path, [PLAIN])
+    with pytest.raises(UsageError, match="by their files"):
+        propose_project(boreholes=read_boreholes(**tables))
 
 
 def write_map(folder, features, ground=None):

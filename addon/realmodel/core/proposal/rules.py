@@ -56,10 +56,11 @@ def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
         reason = "no hole lacks a unit between two others: there is no sign that it cuts older rock"
         return [RuleChoice(unit, ENDS, reason) for unit in units[:-1]]
     share: dict[tuple[bool, ...], float] = {}
+    made: dict[tuple, np.ndarray] = {}
 
     def right(cuts: tuple[bool, ...]) -> float:
         if cuts not in share:
-            share[cuts] = _share_right(holes, cuts)
+            share[cuts] = _share_right(holes, cuts, made)
         return share[cuts]
 
     count = len(units) - 1
@@ -129,8 +130,9 @@ def _gaps(holes: _Holes, count: int) -> list[list[int]]:
     return [sorted(gap) for gap in gaps]
 
 
-def _share_right(holes: _Holes, cuts: Sequence[bool]) -> float:
-    """Of the length of holes that are left out in groups, in the right unit."""
+def _share_right(holes: _Holes, cuts: Sequence[bool], made: dict[tuple, np.ndarray]) -> float:
+    """Of the length of holes that are left out in groups, in the right unit. made: heights by all that they
+    follow from, since most of them are the same for other rules."""
     count = len(holes.plan)
     groups = np.arange(count) % min(_GROUPS, count)
     right = total = 0.0
@@ -139,9 +141,13 @@ def _share_right(holes: _Holes, cuts: Sequence[bool]) -> float:
         known = np.flatnonzero(groups != group)
         if not len(known):
             continue
-        heights = np.array(
-            [_heights(holes, known, cuts, surface, holes.plan[left_out]) for surface in range(len(cuts))]
-        )
+        heights = np.empty((len(cuts), len(left_out)))
+        for surface in range(len(cuts)):
+            told = _told(holes, known, cuts, surface)
+            key = (group, *(values.tobytes() for values in told))
+            if key not in made:
+                made[key] = _predicted(holes.plan[known], *told, holes.plan[left_out])
+            heights[surface] = made[key]
         for column, hole in enumerate(left_out.tolist()):
             bounds = _replayed(heights[:, column], cuts)
             for unit, top, bottom in holes.ends[hole]:
@@ -169,10 +175,11 @@ def _replayed(heights: np.ndarray, cuts: Sequence[bool]) -> list[tuple[float, fl
     return [*found, (top, np.inf)]
 
 
-def _heights(
-    holes: _Holes, known: np.ndarray, cuts: Sequence[bool], surface: int, at: np.ndarray
-) -> np.ndarray:
-    """(N,) of a surface at places (N, 2), from the known holes; NaN where these say nothing of it."""
+def _told(
+    holes: _Holes, known: np.ndarray, cuts: Sequence[bool], surface: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What known holes say of a surface: its heights, NaN where they do not, and bounds from below and above,
+    (N,) each."""
     count = len(known)
     equal, low, high = np.full(count, np.nan), np.full(count, -np.inf), np.full(count, np.inf)
     for row, hole in enumerate(known.tolist()):
@@ -192,20 +199,29 @@ def _heights(
                 low[row] = max(low[row], top)
             elif surface < unit and not any(cuts[surface + 1 : unit]):
                 high[row] = min(high[row], bottom)
+    return equal, low, high
+
+
+def _predicted(
+    places: np.ndarray, equal: np.ndarray, low: np.ndarray, high: np.ndarray, at: np.ndarray
+) -> np.ndarray:
+    """(N,) heights of a surface at plan points `at` (N, 2) from what is told at places (P, 2); NaN where that
+    is nothing."""
     values = equal.copy()
     if not np.isfinite(values).any():
         values = np.where(np.isfinite(low), low, np.nan)  # no contact: as deep as it may be
+    if not np.isfinite(values).any():
+        return np.full(len(at), np.nan)
+    nodes = np.concatenate([places, at])
     for _ in range(_ROUNDS):
         fixed = np.isfinite(values)
-        if not fixed.any():
-            return np.full(len(at), np.nan)
-        made = _kriged(holes.plan[known[fixed]], values[fixed], holes.plan[known])
-        wrong = np.isnan(values) & ((made < low) | (made > high))
+        here, there = np.split(_kriged(places[fixed], values[fixed], nodes), [len(places)])
+        wrong = ~fixed & ((here < low) | (here > high))
         if not wrong.any():
-            break
-        values[wrong] = np.clip(made[wrong], low[wrong], np.maximum(high[wrong], low[wrong]))
+            return there
+        values[wrong] = np.clip(here[wrong], low[wrong], np.maximum(high[wrong], low[wrong]))
     fixed = np.isfinite(values)
-    return _kriged(holes.plan[known[fixed]], values[fixed], at)
+    return _kriged(places[fixed], values[fixed], at)
 
 
 def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -218,4 +234,5 @@ def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarra
     method = "universal_kriging" if has_plane else "kriging"
     straight = {"model": "spherical", "range": _STRAIGHT * extent, "sill": _STRAIGHT}
     points = np.column_stack([places, values])
-    return interpolate(points, at, method, variogram=straight, neighbours=0).z
+    # so small a system takes less time than threads take to begin
+    return interpolate(points, at, method, variogram=straight, neighbours=0, threads=1).z
