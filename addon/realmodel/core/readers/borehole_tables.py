@@ -86,7 +86,7 @@ def boreholes_of(
     if isinstance(given, Boreholes):
         raise UsageError("Boreholes have keys already; leave the others out")
     if isinstance(given, BoreholeTables):
-        raise UsageError("boreholes are given by their files or a Boreholes, not by the tables read from them")
+        raise UsageError("boreholes are given by their files or a Boreholes, not by tables that were read")
     every = {**given, **(keys or {})} if isinstance(given, Mapping) else {"file": given, **(keys or {})}
     every = {key: value for key, value in every.items() if value is not None}
     if file_units is None:
