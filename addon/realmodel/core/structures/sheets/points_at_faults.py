@@ -364,9 +364,8 @@ def _off(
         counted &= counted.cumsum(axis=1) <= _COUNTED
         some = counted.any(axis=1)
         total = np.zeros(len(tried))
-        for heights, counts in zip(
-            z.T, counted.T, strict=True
-        ):  # one by one: the order says how it is rounded
+        # one by one: the order says how it is rounded
+        for heights, counts in zip(z.T, counted.T, strict=True):
             total[counts] += heights[counts]
         off = np.abs(total[some] / counted[some].sum(axis=1) - points[tried[some], 2])
         is_own = row[tried[some]] == its
