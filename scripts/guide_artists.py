@@ -25,7 +25,7 @@ def artists(walk):
     yield from open_tab(walk, "strata_shape")
     region, scale = walk.region("UI"), bpy.context.preferences.view.ui_scale
     walk.click(region.x + _BEDS[0] * scale, region.y + region.height - _BEDS[1] * scale)
-    fill_view(walk, [item], 0.92, math.radians(10.0), azimuth=math.radians(190.0))
+    fill_view(walk, [item], 0.96, math.radians(14.0), azimuth=math.radians(163.0))
     item.select_set(False)  # without the outlines of its stones
     yield from keep(walk, "artists_eroded")
     region = walk.region("WINDOW")

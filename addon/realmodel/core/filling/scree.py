@@ -51,7 +51,7 @@ def scree_within(
     z = lattice.origin[2] + spacing * levels
     # It goes on a little into the walls, and its lower side lies in the rock.
     upper = np.where(is_ground & np.isneginf(surface), greatest_around(surface, 1), surface)
-    lower = -greatest_around(-ground, 1) - 2.0 * spacing
+    lower = -greatest_around(np.where(is_ground, -ground, -math.inf), 1) - 2.0 * spacing
     field = np.maximum(z - upper[:, :, None], lower[:, :, None] - z)
     with work.phase(0.8, 1.0, "meshing"):
         vertices, triangles = meshed(work, lattice, np.clip(field, -2.0 * spacing, 2.0 * spacing))
@@ -79,7 +79,8 @@ def _heaped(
     slope: float,
     seed: int,
 ) -> np.ndarray:
-    """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls."""
+    """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls, less what falls
+    off the end of the rock."""
     before = max(round(_BEFORE * max(ground.shape)), 2)
     highest = greatest_around(ground, _AROUND)
     lowest = -greatest_around(
@@ -91,11 +92,22 @@ def _heaped(
     places = np.column_stack([places * (6.0 / max(ground.shape)), np.zeros(len(places))])
     uneven = 0.4 + 1.2 * fractal(places, seed + 31).reshape(ground.shape)
     height = np.minimum(_SHARE * (highest - ground), _MOST * spacing * max(ground.shape))
-    surface = np.where(is_foot, ground + amount * uneven * height, -math.inf)
+    heap = np.where(is_foot, ground + amount * uneven * height, -math.inf)
+    heap = _cones(work, heap, slope * spacing, np.where(is_ground, ground - spacing, math.inf))
+    # beside the end of the rock nothing holds it
+    is_end = is_ground & (greatest_around(np.where(is_ground, 0.0, 1.0), 1) > 0)
+    lost = _cones(work, np.where(is_end, spacing - ground, -math.inf), slope * spacing)
+    surface = np.minimum(heap, -lost)
+    return np.where(surface > ground - spacing, surface, -math.inf)
+
+
+def _cones(work: Work, tops: np.ndarray, fall: float, lowest: float | np.ndarray = -math.inf) -> np.ndarray:
+    """The surface (nx, ny) of the cones below all tops, nearly round, where it is above the lowest."""
+    surface = tops
     while True:
         work.check()
-        wider = _fallen(surface, slope * spacing)  # cones are nearly round
-        wider[~is_ground | (wider <= ground - spacing)] = -math.inf  # it ends in the ground
+        wider = _fallen(surface, fall)
+        wider[wider <= lowest] = -math.inf
         if np.array_equal(wider, surface):
             return surface
         surface = wider
