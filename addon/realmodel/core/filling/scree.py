@@ -79,8 +79,8 @@ def _heaped(
     slope: float,
     seed: int,
 ) -> np.ndarray:
-    """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls, less what falls
-    off the end of the rock."""
+    """The surface (nx, ny) of scree on the ground: the cones of what lies at the foot of walls, without
+    what falls off the end of the rock."""
     before = max(round(_BEFORE * max(ground.shape)), 2)
     highest = greatest_around(ground, _AROUND)
     lowest = -greatest_around(
