@@ -135,25 +135,30 @@ def time_lapse(folder):
     corners = np.concatenate([vertices * (1.0, 1.0, share) for share in (0.0, 0.9)])
     gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 156.0, 24.0, (0.0, 0.0))
 
-    def frame(amplitude, top):
+    ripple = 0.25 * hero_parts.rough(u, v, 12.0, 3)
+
+    def frame(amplitude, level, land=np.inf):
         hero_rocks.reshape(item, vertices)
         strata_modifier.set_values(item, {"fold_amplitude": amplitude})
         beds, _ = strata_modifier.beds_of(item)
         plan = np.column_stack([u.ravel(), v.ravel()])
-        datum = beds.datum(plan, beds.strips(plan)).reshape(u.shape) - full / 2.0
+        folded = beds.datum(plan, beds.strips(plan)).reshape(u.shape)
+        folded += level - folded.mean()
+        # to the middle of a bed: ripples above its top would be parts of the next one
+        _, share, thickness = beds.places(np.array([[u[0, 0], v[0, 0], folded[0, 0]]]))
         places = vertices.copy()
-        places[: u.size, 2] = np.clip(top(datum), 1.0, full).ravel()
+        top = np.minimum(folded + (0.5 - share) * thickness + ripple, land)
+        places[: u.size, 2] = np.clip(top, 1.0, full).ravel()
         hero_rocks.reshape(item, places)
         divided = meshes.triangle_mesh("Rock Divided", *divided_at_beds(places, triangles, beds))
         strata_modifier.show_eroded(item, divided)
         return _OfCamera(), LAPSE
 
-    ripple = 0.25 * hero_parts.rough(u, v, 12.0, 3)
     for share in np.linspace(0.06, 1.0, 9):
-        yield frame(0.0, lambda _, share=share: high * share + ripple)
+        yield frame(0.0, high * share)
     most = 0.13
     for share in np.linspace(0.14, 1.0, 7):
-        yield frame(most * share, lambda datum: high + datum - datum.mean() + ripple)
+        yield frame(most * share, high)
     edge = np.zeros(u.shape, bool)
     edge[:, 0] = edge[-1, :] = True  # the sides that are seen, where rivers flow out
     rivers = np.where(edge, 6.0, 16.0 + 8.0 * np.abs(hero_parts.rough(u, v, 40.0, 8)))
@@ -169,10 +174,7 @@ def time_lapse(folder):
         steepest=0.9,
     )
     for share in np.linspace(0.12, 1.0, 8):
-        yield frame(
-            most,
-            lambda datum, share=share: np.minimum(high + datum - datum.mean(), land + 52.0 * (1.0 - share)),
-        )
+        yield frame(most, high, land + 52.0 * (1.0 - share))
     for strength in (0.3, 0.65, 1.0):
         hero_rocks.erode(item, 150_000, strength, scree=0.0)
         yield _OfCamera(), LAPSE if strength < 1.0 else 2 * REST

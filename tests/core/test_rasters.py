@@ -74,10 +74,11 @@ def test_a_geotiff_in_another_system_than_the_project(tmp_path):
 
 def test_surfer_and_zmap_grids_with_nan(write):
     surfer = "DSAA\n3 2\n105 125\n205 215\nnan nan\n4 NAN 6\n1 2 3\n"
+    of_other_lines = "DSAA\n3\n2 105 125\n\n205,215,1 6\n4 NAN 6 1\n2 3\n"
     zmap = "! Created by {}\n@g, GRID, 2\n 20, nan, , 7, 1\n 2, 3, {}\n0.0, 0.0, 0.0\n@\n1 4\n2 nan\n3 6\n"
     edges = zmap.format("GDAL.", "100, 130, 200, 220")  # GDAL gives those of its pixels
     middles = zmap.format("others", "105, 125, 205, 215")
-    for text in (surfer, edges, middles):
+    for text in (surfer, of_other_lines, edges, middles):
         points, _ = read_point_file(PointFile(write("g.dat", text)))
         assert sorted(points.tolist()) == sorted(CELLS)
 

@@ -40,18 +40,25 @@ def read_surfer_grid(
 
 def _text(file: Path, step: Step) -> tuple:
     raw = text_content(file)
-    lines = [line for line, _ in zip(header_lines(raw), range(5), strict=False)]
-    if len(lines) < 5:
-        raise InputRefused("the header is cut off: it has five lines", file=file, line=len(lines))
-    _, (_, counts, _), (_, of_x, _), (_, of_y, _), (_, _, at) = lines
-    columns, rows = header_numbers(file, counts, 2, 2, "the numbers of columns and rows")
-    columns, rows = require_count(file, columns, "columns", 2), require_count(file, rows, "rows", 2)
-    x = header_numbers(file, of_x, 3, 2, "the lowest and highest x")
-    y = header_numbers(file, of_y, 4, 2, "the lowest and highest y")
-    dx = require_spacing(file, x[0], x[1], columns, "x", 3)
-    dy = require_spacing(file, y[0], y[1], rows, "y", 4)
-    heights = grid_heights(GridText(file, raw, at, 6), rows, columns, step)
-    return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
+    words: list[tuple[str, int]] = []  # with their lines
+    at = 0
+    for line, text, at in header_lines(raw):  # noqa: B007  they say where the heights begin
+        if line > 1:
+            words += [(word, line) for word in text.replace(",", " ").split()]
+        if len(words) >= 8:
+            break
+    last = words[-1][1] if words else 1
+    if len(words) != 8:
+        what = f"the header has {len(words)} numbers, not 8: columns, rows, and the ends of x, y and z"
+        raise InputRefused(what, file=file, line=last)
+    numbers = [header_numbers(file, word, line, 1, "a number")[0] for word, line in words[:6]]
+    west, east, south, north = numbers[2:]
+    columns = require_count(file, numbers[0], "columns", words[0][1])
+    rows = require_count(file, numbers[1], "rows", words[1][1])
+    dx = require_spacing(file, west, east, columns, "x", words[3][1])
+    dy = require_spacing(file, south, north, rows, "y", words[5][1])
+    heights = grid_heights(GridText(file, raw, at, last + 1), rows, columns, step)
+    return heights, (rows, columns), [], (west, south), (dx, dy)
 
 
 def _binary_6(file: Path, _step: Step) -> tuple:
