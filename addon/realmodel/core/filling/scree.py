@@ -96,7 +96,7 @@ def _heaped(
     heap = _cones(work, heap, slope * spacing, np.where(is_ground, ground - spacing, math.inf))
     # beside the end of the rock nothing holds it
     is_end = is_ground & (greatest_around(np.where(is_ground, 0.0, 1.0), 1) > 0)
-    lost = _cones(work, np.where(is_end, spacing - ground, -math.inf), slope * spacing)
+    lost = _cones(work, np.where(is_end, -ground, -math.inf), slope * spacing)
     surface = np.minimum(heap, -lost)
     return np.where(surface > ground - spacing, surface, -math.inf)
 

@@ -24,6 +24,7 @@ from .hole_tables import (
     header_factors,
     rows,
     sheet_rows,
+    with_chosen_blocks,
     with_units_of_cells,
 )
 from .table_layout import names_shown
@@ -110,13 +111,16 @@ def read_hole_rows(
         slow = step if kind in ("picks", "intervals") else no_step
         if isinstance(table, RawTable):
             table_rows = sheet_rows(boreholes, Path(file), table, known, required[kind])
-            choice = table.choice
-            if choice is not None and "block" not in boreholes.columns:
-                tables.block_column, text = choice
-                tables.warnings.append(f"{file}: {text}")
+            choice = None if "block" in boreholes.columns else table.choice
             tables.system = tables.system or table.system
         else:
             table_rows = list(rows(boreholes, Path(file), known, required[kind], slow, table))
+            choice = None
+            if kind == "intervals":
+                table_rows, choice = with_chosen_blocks(boreholes, table_rows)
+        if choice is not None:
+            tables.block_column, text = choice
+            tables.warnings.append(f"{file}: {text}")
         table_rows = with_units_of_cells(table_rows)
         setattr(tables, kind, table_rows)
         if table_rows:

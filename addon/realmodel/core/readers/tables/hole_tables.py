@@ -138,6 +138,15 @@ _BLOCK = (
     *("unit_code", "unit_name", "graphic", "material", "soil", "soil_type", "domain", "stratum", "hsu"),
     *("geol_geo2", "lito"),
 )
+# Of columns such as unit and material in tables of assays.
+_NO_UNITS = frozenset(
+    (
+        *("ppm", "ppb", "ppt", "%", "pct", "wt%", "g/t", "gpt", "oz/t", "mg/kg", "mg/l", "core", "half core"),
+        *("quarter core", "whole core", "dd", "ddh", "diamond", "rc", "rab", "chips", "chip", "rc chips"),
+        *("pulp", "pulps", "reject", "cuttings", "composite", "grab", "channel", "sample", "blank"),
+        *("standard", "duplicate", "original", "assay", "trench"),
+    )
+)
 _THICKNESS = (
     "thickness",
     "thick",
@@ -433,6 +442,43 @@ def _without_nulls(every: list[Row]) -> list[Row]:
         row.with_values(dict.fromkeys(columns, "")) if columns else row
         for row, columns in zip(every, nulls, strict=True)
     ]
+
+
+def name_units(texts: Iterable[str], decimal: str) -> bool:
+    """Whether entries of a column may be names of units: they are no measured numbers, units of measure or
+    kinds of samples, and there are some."""
+    distinct = {text.lower() for text in texts} - set(NO_VALUE)
+    if all(is_number(text, decimal) for text in distinct):
+        return bool(distinct) and all(float(text.replace(",", ".")).is_integer() for text in distinct)
+    return not distinct <= _NO_UNITS
+
+
+def with_chosen_blocks(given: Reading, every: list[Row]) -> tuple[list[Row], tuple[str, str] | None]:
+    """Rows of intervals whose blocks are named by the first column that may name them and does, with its name
+    and what is said where another one parts the rows otherwise; None where there is none, or `given` says
+    which column it is."""
+    if not every or "block" in given.columns or "block" not in every[0].columns:
+        return every, None
+    header = every[0].header
+    aliases, taken = {column_key(name) for name in _BLOCK}, header.columns["block"]
+    texts: dict[int, list[str]] = {}
+    for at, name in enumerate(header.names):
+        if at == taken or (at not in header.columns.values() and column_key(name) in aliases):
+            column = [row.entries[at] if at < len(row.entries) else "" for row in every]
+            if name_units(column, every[0].decimal):
+                texts[at] = column
+    if taken not in texts and texts:
+        taken = min(texts)
+        header = replace(header, columns={**header.columns, "block": taken})
+        every = [replace(row, header=header) for row in every]
+    for at, column in texts.items():
+        pairs, distinct = set(zip(texts[taken], column, strict=True)), set(column)
+        is_named = len(distinct) > 1 and not all(is_number(text) for text in distinct)  # no running numbers
+        if is_named and len(pairs) > min(len(set(texts[taken])), len(distinct)):
+            name, other = header.names[taken], header.names[at]
+            text = f"'{other}' parts the rows otherwise: columns = {{ block = \"{other}\" }}"
+            return every, (name, f"blocks are named by '{name}'; {text}")
+    return every, None
 
 
 def with_units_of_cells(every: list[Row]) -> list[Row]:
