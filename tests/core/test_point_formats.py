@@ -240,6 +240,7 @@ def test_headers_of_other_programs(write, text):
     [
         "INLINE :  100 XLINE :  7   1.0  2.0  3.5\nINLINE :  101 XLINE :  8   4.0  5.0  6.5\n",
         "INLINE: 100 XLINE: 7 1.0 2.0 3.5\nINLINE: 101 XLINE: 8 4.0 5.0 6.5\n",
+        "INLINE-  100 XLINE-  7 1.0 2.0 3.5\nINLINE-  101 XLINE-  8 4.0 5.0 6.5\n",
         "/ Geosoft\n/ X Y Z\nLine 10\n 1.0 2.0 3.5\nTie 20\n 4.0 5.0 6.5\n",
         "2\n1.0 2.0 3.5 255 0 0\n4.0 5.0 6.5 255 0 0\n",
         "//X Y Z R G B\n2\n1.0 2.0 3.5 255 0 0\n4.0 5.0 6.5 255 0 0\n",

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Charisma's horizons as Petrel writes them: rows of INLINE :, a number, XLINE :, a number, x, y and z.
+"""Charisma's horizons as Petrel writes them: rows of INLINE : or INLINE-, a number, the same of
+XLINE, x, y and z.
 
 The layout is that of examples that users of Petrel publish ("Charisma 3D interpretation lines").
 """
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from .dialect import FileHeader
 
-_ROW = re.compile(rb"\s*INLINE\s*:\s*-?[\d.]+\s+X(?:ROSS)?LINE\s*:\s*-?[\d.]+\s", re.IGNORECASE)
+_ROW = re.compile(rb"\s*INLINE\s*[:-]\s*-?[\d.]+\s+X(?:ROSS)?LINE\s*[:-]\s*-?[\d.]+\s", re.IGNORECASE)
 _NUMBER = re.compile(r"-?\d+(?:\.\d*)?")
 
 
