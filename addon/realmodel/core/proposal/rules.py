@@ -11,7 +11,7 @@ say of them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -37,14 +37,18 @@ class RuleChoice:
     reason: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Holes:
-    """plan: (H, 2). contacts: of each hole (number of the upper unit, of the lower, height), ends: (number of
-    the unit, top, bottom)."""
+    """plan: (H, 2). contacts: (C, 4) hole, number of the upper unit, of the lower, height, ends: (E, 4) hole,
+    number of the unit, top, bottom; by hole, from above downward. groups: (H,) in which they are left out.
+    found: heights at the holes of a group by what the others say of a surface: mostly the same with the next
+    set of rules."""
 
     plan: np.ndarray
-    contacts: Sequence[Sequence[tuple[int, int, float]]]
-    ends: Sequence[Sequence[tuple[int, float, float]]]
+    contacts: np.ndarray
+    ends: np.ndarray
+    groups: np.ndarray
+    found: dict[tuple[int, bytes], np.ndarray] = field(default_factory=dict)
 
 
 def choose_rules(logs: Sequence[Log], order: UnitOrder) -> list[RuleChoice]:
@@ -103,48 +107,43 @@ def _holes(logs: Sequence[Log], order: UnitOrder) -> _Holes:
     if len(used) > _MOST_HOLES:
         used = [used[number] for number in np.linspace(0, len(used) - 1, _MOST_HOLES).astype(int)]
     contacts, ends = [], []
-    for log in used:
+    for hole, log in enumerate(used):
         ranks = [order.rank(part.unit) for part in log.parts]
-        contacts.append(
-            [
-                (upper, lower, float(part.top[2]))
-                for upper, lower, part in zip(ranks, ranks[1:], log.parts[1:], strict=False)
-                if upper > lower
-            ]
-        )
-        ends.append(
-            [(rank, float(p.top[2]), float(p.bottom[2])) for rank, p in zip(ranks, log.parts, strict=True)]
-        )
-    return _Holes(np.array([log.plan for log in used]).reshape(-1, 2), contacts, ends)
+        contacts += [
+            (hole, upper, lower, float(part.top[2]))
+            for upper, lower, part in zip(ranks, ranks[1:], log.parts[1:], strict=False)
+            if upper > lower
+        ]
+        ends += [
+            (hole, rank, float(part.top[2]), float(part.bottom[2]))
+            for rank, part in zip(ranks, log.parts, strict=True)
+        ]
+    plan = np.array([log.plan for log in used]).reshape(-1, 2)
+    groups = np.arange(len(used)) % _GROUPS
+    return _Holes(plan, np.array(contacts).reshape(-1, 4), np.array(ends).reshape(-1, 4), groups)
 
 
 def _gaps(holes: _Holes, count: int) -> list[list[int]]:
     """Of each surface but the youngest the units that are absent where its rule matters."""
     gaps: list[set[int]] = [set() for _ in range(count - 1)]
-    for contacts in holes.contacts:
-        for upper, lower, _ in contacts:
-            if upper > lower + 1:
-                for surface in range(lower, upper):
-                    gaps[surface].update(range(lower + 1, upper))
+    for upper, lower in holes.contacts[:, 1:3].astype(int).tolist():
+        if upper > lower + 1:
+            for surface in range(lower, upper):
+                gaps[surface].update(range(lower + 1, upper))
     return [sorted(gap) for gap in gaps]
 
 
 def _share_right(holes: _Holes, cuts: Sequence[bool]) -> float:
     """Of the length of holes that are left out in groups, in the right unit."""
-    count = len(holes.plan)
-    groups = np.arange(count) % min(_GROUPS, count)
+    said = [_said_of(surface, holes, cuts) for surface in range(len(cuts))]
     right = total = 0.0
-    for group in range(min(_GROUPS, count)):
-        left_out = np.flatnonzero(groups == group)
-        known = np.flatnonzero(groups != group)
-        if not len(known):
-            continue
-        heights = np.array(
-            [_heights(holes, known, cuts, surface, holes.plan[left_out]) for surface in range(len(cuts))]
-        )
-        for column, hole in enumerate(left_out.tolist()):
+    for group in range(min(_GROUPS, len(holes.plan)) if len(holes.plan) > 1 else 0):
+        heights = np.array([_predicted(holes, group, of_surface) for of_surface in said])
+        for column, hole in enumerate(np.flatnonzero(holes.groups == group).tolist()):
             bounds = _replayed(heights[:, column], cuts)
-            for unit, top, bottom in holes.ends[hole]:
+            first, end = np.searchsorted(holes.ends[:, 0], [hole, hole + 1])
+            for number, top, bottom in holes.ends[first:end, 1:].tolist():
+                unit = int(number)
                 low = -np.inf if unit == 0 else bounds[unit][0]
                 high = bounds[unit][1]
                 right += max(min(top, high) - max(bottom, low), 0.0)
@@ -169,29 +168,41 @@ def _replayed(heights: np.ndarray, cuts: Sequence[bool]) -> list[tuple[float, fl
     return [*found, (top, np.inf)]
 
 
-def _heights(
-    holes: _Holes, known: np.ndarray, cuts: Sequence[bool], surface: int, at: np.ndarray
-) -> np.ndarray:
-    """(N,) of a surface at places (N, 2), from the known holes; NaN where these say nothing of it."""
-    count = len(known)
-    equal, low, high = np.full(count, np.nan), np.full(count, -np.inf), np.full(count, np.inf)
-    for row, hole in enumerate(known.tolist()):
-        for upper, lower, height in holes.contacts[hole]:
-            if not lower <= surface < upper:
-                continue
-            cutting = [number for number in range(lower, upper) if cuts[number]]
-            through = cutting[-1] if cutting else lower
-            if surface == through:
-                equal[row] = height
-            elif surface > through:
-                high[row] = min(high[row], height)
-            elif cuts[surface] or surface == lower:
-                low[row] = max(low[row], height)
-        for unit, top, bottom in holes.ends[hole]:
-            if surface == unit or (surface > unit and cuts[surface]):
-                low[row] = max(low[row], top)
-            elif surface < unit and not any(cuts[surface + 1 : unit]):
-                high[row] = min(high[row], bottom)
+def _said_of(surface: int, holes: _Holes, cuts: Sequence[bool]) -> np.ndarray:
+    """(3, H) that holes say of a surface: its height, or NaN, and heights that it lies above and below."""
+    cut = np.array(cuts)
+    equal, low, high = np.array([[np.nan], [-np.inf], [np.inf]]).repeat(len(holes.plan), axis=1)
+    hole, upper, lower = holes.contacts[:, :3].T.astype(int)
+    height = holes.contacts[:, 3]
+    last_cut = np.maximum.accumulate(np.where(cut, np.arange(len(cut)), -1))[upper - 1]
+    through = np.where(last_cut >= lower, last_cut, lower)
+    passed = (lower <= surface) & (surface < upper)
+    at, above = passed & (through == surface), passed & (through < surface)
+    below = passed & (through > surface) & (cut[surface] | (lower == surface))
+    equal[hole[at]] = height[at]
+    np.minimum.at(high, hole[above], height[above])
+    np.maximum.at(low, hole[below], height[below])
+    hole, unit = holes.ends[:, :2].T.astype(int)
+    cuts_before = np.concatenate([[0], np.cumsum(cut)])
+    above = (unit == surface) | (unit < surface) & cut[surface]
+    below = (unit > surface) & (cuts_before[unit] == cuts_before[surface + 1])
+    np.maximum.at(low, hole[above], holes.ends[above, 2])
+    np.minimum.at(high, hole[below], holes.ends[below, 3])
+    return np.array([equal, low, high])
+
+
+def _predicted(holes: _Holes, group: int, said: np.ndarray) -> np.ndarray:
+    """(N,) of a surface at the holes of a group from what the others say (3, H), NaN where that is none."""
+    known = holes.groups != group
+    key = group, said[:, known].tobytes()
+    if key not in holes.found:
+        holes.found[key] = _heights(holes.plan[known], said[:, known], holes.plan[~known])
+    return holes.found[key]
+
+
+def _heights(places: np.ndarray, said: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """(N,) of a surface at places (N, 2), from what holes at others say of it (3, K)."""
+    equal, low, high = said
     values = equal.copy()
     if not np.isfinite(values).any():
         values = np.where(np.isfinite(low), low, np.nan)  # no contact: as deep as it may be
@@ -199,13 +210,13 @@ def _heights(
         fixed = np.isfinite(values)
         if not fixed.any():
             return np.full(len(at), np.nan)
-        made = _kriged(holes.plan[known[fixed]], values[fixed], holes.plan[known])
-        wrong = np.isnan(values) & ((made < low) | (made > high))
+        made = _kriged(places[fixed], values[fixed], places)
+        wrong = ~fixed & ((made < low) | (made > high))
         if not wrong.any():
             break
         values[wrong] = np.clip(made[wrong], low[wrong], np.maximum(high[wrong], low[wrong]))
     fixed = np.isfinite(values)
-    return _kriged(holes.plan[known[fixed]], values[fixed], at)
+    return _kriged(places[fixed], values[fixed], at)
 
 
 def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -218,4 +229,4 @@ def _kriged(places: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarra
     method = "universal_kriging" if has_plane else "kriging"
     straight = {"model": "spherical", "range": _STRAIGHT * extent, "sill": _STRAIGHT}
     points = np.column_stack([places, values])
-    return interpolate(points, at, method, variogram=straight, neighbours=0).z
+    return interpolate(points, at, method, variogram=straight, neighbours=0, threads=1).z
