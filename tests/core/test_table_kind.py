@@ -129,8 +129,7 @@ def test_assays_are_no_intervals_of_units(tmp_path, seed):
     found, (columns, codes) = kind(values)
     assert found == "assays"
     assert columns["to"] == end.lower()
-    logged = {name: of for name, of in values.items() if name not in doubtful}
-    found, (columns, codes) = kind(logged | {log: lambda n: LITHOLOGIES[log][n % 2]})
+    found, (columns, codes) = kind(values | {log: lambda n: LITHOLOGIES[log][n % 2]})
     assert found == "intervals"
     assert codes == sorted(LITHOLOGIES[log])
 

@@ -33,9 +33,9 @@ from .tables.hole_tables import (
     Row,
     column_key,
     columns_in,
+    may_name_units,
     rows,
 )
-from .tables.table_layout import is_number
 
 _KNOWN = {
     "collars": COLLARS,
@@ -53,15 +53,6 @@ _STRUCTURES = {
     "kind": ("fracture", "feature", "feature_type", "plane", "foliation", "bedding", "vein"),
     "alpha": ("alpha", "alpha_angle"),
 }
-# Of columns such as unit and material in tables of assays.
-_NO_UNITS = frozenset(
-    (
-        *("ppm", "ppb", "ppt", "%", "pct", "wt%", "g/t", "gpt", "oz/t", "mg/kg", "mg/l", "core", "half core"),
-        *("quarter core", "whole core", "dd", "ddh", "diamond", "rc", "rab", "chips", "chip", "rc chips"),
-        *("pulp", "pulps", "reject", "cuttings", "composite", "grab", "channel", "sample", "blank"),
-        *("standard", "duplicate", "original", "assay", "trench"),
-    )
-)
 _LOOKED_AT = 2000  # rows whose codes are listed
 
 
@@ -144,13 +135,8 @@ def _are_places(reading: Boreholes, file: Path, sheet: str | None, columns: Mapp
 
 
 def _are_units(reading: Boreholes, file: Path, sheet: str | None, known: Columns, meaning: str) -> bool:
-    """Whether the column that may name units does, and has no measured numbers, units of measure or kinds of
-    samples instead, or nothing."""
     every = islice(rows(reading, file, known, (), no_step, sheet), _LOOKED_AT)
-    texts = {(row.text(meaning).lower(), row.decimal) for row in every if row.has(meaning)}
-    if all(is_number(text, decimal) for text, decimal in texts):
-        return bool(texts) and all(float(text.replace(",", ".")).is_integer() for text, _ in texts)
-    return not all(text in _NO_UNITS for text, _ in texts)
+    return may_name_units(row.text(meaning) for row in every if row.has(meaning))
 
 
 def _repeats(reading: Boreholes, file: Path, sheet: str | None, axes: str) -> bool:
