@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,11 +13,13 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 from ...base.text import FileBytes, Step, as_utf8, no_step, text_content
-from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
+from .grid_text import GridText, grid_heights, header_numbers, require_count, require_spacing
 from .raster import Raster, known_heights
 
 _BLANK = 1.70141e38  # this, and more, is no height
 _HEAD_6 = struct.Struct("<4s2h6d")
+_HEAD_TEXT = re.compile(rb"DSAA" + rb"\s+(\S+)" * 8 + rb"\s+")  # on lines of any length
+_LONGEST_HEAD = 4096  # bytes
 _GRID_7 = struct.Struct("<2i8d")
 
 
@@ -40,17 +43,26 @@ def read_surfer_grid(
 
 def _text(file: Path, step: Step) -> tuple:
     raw = text_content(file)
-    lines = [line for line, _ in zip(header_lines(raw), range(5), strict=False)]
-    if len(lines) < 5:
-        raise InputRefused("the header is cut off: it has five lines", file=file, line=len(lines))
-    _, (_, counts, _), (_, of_x, _), (_, of_y, _), (_, _, at) = lines
-    columns, rows = header_numbers(file, counts, 2, 2, "the numbers of columns and rows")
-    columns, rows = require_count(file, columns, "columns", 2), require_count(file, rows, "rows", 2)
-    x = header_numbers(file, of_x, 3, 2, "the lowest and highest x")
-    y = header_numbers(file, of_y, 4, 2, "the lowest and highest y")
-    dx = require_spacing(file, x[0], x[1], columns, "x", 3)
-    dy = require_spacing(file, y[0], y[1], rows, "y", 4)
-    heights = grid_heights(GridText(file, raw, at, 6), rows, columns, step)
+    head = _HEAD_TEXT.match(raw[:_LONGEST_HEAD])
+    if head is None:
+        what = "the header is cut off: it has the numbers of columns and rows, and the ends of x, y and z"
+        raise InputRefused(what, file=file)
+    pairs = [
+        (f"{head[n].decode('latin-1')} {head[n + 1].decode('latin-1')}", head.start(n)) for n in (1, 3, 5)
+    ]
+    (counts, of_counts), (of_x, at_x), (of_y, at_y) = [
+        (text, 1 + raw.count(b"\n", 0, at)) for text, at in pairs
+    ]
+    columns, rows = header_numbers(file, counts, of_counts, 2, "the numbers of columns and rows")
+    columns = require_count(file, columns, "columns", of_counts)
+    rows = require_count(file, rows, "rows", of_counts)
+    x = header_numbers(file, of_x, at_x, 2, "the lowest and highest x")
+    y = header_numbers(file, of_y, at_y, 2, "the lowest and highest y")
+    dx = require_spacing(file, x[0], x[1], columns, "x", at_x)
+    dy = require_spacing(file, y[0], y[1], rows, "y", at_y)
+    heights = grid_heights(
+        GridText(file, raw, head.end(), 1 + raw.count(b"\n", 0, head.end())), rows, columns, step
+    )
     return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
 
 
