@@ -103,6 +103,8 @@ def rms(write):
 def charisma_geosoft_and_gslib(write):
     for text in (
         "INLINE :  100 XLINE :  7   1.0  2.0  3.5\nINLINE :  101 XLINE :  8   4.0  5.0  6.5\n",
+        "INLINE-  100 XLINE-  7   1.0  2.0  3.5\nINLINE-  101 XLINE-  8   4.0  5.0  6.5\n",
+        "INLINE-100 CROSSLINE-7   1.0  2.0  3.5 8\nINLINE-101 CROSSLINE-8   4.0  5.0  6.5 9\n",
         "/ X Y Z\nLine 10\n 1.0 2.0 3.5\nTie 20\n 4.0 5.0 6.5\n",
         "Top of the sand\n3\nX\nY\nElevation\n 1.0 2.0 3.5\n 4.0 5.0 6.5\n",
     ):

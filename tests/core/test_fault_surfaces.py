@@ -158,6 +158,20 @@ def test_a_file_of_sticks(write):
     assert len(read_fault_points(PointFile(as_text))[0]) == 2
 
 
+def test_sticks_of_charisma(write):
+    """Names may have blanks, and the marks stand before one number or both, or are one with it."""
+    rows = [("F 1", 1, (1, 2, -3.5)), ("F 1", 1, (1, 2, -5)), ("F 1", 2, (4, 5, -6)), ("7", 1, (8, 9, -1))]
+    for mark in ("INLINE-  1650 1702", "INLINE-1650  1702", "INLINE : 1650  1702"):
+        lines = [f"{mark}  {x} {y} {z}  {name} {stick}" for name, stick, (x, y, z) in rows]
+        file = write("f.dat", "\n".join(lines))
+        sticks, _ = read_fault_points(PointFile(file, layer="F 1"))
+        assert [stick.tolist() for stick in sticks] == [[[1, 2, -3.5], [1, 2, -5]], [[4, 5, -6]]]
+        with pytest.raises(InputRefused, match="F 1, 7"):
+            read_fault_points(PointFile(file))
+    with pytest.raises(InputRefused, match=r"f.dat:2: 'INLINE- 3' is no point of a stick"):
+        read_fault_points(PointFile(write("f.dat", lines[0] + "\nINLINE- 3\n")))
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ESRI ASCII grids and GeoTIFF as points, and as the grid of method "grid"."""
 
+from itertools import zip_longest
+
 import numpy as np
 import pytest
 from damages import damaged_bytes
@@ -81,6 +83,21 @@ def test_surfer_and_zmap_grids_with_nan(write):
     for text in (surfer, of_other_lines, edges, middles):
         points, _ = read_point_file(PointFile(write("g.dat", text)))
         assert sorted(points.tolist()) == sorted(CELLS)
+
+
+@pytest.mark.parametrize("parts", ["\n\n\n\n\n", " \n \n\n", "       ", "\n\n\n\n\n\n\n\n"])
+def test_a_surfer_header_stands_on_any_lines(write, parts):
+    head = "".join(
+        map(
+            "".join,
+            zip_longest(("DSAA", "3", "2", "105", "125", "205", "215", "1", "6"), parts, fillvalue=" "),
+        )
+    )
+    points, _ = read_point_file(PointFile(write("g.grd", head + "\n4 nan 6\n1 2 3\n")))
+    assert sorted(points.tolist()) == sorted(CELLS)
+    line = (head + "\n4").count("\n") + 1
+    with pytest.raises(InputRefused, match=rf"g.grd:{line}: not an elevation: 'x'"):
+        read_point_file(PointFile(write("g.grd", head + "\n4 nan x\n1 2 3\n")))
 
 
 @pytest.mark.parametrize(

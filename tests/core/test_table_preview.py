@@ -40,6 +40,12 @@ def test_semicolons_and_decimal_commas(table):
     assert points.tolist() == [[3430000.5, 5390000.25, 181.5]]
 
 
+def test_units_of_measure_name_no_surfaces(table):
+    path = table("x,y,z,unit\n" + "".join(f"{n},{2 * n},{3.5 * n},{('m', 'ft')[n % 2]}\n" for n in range(9)))
+    assert not preview_table(path).is_plain
+    assert preview_table(table(path.read_text().replace("ft", "clay"))).is_plain
+
+
 @pytest.mark.parametrize("separator", ["\t", ",", " "])
 def test_a_number_that_names_surfaces(table, separator):
     rows = [("x", "y", "z", "val")] + [(n, 2 * n, 3.5 * n, 60 * (n % 3)) for n in range(60)]

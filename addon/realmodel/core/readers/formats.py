@@ -55,7 +55,12 @@ from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
 from .tables.dialects import DIALECTS
 from .tables.dialects.workbook import begins_as_workbook, sheet_names
 from .tables.points import begins_as_array, read_point_array, read_point_rows
-from .tables.sticks import begins_as_sticks, read_sticks
+from .tables.sticks import (
+    begins_as_charisma_sticks,
+    begins_as_sticks,
+    read_charisma_sticks,
+    read_sticks,
+)
 
 _HEAD = 4096  # bytes; comments may come before the first line
 RASTER, ARRAY, OBJECTS, SHAPES = "raster", "array", "objects", "shapes"
@@ -138,6 +143,13 @@ FORMATS = (
     FileFormat("DXF", (".dxf",), OBJECTS, begins_as_dxf, as_a_whole(read_dxf), by_ending=True),
     FileFormat("STL", (".stl",), OBJECTS, begins_as_stl, as_a_whole(read_stl), by_ending=True),
     FileFormat("OBJ", (".obj",), OBJECTS, begins_as_obj, as_a_whole(read_obj), by_ending=True),
+    FileFormat(
+        "Charisma fault sticks",
+        (".charisma",),
+        OBJECTS,
+        begins_as_charisma_sticks,
+        as_a_whole(read_charisma_sticks),
+    ),
     FileFormat("AGS", (".ags",), HOLES, begins_as_ags, read_ags, downward_dip="positive"),
     FileFormat("DIGGS", (".xml", ".diggs"), HOLES, begins_as_diggs, read_diggs),
     FileFormat("Petrel well tops", (".tops", ".asc", ".txt"), HOLES, begins_as_well_tops, read_well_tops),
@@ -178,6 +190,9 @@ _NOT_READ = (
     ),
     (rb"LASF", "a cloud of points (LAS or LAZ)", "save it as text or PLY: CloudCompare and PDAL can"),
     (rb"# \.PCD v", "a cloud of points of PCL (PCD)", "save it as PLY or text: CloudCompare can"),
+    (rb"STORM\w*_(?:BINARY|ASCII)", "a grid of Storm", "save it as IRAP classic or ZMAP+: RMS can"),
+    (rb"roff-(?:bin|asc)", "a grid of RMS (ROFF)", "save its horizons as IRAP classic or ZMAP+: RMS can"),
+    (rb"Content=Map", "a map of PetroMod", "save it as ZMAP+ or CPS-3: PetroMod can"),
     (rb"\{\\rtf", "a text with formatting (RTF)", "save its table as CSV"),
     (
         rb"PK\x03\x04.{26,3900}3D/[\w -]+\.model",

@@ -33,9 +33,8 @@ from .tables.hole_tables import (
     Row,
     column_key,
     columns_in,
-    name_units,
+    may_name_units,
     rows,
-    with_chosen_blocks,
 )
 
 _KNOWN = {
@@ -136,13 +135,8 @@ def _are_places(reading: Boreholes, file: Path, sheet: str | None, columns: Mapp
 
 
 def _are_units(reading: Boreholes, file: Path, sheet: str | None, known: Columns, meaning: str) -> bool:
-    """Whether a column that may name units does."""
-    every = list(islice(rows(reading, file, known, (), no_step, sheet), _LOOKED_AT))
-    if meaning == "block":
-        every, _ = with_chosen_blocks(reading, every)
-    return name_units(
-        (row.text(meaning) for row in every if row.has(meaning)), every[0].decimal if every else "."
-    )
+    every = islice(rows(reading, file, known, (), no_step, sheet), _LOOKED_AT)
+    return may_name_units(row.text(meaning) for row in every if row.has(meaning))
 
 
 def _repeats(reading: Boreholes, file: Path, sheet: str | None, axes: str) -> bool:
@@ -231,9 +225,6 @@ def table_contents(
         by_meaning = columns_in(reading, Path(file), _KNOWN[kind], sheet)
         coded = [key for key in ("surface", "block") if key in by_meaning and kind != "collars"]
         read = rows(reading, Path(file), _KNOWN[kind], (), no_step, sheet) if coded else iter(())
-        first = list(islice(read, _LOOKED_AT))
-        if kind == "intervals" and first:
-            first, _ = with_chosen_blocks(reading, first)
-            by_meaning["block"] = first[0].called("block")
+        first = islice(read, _LOOKED_AT)
     codes = {row.text(key) for row in first for key in coded if row.has(key)}
     return by_meaning, sorted(codes)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,11 +13,13 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 from ...base.text import FileBytes, Step, as_utf8, no_step, text_content
-from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
+from .grid_text import GridText, grid_heights, header_numbers, require_count, require_spacing
 from .raster import Raster, known_heights
 
 _BLANK = 1.70141e38  # this, and more, is no height
 _HEAD_6 = struct.Struct("<4s2h6d")
+_HEAD_TEXT = re.compile(rb"DSAA" + rb"[\s,]+([^\s,]+)" * 8 + rb"[\s,]+")  # on lines of any length
+_LONGEST_HEAD = 4096  # bytes
 _GRID_7 = struct.Struct("<2i8d")
 
 
@@ -40,25 +43,27 @@ def read_surfer_grid(
 
 def _text(file: Path, step: Step) -> tuple:
     raw = text_content(file)
-    words: list[tuple[str, int]] = []  # with their lines
-    at = 0
-    for line, text, at in header_lines(raw):  # noqa: B007  they say where the heights begin
-        if line > 1:
-            words += [(word, line) for word in text.replace(",", " ").split()]
-        if len(words) >= 8:
-            break
-    last = words[-1][1] if words else 1
-    if len(words) != 8:
-        what = f"the header has {len(words)} numbers, not 8: columns, rows, and the ends of x, y and z"
-        raise InputRefused(what, file=file, line=last)
-    numbers = [header_numbers(file, word, line, 1, "a number")[0] for word, line in words[:6]]
-    west, east, south, north = numbers[2:]
-    columns = require_count(file, numbers[0], "columns", words[0][1])
-    rows = require_count(file, numbers[1], "rows", words[1][1])
-    dx = require_spacing(file, west, east, columns, "x", words[3][1])
-    dy = require_spacing(file, south, north, rows, "y", words[5][1])
-    heights = grid_heights(GridText(file, raw, at, last + 1), rows, columns, step)
-    return heights, (rows, columns), [], (west, south), (dx, dy)
+    head = _HEAD_TEXT.match(raw[:_LONGEST_HEAD])
+    if head is None:
+        what = "the header is cut off: it has the numbers of columns and rows, and the ends of x, y and z"
+        raise InputRefused(what, file=file)
+    pairs = [
+        (f"{head[n].decode('latin-1')} {head[n + 1].decode('latin-1')}", head.start(n)) for n in (1, 3, 5)
+    ]
+    (counts, of_counts), (of_x, at_x), (of_y, at_y) = [
+        (text, 1 + raw.count(b"\n", 0, at)) for text, at in pairs
+    ]
+    columns, rows = header_numbers(file, counts, of_counts, 2, "the numbers of columns and rows")
+    columns = require_count(file, columns, "columns", of_counts)
+    rows = require_count(file, rows, "rows", of_counts)
+    x = header_numbers(file, of_x, at_x, 2, "the lowest and highest x")
+    y = header_numbers(file, of_y, at_y, 2, "the lowest and highest y")
+    dx = require_spacing(file, x[0], x[1], columns, "x", at_x)
+    dy = require_spacing(file, y[0], y[1], rows, "y", at_y)
+    heights = grid_heights(
+        GridText(file, raw, head.end(), 1 + raw.count(b"\n", 0, head.end())), rows, columns, step
+    )
+    return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
 
 
 def _binary_6(file: Path, _step: Step) -> tuple:

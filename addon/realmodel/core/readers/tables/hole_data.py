@@ -22,9 +22,9 @@ from .hole_tables import (
     Row,
     column_key,
     header_factors,
+    may_name_units,
     rows,
     sheet_rows,
-    with_chosen_blocks,
     with_units_of_cells,
 )
 from .table_layout import names_shown
@@ -111,14 +111,12 @@ def read_hole_rows(
         slow = step if kind in ("picks", "intervals") else no_step
         if isinstance(table, RawTable):
             table_rows = sheet_rows(boreholes, Path(file), table, known, required[kind])
-            choice = None if "block" in boreholes.columns else table.choice
+            choice = table.choice
             tables.system = tables.system or table.system
         else:
             table_rows = list(rows(boreholes, Path(file), known, required[kind], slow, table))
-            choice = None
-            if kind == "intervals":
-                table_rows, choice = with_chosen_blocks(boreholes, table_rows)
-        if choice is not None:
+            choice = _choice(table_rows) if kind == "intervals" else None
+        if choice is not None and "block" not in boreholes.columns:
             tables.block_column, text = choice
             tables.warnings.append(f"{file}: {text}")
         table_rows = with_units_of_cells(table_rows)
@@ -128,6 +126,32 @@ def read_hole_rows(
             tables.factors[kind], warnings = header_factors(header, boreholes.units, model_unit)
             tables.warnings += warnings
     return tables
+
+
+def _choice(every: list[Row]) -> tuple[str, str] | None:
+    """The column of blocks and what is said of it, where another one that may name them divides the rows
+    otherwise."""
+    header = every[0].header if every else None
+    if header is None or "block" not in header.columns:
+        return None
+    aliases, taken = set(map(column_key, INTERVALS["block"])), header.columns["block"]
+
+    def texts(at: int) -> list[str]:
+        return [row.entries[at] if at < len(row.entries) else "" for row in every]
+
+    blocks = texts(taken)
+    for at, other in enumerate(header.names):
+        if at in header.columns.values() or column_key(other) not in aliases:
+            continue
+        named, distinct = texts(at), set(texts(at))
+        is_number_of_row = all(map(str.isdigit, distinct - {""}))
+        if len(distinct) < 2 or is_number_of_row or not may_name_units(named):
+            continue
+        if len(set(zip(blocks, named, strict=True))) > min(len(set(blocks)), len(distinct)):
+            name = header.names[taken]
+            text = f"'{other}' divides the rows otherwise: columns = {{ block = \"{other}\" }}"
+            return name, f"blocks are named by '{name}'; {text}"
+    return None
 
 
 def _has_blocks(boreholes: Boreholes, sheet: RawTable) -> bool:

@@ -17,7 +17,7 @@ from ...base.errors import InputRefused
 from ...base.no_value import NO_VALUE, OFTEN_NO_VALUE
 from ...base.text import Step
 from ...base.units import factor, stated_units, unit_of, unit_text_of_column
-from .points import AXES, TextTable, open_table
+from .points import AXES, TextTable, head_rows, open_table
 from .table_layout import (
     WITH_UNIT,
     Expected,
@@ -138,15 +138,6 @@ _BLOCK = (
     *("unit_code", "unit_name", "graphic", "material", "soil", "soil_type", "domain", "stratum", "hsu"),
     *("geol_geo2", "lito"),
 )
-# Of columns such as unit and material in tables of assays.
-_NO_UNITS = frozenset(
-    (
-        *("ppm", "ppb", "ppt", "%", "pct", "wt%", "g/t", "gpt", "oz/t", "mg/kg", "mg/l", "core", "half core"),
-        *("quarter core", "whole core", "dd", "ddh", "diamond", "rc", "rab", "chips", "chip", "rc chips"),
-        *("pulp", "pulps", "reject", "cuttings", "composite", "grab", "channel", "sample", "blank"),
-        *("standard", "duplicate", "original", "assay", "trench"),
-    )
-)
 _THICKNESS = (
     "thickness",
     "thick",
@@ -213,7 +204,32 @@ _OTHER_END = {"from": "to", "to": "from"}  # of an interval: one follows from th
 _GEOGRAPHIC = ("longitude", "lon", "long", "latitude", "lat")
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 _STEP = 5000  # rows
-_LOOKED_AT = 1000  # rows that tell the decimal sign
+# Of columns such as unit and material in tables of assays.
+_NO_UNITS = frozenset(
+    (
+        *(
+            "ppm",
+            "ppb",
+            "ppt",
+            "%",
+            "pct",
+            "wt%",
+            "g/t",
+            "gpt",
+            "oz/t",
+            "mg/kg",
+            "mg/l",
+            "g/cm3",
+            "kg/m3",
+            "t/m3",
+        ),
+        *("m", "ft", "mm", "cm", "kpa", "mpa", "gpa", "m/s", "ohm.m", "api", "core", "half core"),
+        *("quarter core", "whole core", "dd", "ddh", "diamond", "rc", "rab", "chips", "chip", "rc chips"),
+        *("pulp", "pulps", "reject", "cuttings", "composite", "grab", "channel", "sample", "blank"),
+        *("standard", "duplicate", "original", "assay", "trench"),
+    )
+)
+_LOOKED_AT = 1000  # rows that tell the decimal sign, and which column names units
 _SEPARATORS = ",;|\t "  # a row of these alone is empty, as Excel writes them
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
 _MOST_TURNED = 720.0  # degrees
@@ -369,7 +385,7 @@ def rows(
     InputRefused where it lacks one that is needed. sheet: of a workbook; None: the only one with these."""
     table = _opened(given, file, known, needed, sheet)
     layout = table.layout
-    header = _header(given, file, layout, known)
+    header = _header(given, file, table, known)
     if sheet is not None:  # so that messages name the sheet of a line
         header = replace(header, file=file.with_name(f"{file.name}[{sheet}]"))
     _require(given, header, needed)
@@ -396,8 +412,9 @@ def _decimal(entries: Iterable[str], separator: str) -> str:
     return "," if has_commas and not has_points else "."
 
 
-def _header(given: Reading, file: Path, layout: TableLayout, known: Columns) -> TableHeader:
-    names, columns = layout.names or (), _columns(given, file, layout, known)
+def _header(given: Reading, file: Path, table: TextTable, known: Columns) -> TableHeader:
+    layout = table.layout
+    names, columns = layout.names or (), _columns(given, file, layout, known, head_rows(table, _LOOKED_AT))
     written = {meaning: unit_text_of_column(names[at]) for meaning, at in columns.items() if at < len(names)}
     return TableHeader(file, names, layout.name_line or 1, columns, written)
 
@@ -406,11 +423,12 @@ def sheet_rows(
     given: Reading, file: Path, sheet: RawTable, known: Columns, needed: Sequence[str]
 ) -> list[Row]:
     """The same of a table in a file that holds several."""
-    columns = _columns(given, file, TableLayout(",", tuple(sheet.names), 0, 0, sheet.line), known)
+    first = [row for _, row in sheet.rows[:_LOOKED_AT]]
+    columns = _columns(given, file, TableLayout(",", tuple(sheet.names), 0, 0, sheet.line), known, first)
     units = {meaning: sheet.units[at] for meaning, at in columns.items() if at < len(sheet.units)}
     header = TableHeader(file, sheet.names, sheet.line, columns, units, sheet.row_name)
     _require(given, header, needed)
-    entries = (row[at] for _, row in sheet.rows[:_LOOKED_AT] for at in columns.values() if at < len(row))
+    entries = (row[at] for row in first for at in columns.values() if at < len(row))
     decimal = given.decimal or _decimal(entries, ",")
     return [Row(header, line, entries, decimal) for line, entries in sheet.rows]
 
@@ -442,43 +460,6 @@ def _without_nulls(every: list[Row]) -> list[Row]:
         row.with_values(dict.fromkeys(columns, "")) if columns else row
         for row, columns in zip(every, nulls, strict=True)
     ]
-
-
-def name_units(texts: Iterable[str], decimal: str) -> bool:
-    """Whether entries of a column may be names of units: they are no measured numbers, units of measure or
-    kinds of samples, and there are some."""
-    distinct = {text.lower() for text in texts} - set(NO_VALUE)
-    if all(is_number(text, decimal) for text in distinct):
-        return bool(distinct) and all(float(text.replace(",", ".")).is_integer() for text in distinct)
-    return not distinct <= _NO_UNITS
-
-
-def with_chosen_blocks(given: Reading, every: list[Row]) -> tuple[list[Row], tuple[str, str] | None]:
-    """Rows of intervals whose blocks are named by the first column that may name them and does, with its name
-    and what is said where another one parts the rows otherwise; None where there is none, or `given` says
-    which column it is."""
-    if not every or "block" in given.columns or "block" not in every[0].columns:
-        return every, None
-    header = every[0].header
-    aliases, taken = {column_key(name) for name in _BLOCK}, header.columns["block"]
-    texts: dict[int, list[str]] = {}
-    for at, name in enumerate(header.names):
-        if at == taken or (at not in header.columns.values() and column_key(name) in aliases):
-            column = [row.entries[at] if at < len(row.entries) else "" for row in every]
-            if name_units(column, every[0].decimal):
-                texts[at] = column
-    if taken not in texts and texts:
-        taken = min(texts)
-        header = replace(header, columns={**header.columns, "block": taken})
-        every = [replace(row, header=header) for row in every]
-    for at, column in texts.items():
-        pairs, distinct = set(zip(texts[taken], column, strict=True)), set(column)
-        is_named = len(distinct) > 1 and not all(is_number(text) for text in distinct)  # no running numbers
-        if is_named and len(pairs) > min(len(set(texts[taken])), len(distinct)):
-            name, other = header.names[taken], header.names[at]
-            text = f"'{other}' parts the rows otherwise: columns = {{ block = \"{other}\" }}"
-            return every, (name, f"blocks are named by '{name}'; {text}")
-    return every, None
 
 
 def with_units_of_cells(every: list[Row]) -> list[Row]:
@@ -559,8 +540,8 @@ def _doubled(header: TableHeader) -> list[str]:
 
 def unit_warnings(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
     """The warnings about units in the header of a table. Raises InputRefused for one that is not known."""
-    layout = _opened(given, file, known).layout
-    _, warnings = header_factors(_header(given, file, layout, known), given.units, model_unit)
+    header = _header(given, file, _opened(given, file, known), known)
+    _, warnings = header_factors(header, given.units, model_unit)
     return warnings
 
 
@@ -570,7 +551,7 @@ def columns_in(given: Reading, file: Path, known: Columns, sheet: str | None = N
     table = _opened(given, file, known, sheet=sheet)
     written = table.layout.names or ()
     names = [plain_name(name) for name in written]
-    columns = _columns(given, file, table.layout, known)
+    columns = _columns(given, file, table.layout, known, head_rows(table, _LOOKED_AT))
     return {meaning: names[at] if at < len(names) else "" for meaning, at in columns.items()}
 
 
@@ -633,8 +614,20 @@ def _named(names: Sequence[str], wanted: Sequence[str]) -> int | None:
     return None
 
 
-def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Columns) -> dict[str, int]:
-    """The numbers of the columns of a table, by their meaning."""
+def may_name_units(values: Iterable[str]) -> bool:
+    """Whether the values of a column may be names of units: measured numbers, units of measure and kinds of
+    samples are not, nor is nothing."""
+    texts = {text.lower() for text in values} - NO_VALUE
+    if all(is_number(text) or is_number(text, ",") for text in texts):
+        return bool(texts) and all(float(text.replace(",", ".")).is_integer() for text in texts)
+    return not texts <= _NO_UNITS
+
+
+def _columns(
+    reading: Reading, file: Path, layout: TableLayout, meanings: Columns, first: Sequence[list[str]] = ()
+) -> dict[str, int]:
+    """The numbers of the columns of a table, by their meaning. first: rows, which decide between columns that
+    are called as those of units are."""
     names = layout.names or ()
     as_written = [name.strip().lower() for name in names]
     columns: dict[str, int] = {}
@@ -653,6 +646,10 @@ def _columns(reading: Reading, file: Path, layout: TableLayout, meanings: Column
         if column in columns or called is False or (called is not None and meanings is not SURVEY):
             continue
         at = _named(names, aliases)
+        if at is not None and first and column in ("block", "surface"):
+            naming = [may_name_units(row[n] for row in first if n < len(row)) for n in range(len(names))]
+            those = _named([name if has else "" for name, has in zip(names, naming, strict=True)], aliases)
+            at = at if those is None else those
         if at is not None and at not in columns.values() and _is_beside(names[at], columns, names):
             columns[column] = at
     return columns

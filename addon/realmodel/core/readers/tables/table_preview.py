@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
+from .hole_tables import may_name_units
 from .points import AXES, KNOWN, TextTable, head_rows, open_table, wanted_columns
 from .table_layout import Expected, is_any_number, plain_name
 
@@ -78,7 +79,7 @@ def preview_table(
             continue
         values = list(dict.fromkeys(row[column] for row in rows if column < len(row) and row[column]))
         is_text = not all(is_any_number(value) for value in values)
-        named = plain_name(names[column]) in _NAMING
+        named = plain_name(names[column]) in _NAMING and may_name_units(values)
         if _LEAST <= len(values) <= _MOST and (is_text or named or len(values) * 10 <= len(rows)):
             splits.append((not named, not is_text, column, names[column], values))
     splits.sort(key=lambda entry: entry[:3])

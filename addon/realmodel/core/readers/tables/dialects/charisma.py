@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Charisma's horizons as Petrel writes them: rows of INLINE : or INLINE-, a number, the same of
-XLINE, x, y and z.
+"""Charisma's horizons as Petrel writes them: rows of INLINE :, a number, XLINE :, a number, x, y and z;
+also INLINE- and INLINE-7.
 
 The layout is that of examples that users of Petrel publish ("Charisma 3D interpretation lines").
 """
@@ -12,8 +12,10 @@ from pathlib import Path
 
 from .dialect import FileHeader
 
-_ROW = re.compile(rb"\s*INLINE\s*[:-]\s*-?[\d.]+\s+X(?:ROSS)?LINE\s*[:-]\s*-?[\d.]+\s", re.IGNORECASE)
-_NUMBER = re.compile(r"-?\d+(?:\.\d*)?")
+_SURVEY_LINE = r"LINE\s*[-:]?\s*[-+]?[\d.]+"
+LINES_OF_SURVEY = rf"IN-?{_SURVEY_LINE}\s+(?:(?:(?:X|CROSS)-?{_SURVEY_LINE})|[\d.]+)"
+_ROW = re.compile(rf"\s*{LINES_OF_SURVEY}\s".encode(), re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
 def begins_as_charisma(head: bytes, _size: int = 0) -> bool:
@@ -22,9 +24,9 @@ def begins_as_charisma(head: bytes, _size: int = 0) -> bool:
 
 
 def charisma_header(_file: Path, lines: list[str]) -> FileHeader:
-    """The names of its columns, as blanks part them: words and colons have none."""
-    *entries, _, _, _ = lines[0].split()
-    names, lines_of = [""] * len(entries), iter(("INLINE", "XLINE"))
-    for n, entry in enumerate(entries):
-        names[n] = next(lines_of, "") if _NUMBER.fullmatch(entry) else ""
-    return FileHeader(0, (*names, "X", "Y", "Z"), None)
+    """The names of its columns, as blanks part them: words, also INLINE-7, have none."""
+    names_of = iter(("INLINE", "XLINE", "X", "Y", "Z"))
+    entries = lines[0].split()
+    found = [next(names_of, "") if _NUMBER.search(entry) else "" for entry in entries]
+    names = (name if _NUMBER.fullmatch(entry) else "" for name, entry in zip(found, entries, strict=True))
+    return FileHeader(0, tuple(names), None)
