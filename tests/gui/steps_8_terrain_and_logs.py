@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The row of the terrain in the panel, with its buttons, and the model beneath it; and curves of logs beside the
+"""The row of the terrain in the panel, its buttons, and the model beneath it; and curves of logs beside the
 tubes of holes, with their color bar."""
 
 import shutil
@@ -18,10 +18,11 @@ from steps_8_wells import _sheet, empty_file
 sys.path.append(str(Path(__file__).parents[1] / "core"))
 from las_files import las_text
 
+# In the row: pixels from the left border of the panel and its top.
 _ACTIVE_MESH, _REMOVE = (
     (149, 110),
     (172, 110),
-)  # in the row: pixels from the left border of the panel and the top
+)
 _DEPTHS = [0.0, 10.0, 20.0, 30.0, 40.0]
 _GAMMA = [10.0, 20.0, 40.0, 30.0, 50.0]
 
