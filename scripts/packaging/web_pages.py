@@ -22,7 +22,7 @@ PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
 LARGE, WIDTH = 8_000, 736  # bytes of a picture that is made smaller; pixels, as wide as a page
 MOVING, SHORT = 400, 70  # pixels, the width of a moving one; milliseconds of a frame that it does without
-QUALITY = 38  # of a picture as WebP, which takes half of what JPEG does
+QUALITY = 34  # of a picture as WebP, which takes half of what JPEG does
 QUALITY_MOVING = 26  # of its frames, of which each is seen for a moment
 _SOURCE = re.compile(r'<img[^>]* src="([^"]+)"')
 PAGE = """<!DOCTYPE html>

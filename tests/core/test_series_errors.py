@@ -134,6 +134,14 @@ def test_measured_thicknesses_hold():
     assert missed[1] < 0.2 * missed[0]
 
 
+def test_a_thickness_outside_a_field_has_no_effect():
+    base, normals = places(40, 1)
+    seen = Observations(base[:3] + normals[:3], ["a", "b", "b"], thicknesses=[60.0, 60.0, np.nan])
+    surfaces = [Surface("a", points=base), Surface("b", points=base + 60 * normals, rule="conformable")]
+    found = [str(warning) for warning in model(surfaces, seen).warnings if "has no effect" in str(warning)]
+    assert len(found) == 1 and "of 1 observation has" in found[0]
+
+
 def test_a_thickness_is_of_the_table_and_stays(tmp_path):
     table = tmp_path / "seen.csv"
     table.write_text("x,y,z,block,thickness (ft)\n0,0,10,b,100\n0,0,20,b,\n")

@@ -127,3 +127,18 @@ def test_auto_keeps_extrapolate_and_takes_no_option_of_others():
     assert np.isnan(result.z).mean() == result.extrapolated > 0
     with pytest.raises(InputRefused, match="'neighbours' belongs to kriging, not to auto"):
         interpolate(POINTS, NODES, "auto", neighbours=4)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_spline_that_swings_beside_a_line_of_points_warns(seed):
+    """Its errors have no bound there; what lies on the line, or rises evenly along it, is no reason."""
+    own = np.random.default_rng(seed)
+    turn, along = own.uniform(0, np.pi), np.linspace(0, 10, 62)
+    axis, across = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+    plan = 1000 + along[:, None] * axis
+    beside = (plan[:, None] + np.linspace(-5, 5, 11)[:, None] * across).reshape(-1, 2)
+    points = np.column_stack([plan, own.uniform(800, 4300, 62)])
+    assert any("lie on a line" in text for text in interpolate(points, beside, "spline").warnings)
+    assert not any("beyond" in text for text in interpolate(points, plan, "spline").warnings)
+    even = np.column_stack([plan, 3 * along])
+    assert not any("beyond" in text for text in interpolate(even, beside, "spline").warnings)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.algebra import norm
+from ..base.algebra import norm, principal_axes
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import NativeError, refused_as
@@ -18,6 +18,8 @@ from .mis_ties import without_mis_ties
 from .plain import outside_hull, replace_extrapolated
 
 _SAME_HEIGHT = 1e-9  # of a height
+_FAR, _FAR_OF_LINE = 2.0, 0.5  # of the range of heights of points, of points on a line
+_LINE = 0.01  # of their spread: that across a line
 
 
 def heights(method: str, task: Task) -> Interpolation:
@@ -121,19 +123,25 @@ def _rise(task: Task) -> float:
 
 def runs_away(points: np.ndarray, z: np.ndarray, method: str, rise: float = 0.0) -> list[str]:
     """A warning if heights go far beyond those of the points, by more than twice their range and the rise
-    that dips predict. Points that differ by rounding alone are level, and have none."""
+    that dips predict; by half of it where points lie on a line, which say nothing of what is beside it.
+    Points that differ by rounding alone are level, and have none."""
     tamed_by = METHODS[method].tamed_by
     if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []
     low, high = points[:, 2].min(), points[:, 2].max()
     lowest, highest = np.nanmin(z), np.nanmax(z)
-    rounding = 1e-12 * max(abs(low), abs(high))
-    if not max(low - lowest, highest - high) > 2 * (high - low) + rise or not 2 * (high - low) > rounding:
+    beyond, rounding = max(low - lowest, highest - high) - rise, 1e-12 * max(abs(low), abs(high))
+    if not beyond > _FAR_OF_LINE * (high - low) or not 2 * (high - low) > rounding:
         return []
-    return [
-        f"its elevations, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
-        f"{high:.6g}; {tamed_by}"
-    ]
+    along, across = principal_axes(points[:, :2])[0]
+    if across > _LINE * along:
+        if not beyond > _FAR * (high - low):
+            return []
+        where = ""
+    else:
+        where = "its points lie on a line; "
+    theirs = f"those of its points, {low:.6g} to {high:.6g}"
+    return [f"{where}its elevations, {lowest:.6g} to {highest:.6g}, go far beyond {theirs}; {tamed_by}"]
 
 
 def left_out_heights(method: str, task: Task) -> Result:

@@ -6,10 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
-from ..base.errors import BuildWarning, naming, number_list
+from ..base.errors import BuildWarning, counted, naming, number_list
 from ..base.work import Work
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
@@ -18,9 +19,9 @@ from ..readers import Picks, UnitNames, read_dips_of_rock, read_observed_places,
 from ..readers.tables.boreholes import Pick
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips, SpaceDips
-from ..settings.series_kinds import SHEETS
+from ..settings.series_kinds import FIELD, SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
-from .observed.derived import PlaceContext, derive, with_contacts, without_contradictions
+from .observed.derived import BlockNumbers, PlaceContext, derive, with_contacts, without_contradictions
 from .observed.edge_crossings import with_crossings
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -114,6 +115,24 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         project_rock.ground_number,
         mapped,
     )
+
+
+def thicknesses_without_effect(rock: Rock) -> list[str]:
+    """A warning where observations of a rock mass have thicknesses of blocks that are in no field."""
+    seen = rock.observed
+    if seen is None:
+        return []
+    fields = {series.name for series in rock.series if series.kind == FIELD}
+    pairs = enumerate(pairwise(rock.surfaces), 1)
+    of_fields = [top for top, (a, b) in pairs if a.series == b.series and b.series in fields]
+    tops = BlockNumbers(rock).of(seen.blocks)
+    count = int((seen.in_use & ~np.isnan(seen.thicknesses_there) & ~np.isin(tops, of_fields)).sum())
+    if not count:
+        return []
+    return [
+        f"the thickness of {counted(count, 'observation')} has no effect, as the block is not between two "
+        'surfaces of a field: add a pick where it ends, or use the method "parallel" with a thickness'
+    ]
 
 
 def _on_the_ground_alone(

@@ -28,7 +28,14 @@ from ..settings.dips import Dips, SpaceDips, as_given
 from ..settings.meshers import AUTO
 from ..settings.series_kinds import SHEETS
 from .doubtful_heights import doubtful_heights, require_points_near
-from .field_data import FieldData, apply_observations, bodies_of, left_out_warnings, read_field_data
+from .field_data import (
+    FieldData,
+    apply_observations,
+    bodies_of,
+    left_out_warnings,
+    read_field_data,
+    thicknesses_without_effect,
+)
 from .likely_unit import surface_unit_warnings
 from .observed.conformable import proposals, with_least_thickness
 from .observed.kept_contacts import kept_bounds
@@ -63,6 +70,8 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         field = read_field_data(project, rock)
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
         warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
+        unused = thicknesses_without_effect(field.rock)
+        warnings += [BuildWarning(text, "observations", rock.name) for text in unused]
         asked += [SurfaceInput.of(rock, surface, project.units, met) for surface, met in field.surfaces]
         fields.append(field)
         all_warnings.append((warnings, _unnamed(rock, field)))
