@@ -34,8 +34,7 @@ TEST(Dsi, IterationsDoNotGrowWithTheMesh) {
     for (const double weight : {0.0, 1.0}) {
         std::vector<int> iterations;
         for (const int side : {40, 41, 43, 160}) {
-            if (kSanitized && side > 100)
-                continue;
+            if (kSanitized && side > 100) continue;
             const Lattice mesh = lattice(side, side);
             const auto height = [&](double x, double y) {
                 return 100 * std::sin(5 * x / side) * std::cos(4 * y / side);
