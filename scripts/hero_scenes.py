@@ -164,7 +164,7 @@ def _canyon_details(rim, walls):
 
 def sea_cliff(scene):
     """A chalk cliff with an arch and stacks before it, seen from the beach."""
-    eye, sun = (-2.0, 0.0, 4.2), (118.0, 17.0)
+    eye, sun = (-2.0, 0.0, 4.2), (152.0, 18.0)
 
     def coast(u, v):
         """How far places in plan are behind the edge of the cliff, about, meters."""
@@ -573,13 +573,13 @@ def quarry(scene):
     field = parts.surface("Hills", x, y, hills, meadow)
     parts.weather(meadow, "#36452a", 90.0, streaks=0.0, ledge=0.75, cover=0.55)
     water = parts.water_material("#2f6a63", 5.0, 0.04, 0.04)
-    parts.surface("Pond", np.array([-85.0, 20.0]), np.array([60.0, 165.0]), np.full((2, 2), 1.1), water)
+    parts.surface("Pond", np.array([-85.0, 20.0]), np.array([60.0, 165.0]), np.full((2, 2), 0.1), water)
     _quarry_details(rock, field)
-    eye = (eye[0], eye[1], parts.Ground(rock).below(*eye[:2])[0].z + 1.9)
+    eye = (eye[0], eye[1], parts.Ground(rock).below(*eye[:2])[0].z + 3.6)
     parts.sunlight(scene, sun, "#ffe0b4", 4.6, 700.0)
     parts.sky(scene, sun, "#4f86c2", "#d5dcdc", "#ffeccb", 0.95, 0.8, 6)
     parts.air(6_000.0, "#bcc8cf", 0.8)
-    parts.camera(scene, eye, (8.0, 130.0, eye[2] + 2.0), 25.0)
+    parts.camera(scene, eye, (8.0, 130.0, eye[2] - 2.0), 25.0)
 
 
 def _box(mesh_parts, low, high, material):
@@ -642,7 +642,7 @@ def _quarry_details(rock, field):
     parts.strewn("Blocks", stones, ground, places, 0.06 + 0.9 * random.random(700) ** 7, 4)
     places = np.column_stack([random.uniform(-120, 130, 900), random.uniform(30.0, 190.0, 900)])
     parts.strewn("Muck", stones, ground, places, 0.4 + 2.6 * random.random(900) ** 5, 5, steepest=0.6)
-    parts.figure("Figure", ground.spot(-32.5, 0.0, 1.0, 0.5), math.radians(170.0), "#d97a1f")
+    parts.figure("Figure", ground.spot(-30.0, -2.5, 1.0, 0.5), math.radians(170.0), "#d97a1f")
     truck = _truck()
     for number, (x, y, turn) in enumerate(((38.0, 78.0, 0.55), (12.0, 52.0, 2.2))):
         hit = ground.below(x, y)
